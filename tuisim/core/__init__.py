@@ -1,0 +1,1 @@
+"""The simulation: pure Python, no files, no wall clock, no printing."""

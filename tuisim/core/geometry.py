@@ -1,0 +1,33 @@
+"""Poses and points: millimetres, y up, degrees counter-clockwise from +x."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Where something is and which way it faces."""
+
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    """Counter-clockwise from +x, not wrapped: -90 stays -90, two turns are 720."""
+
+
+def world_point(pose: Pose, x_mm: float, y_mm: float) -> tuple[float, float]:
+    """Return the world position of a point given in robot coordinates.
+
+    Args:
+        pose: The robot's pose; its position is the midpoint between the wheels.
+        x_mm: To the right of the robot.
+        y_mm: Forward of the robot.
+
+    Returns:
+        x and y in mm in the world.
+    """
+    # The robot's own frame has y forward, so it is turned by heading - 90 degrees.
+    turn = math.radians(pose.heading_deg - 90.0)
+    cos, sin = math.cos(turn), math.sin(turn)
+    return pose.x_mm + cos * x_mm - sin * y_mm, pose.y_mm + sin * x_mm + cos * y_mm

@@ -1,0 +1,78 @@
+"""Profiles: how much each call costs and how a motor behaves, as frozen data.
+
+`robolab` is the course as its text says; `nbev3devsim` gives the figures of the old
+simulator. A profile is only data: the code that reads it never asks for its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+MS = 1_000_000
+"""Nanoseconds in a millisecond."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileSpec:
+    """The rules of one kind of brick. Costs are simulated nanoseconds a call."""
+
+    name: str
+    title: str
+    tick_hz: int
+    """Ticks a second: tick k falls due at ceil(k * 10^9 / tick_hz) ns."""
+
+    color_read_ns: int = 10 * MS
+    color_code_read_ns: int = 20 * MS
+    """`color` and `color_name`."""
+    ultrasonic_read_ns: int = 10 * MS
+    gyro_read_ns: int = 20 * MS
+    attribute_read_ns: int = 1 * MS
+    """Any other device attribute."""
+    clock_read_ns: int = 20_000
+
+    max_speed_dps: float = 1050.0
+    """Large motor, no load (EV3 motor driver table)."""
+    reflected_max: int = 255
+    """What `reflected_light_intensity` gives on white."""
+    round_forward_speeds: bool = False
+    """Round a wheel speed of 0 or more to whole degrees per second each tick."""
+    halve_position_moves: bool = False
+    """A move to a position covers about half the distance: the encoder counts twice a tick."""
+    keep_speed_when_stopped: bool = False
+    """A stopped motor remembers its speed, and the next start begins with it."""
+    ramp_when_stopped: bool = False
+    """Unused speed of a stopped motor goes on changing."""
+    pair_tail_ns: int = 0
+    """How long a blocking call on two motors stands still after the move."""
+    forward_noise_only: bool = False
+    """Motor noise works on speeds of 0 or more only, also on a wheel that stands."""
+    ultrasonic_period_ticks: int = 1
+    """The ultrasonic sensor measures every so many ticks."""
+    plain_state: bool = False
+    """A motor's `state` is a string, '' or 'running', and `time_sp` is in seconds."""
+
+
+ROBOLAB = ProfileSpec(
+    name="robolab",
+    title="the course as its text says, defects mended",
+    tick_hz=100,
+)
+
+NBEV3DEVSIM = ProfileSpec(
+    name="nbev3devsim",
+    title="the figures of the old simulator",
+    tick_hz=30,
+    attribute_read_ns=0,
+    clock_read_ns=0,
+    round_forward_speeds=True,
+    halve_position_moves=True,
+    keep_speed_when_stopped=True,
+    pair_tail_ns=110 * MS,
+    forward_noise_only=True,
+    ultrasonic_period_ticks=3,
+    plain_state=True,
+)
+
+PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM)}
+"""Every profile by name."""

@@ -1,0 +1,48 @@
+"""Sensors: one file a kind, and the table of kinds.
+
+To add a sensor: write its file (a frozen spec in `core.spec`, a pure function from an
+`Instant` to values), and add a line to `SENSORS`. The telemetry frame, the panels and
+the contract test walk the table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tuisim.core.field import Field
+from tuisim.core.sensors import color, gyro, ultrasonic
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, RunSpec, UltrasonicSpec
+from tuisim.core.state import Instant
+
+
+@dataclass(frozen=True, slots=True)
+class SensorKind:
+    """How one kind of sensor is measured and named."""
+
+    driver_name: str
+    """What the kernel calls it; `ev3dev2` looks for this name."""
+    spec: type
+    columns: Callable[[Any], tuple[str, ...]]
+    """From a sensor's spec to the names of its telemetry columns."""
+    measure: Callable[[Any, Instant, RunSpec, Field], tuple[float, ...]]
+    """From spec and instant to the values of those columns."""
+
+
+SENSORS: Mapping[str, SensorKind] = {
+    "color": SensorKind("lego-ev3-color", ColorSensorSpec, color.columns, color.measure),
+    "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, ultrasonic.columns, ultrasonic.measure),
+    "gyro": SensorKind("lego-ev3-gyro", GyroSpec, gyro.columns, gyro.measure),
+}
+"""Every kind of sensor, in the order of the telemetry columns."""
+
+
+def mounted(robot: RobotSpec) -> list[tuple[SensorKind, Any]]:
+    """Return the robot's sensors as (kind, spec), in the order of the telemetry columns."""
+    found: list[tuple[SensorKind, Any]] = [(SENSORS["color"], sensor) for sensor in robot.color_sensors]
+    if robot.ultrasonic is not None:
+        found.append((SENSORS["ultrasonic"], robot.ultrasonic))
+    if robot.gyro is not None:
+        found.append((SENSORS["gyro"], robot.gyro))
+    return found

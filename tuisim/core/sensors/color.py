@@ -1,0 +1,134 @@
+"""Colour sensor: the mean colour of a disc of mat pixels under it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_mask, disc_pixels
+from tuisim.core.geometry import Pose, world_point
+from tuisim.core.noise import disturb_pixels
+from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
+from tuisim.core.state import Instant
+
+COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
+"""Names by colour code, as ev3dev2 has them."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColorReading:
+    """What one colour sensor sees: mean channels, 0 … 255."""
+
+    red: float
+    green: float
+    blue: float
+
+    @property
+    def rgb(self) -> tuple[int, int, int]:
+        """The channels cut to whole numbers, as programs get them."""
+        return int(self.red), int(self.green), int(self.blue)
+
+    @property
+    def red_percent(self) -> float:
+        """`reflected_light_intensity_pc`: 100 · int(red) / 255."""
+        return 100 * int(self.red) / 255
+
+    @property
+    def mean_percent(self) -> float:
+        """`full_reflected_light_intensity`: 100 · the sum of the whole channels / 765."""
+        return 100 * sum(self.rgb) / 765
+
+    @property
+    def code(self) -> int:
+        """Colour code 1 … 6, by hue, see `color_code`."""
+        return color_code(*self.rgb)
+
+    @property
+    def name(self) -> str:
+        """Colour name, such as `Blue`."""
+        return COLOR_NAMES[self.code]
+
+
+def hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
+    """Return hue 0 … 360 and saturation and value 0 … 100, cut to whole numbers."""
+    high, low = max(red, green, blue), min(red, green, blue)
+    span = high - low
+    if not span:
+        return 0, 0, int(100 * high / 255)
+    if high == red:
+        hue = (green - blue) / span % 6
+    elif high == green:
+        hue = (blue - red) / span + 2
+    else:
+        hue = (red - green) / span + 4
+    return int(60 * hue), int(100 * span / high), int(100 * high / 255)
+
+
+def color_code(red: int, green: int, blue: int) -> int:
+    """Return the colour code of a reading: 1 black, 2 blue, 3 green, 4 yellow, 5 red, 6 white."""
+    hue, saturation, value = hsv(red, green, blue)
+    if saturation < 20:
+        return 1 if value < 30 else 6
+    for limit, code in ((30, 5), (90, 4), (163, 3), (283, 2)):
+        if hue < limit:
+            return code
+    return 5
+
+
+def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
+    """Return the image column and row of the corner of the box under a sensor."""
+    x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
+    radius = spec.diameter_mm / 2
+    # Cut toward zero, not down: that is how the box of the seed simulator falls on the mat.
+    return int(x_mm - radius), int(FIELD_HEIGHT_MM - y_mm - radius)
+
+
+@lru_cache(maxsize=16)
+def _disc_bytes(diameter: int) -> bytes:
+    """1 for each byte of a box that belongs to the disc, 0 for the rest."""
+    return bytes(inside for row in disc_mask(diameter) for inside in row for _ in range(3))
+
+
+def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+    pixels = field.box(spec.diameter_mm, *box_corner(instant.pose, spec))
+    if instant.noise.light:
+        return disturb_pixels(pixels, instant.noise.light, instant.seed, instant.tick, spec.name)
+    return pixels
+
+
+def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
+    """Return what a colour sensor sees at an instant, noise included."""
+    count = disc_pixels_of(spec.diameter_mm)
+    if instant.noise.light:
+        box = bytes(map(int.__mul__, _seen_box(spec, instant, field), _disc_bytes(spec.diameter_mm)))
+        sums = (sum(box[0::3]), sum(box[1::3]), sum(box[2::3]))
+    else:
+        sums = field.disc_sums(spec.diameter_mm, *box_corner(instant.pose, spec))
+    return ColorReading(sums[0] / count, sums[1] / count, sums[2] / count)
+
+
+disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
+"""`field.disc_pixels`, remembered."""
+
+
+def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+    """Return the box a sensor sees as RGB bytes, row-major, d × d pixels, noise included.
+
+    Pixels outside the disc are OUTSIDE_DISC_RGB.
+    """
+    box = bytearray(_seen_box(spec, instant, field))
+    for at, inside in enumerate(_disc_bytes(spec.diameter_mm)):
+        if not inside:
+            box[at] = OUTSIDE_DISC_RGB[at % 3]
+    return bytes(box)
+
+
+def columns(spec: ColorSensorSpec) -> tuple[str, ...]:
+    """Return the telemetry columns of a sensor."""
+    return f"{spec.name}_red", f"{spec.name}_green", f"{spec.name}_blue"
+
+
+def measure(spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+    """Return the values of `columns`: mean red, green and blue, 0 … 255."""
+    seen = reading(spec, instant, field)
+    return seen.red, seen.green, seen.blue

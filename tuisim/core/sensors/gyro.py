@@ -1,0 +1,27 @@
+"""Gyro: clockwise turn in degrees since the last reset, and its rate."""
+
+from __future__ import annotations
+
+from tuisim.core.field import Field
+from tuisim.core.spec import GyroSpec, RunSpec
+from tuisim.core.state import Instant
+
+
+def angle_deg(instant: Instant) -> int:
+    """Return the clockwise angle since the last reset, whole degrees, not wrapped."""
+    return round(instant.gyro_zero_deg - instant.pose.heading_deg)
+
+
+def rate_dps(instant: Instant) -> int:
+    """Return the clockwise rate of turn, whole degrees per second."""
+    return round(-instant.turn_rate_dps)
+
+
+def columns(spec: GyroSpec) -> tuple[str, ...]:
+    """Return the telemetry columns of a gyro."""
+    return f"{spec.name}_deg", f"{spec.name}_rate_dps"
+
+
+def measure(spec: GyroSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+    """Return the values of `columns`."""
+    return float(angle_deg(instant)), float(rate_dps(instant))

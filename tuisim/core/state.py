@@ -1,0 +1,26 @@
+"""The state of the world at one tick, as far as sensors and viewers need it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Instant:
+    """One moment of a run; the same record the telemetry stores for each tick."""
+
+    tick: int
+    pose: Pose
+    left_position_deg: float = 0.0
+    right_position_deg: float = 0.0
+    left_speed_dps: float = 0.0
+    right_speed_dps: float = 0.0
+    turn_rate_dps: float = 0.0
+    """Counter-clockwise, over the last tick."""
+    gyro_zero_deg: float = 0.0
+    """Heading at which the gyro shows 0."""
+    noise: NoiseSpec = NoiseSpec()
+    seed: int = 0

@@ -1,0 +1,1 @@
+"""What a run leaves behind: recording, the run store, frames, analysis, exports."""

@@ -1,0 +1,185 @@
+"""The two binary files of a run folder, and their writers. Pure Python: the child imports it.
+
+Both files are shared memory maps that begin with a 64-byte header and grow while the
+run goes on. A writer stores a record first and then publishes the new length in the
+header, so that a reader, also after a `kill -9`, never sees half a record.
+
+`telemetry.bin`: one 64-byte record a tick (`TICK_RECORD`); length = number of records.
+`output.bin`: rows of any size (`OUTPUT_ROW` and the text in UTF-8); length = bytes.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from struct import Struct
+
+from tuisim.errors import LogError
+
+HEADER_BYTES = 64
+_HEADER = Struct("<8sIIQ")
+"""Magic, format version, record size (0: variable), published length."""
+_LENGTH_AT = 16
+_LENGTH = Struct("<Q")
+FORMAT_VERSION = 1
+
+TELEMETRY_MAGIC = b"TUISIMTL"
+OUTPUT_MAGIC = b"TUISIMOU"
+
+TICK_RECORD = Struct("<IIdddddfffHH")
+"""tick, line, x_mm, y_mm, heading_deg, left_position_deg, right_position_deg,
+left_speed_dps, right_speed_dps, gyro_zero_deg, flags, actions.
+
+`line` is the program's own line that let the time pass (0: none). `gyro_deg` is
+gyro_zero_deg - heading_deg. `actions` counts the user actions applied before this tick."""
+
+FLAG_LEFT_RUNNING = 1
+FLAG_RIGHT_RUNNING = 2
+FLAG_PEN_DOWN = 4
+
+OUTPUT_ROW = Struct("<IIqIB3x")
+"""Bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
+
+STDOUT, STDERR, SPEECH, INPUT = 1, 2, 3, 4
+"""Streams of an output row: printed, error text, spoken, the echo of an answer to input()."""
+
+TELEMETRY_FILE = "telemetry.bin"
+OUTPUT_FILE = "output.bin"
+_TELEMETRY_CHUNK = 64 * 16384
+_OUTPUT_CHUNK = 1 << 16
+MAX_OUTPUT_BYTES = 256 << 20
+"""A run that prints more than this is stopped."""
+
+
+class _GrowingMap:
+    """A file mapped into memory that grows in ever larger steps."""
+
+    def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
+        self._fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o644)
+        self.capacity = HEADER_BYTES + first_bytes
+        os.ftruncate(self._fd, self.capacity)
+        self.map = mmap.mmap(self._fd, self.capacity)
+        self.map[0 : _HEADER.size] = _HEADER.pack(magic, FORMAT_VERSION, record_bytes, 0)
+
+    def grow(self, need: int) -> None:
+        while self.capacity < need:
+            self.capacity *= 2
+        self.map.close()
+        os.ftruncate(self._fd, self.capacity)
+        self.map = mmap.mmap(self._fd, self.capacity)
+
+    def publish(self, length: int) -> None:
+        # One slice assignment: pack_into would clear the bytes first, and a reader would see 0.
+        self.map[_LENGTH_AT : _LENGTH_AT + 8] = _LENGTH.pack(length)
+
+    def close(self, used: int) -> None:
+        self.map.close()
+        os.ftruncate(self._fd, used)
+        os.close(self._fd)
+
+
+class TelemetryWriter:
+    """Appends tick records. The hot loop packs into `map` itself, then calls `publish`."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, _TELEMETRY_CHUNK)
+        self.count = 0
+
+    def room(self, records: int) -> mmap.mmap:
+        """Return the map, with room for `records` more records after `count`."""
+        need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
+        if need > self._file.capacity:
+            self._file.grow(need)
+        return self._file.map
+
+    def publish(self, count: int) -> None:
+        """Make the first `count` records visible to readers."""
+        self.count = count
+        self._file.publish(count)
+
+    def close(self) -> None:
+        """Cut the file to its true size."""
+        self._file.close(HEADER_BYTES + self.count * TICK_RECORD.size)
+
+
+class OutputWriter:
+    """Appends printed lines, each published at once."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = _GrowingMap(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, _OUTPUT_CHUNK)
+        self.length = 0
+
+    def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: int) -> None:
+        """Append one row.
+
+        Args:
+            text: The line without its newline, UTF-8.
+            tick: Ticks done.
+            time_ns: Simulated time.
+            line: Source line that printed it, 0 for none.
+            stream: STDOUT, STDERR, SPEECH or INPUT.
+
+        Raises:
+            LogError: the output has reached MAX_OUTPUT_BYTES.
+        """
+        at = HEADER_BYTES + self.length
+        end = at + OUTPUT_ROW.size + len(text)
+        if end > self._file.capacity:
+            if end > MAX_OUTPUT_BYTES:
+                raise LogError(f"the program printed more than {MAX_OUTPUT_BYTES >> 20} MiB")
+            self._file.grow(end)
+        self._file.map[at:end] = OUTPUT_ROW.pack(len(text), tick, time_ns, line, stream) + text
+        self.length = end - HEADER_BYTES
+        self._file.publish(self.length)
+
+    def close(self) -> None:
+        """Cut the file to its true size."""
+        self._file.close(HEADER_BYTES + self.length)
+
+
+@dataclass(frozen=True, slots=True)
+class OutputRow:
+    """One line that the program printed, spoke or was answered."""
+
+    text: str
+    tick: int
+    time_ns: int
+    line: int
+    stream: int
+
+
+def published_length(data: bytes | mmap.mmap, magic: bytes, file: str) -> int:
+    """Return the length in a header: records of a telemetry file, bytes of an output file.
+
+    Raises:
+        LogError: this is not such a file, or of another version.
+    """
+    if len(data) < HEADER_BYTES:
+        raise LogError("too short to be a recording", file=file)
+    found, version, _, length = _HEADER.unpack_from(data)
+    if found != magic:
+        raise LogError("not a tuisim recording", file=file)
+    if version != FORMAT_VERSION:
+        raise LogError(f"format version {version}, this tuisim reads {FORMAT_VERSION}", file=file)
+    return int(length)
+
+
+def output_rows(data: bytes | mmap.mmap, start: int, end: int) -> Iterator[tuple[OutputRow, int]]:
+    """Yield each whole row between two byte positions, with the position after it.
+
+    Args:
+        data: A whole output file.
+        start: Byte position after the header, 0 or one that was yielded before.
+        end: Published length in bytes.
+    """
+    while start + OUTPUT_ROW.size <= end:
+        at = HEADER_BYTES + start
+        size, tick, time_ns, line, stream = OUTPUT_ROW.unpack_from(data, at)
+        start += OUTPUT_ROW.size + size
+        if start > end:
+            return
+        text = bytes(data[at + OUTPUT_ROW.size : at + OUTPUT_ROW.size + size]).decode("utf-8", "replace")
+        yield OutputRow(text, tick, time_ns, line, stream), start

@@ -1,0 +1,129 @@
+"""Every error that tuisim raises on purpose.
+
+TuisimError(message, hint, exit_code)
+├─ ConfigError: file, key ── BackgroundError, RobotError, ObstacleError, ProfileError
+├─ ProgramError: file, line ── ProgramRaised, ProgramStalled, ProgramKilled, NotSimulated
+├─ HostError: child died, protocol mismatch
+├─ LogError: file, row
+└─ ExportError
+
+A message says what was wrong and where; a hint says what is allowed. The same text
+goes to stderr, to a notice in the app, and to the notebook.
+"""
+
+from __future__ import annotations
+
+
+class TuisimError(Exception):
+    """Base of all expected errors.
+
+    Args:
+        message: What was wrong and where, one line, no full stop needed.
+        hint: What is allowed or what to do next; may be empty.
+    """
+
+    exit_code = 2
+    """What the shell command ends with when this error reaches it."""
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.hint = hint
+
+    def __str__(self) -> str:
+        return f"{self.message} ({self.hint})" if self.hint else self.message
+
+
+class ConfigError(TuisimError):
+    """A file, switch or value that describes a run is wrong.
+
+    Args:
+        message: What was wrong.
+        hint: What is allowed.
+        file: The file it stands in, if there is one.
+        key: The key or switch, such as `ultrasonic.max_range_mm` or `-x`.
+    """
+
+    def __init__(self, message: str, hint: str = "", *, file: str = "", key: str = "") -> None:
+        where = ": ".join(part for part in (file, key) if part)
+        super().__init__(f"{where}: {message}" if where else message, hint)
+        self.file = file
+        self.key = key
+
+
+class BackgroundError(ConfigError):
+    """No such mat, or an image that cannot serve as one."""
+
+
+class RobotError(ConfigError):
+    """A robot description is impossible."""
+
+
+class ObstacleError(ConfigError):
+    """An obstacle is impossible."""
+
+
+class ProfileError(ConfigError):
+    """No such profile, or an impossible one."""
+
+
+class ProgramError(TuisimError):
+    """The user's program could not go on.
+
+    Args:
+        message: What happened.
+        hint: What to do next.
+        file: The program's file.
+        line: The line in it, from 1; 0 where none is known.
+    """
+
+    exit_code = 1
+
+    def __init__(self, message: str, hint: str = "", *, file: str = "", line: int = 0) -> None:
+        where = f"{file}, line {line}: " if line else f"{file}: " if file else ""
+        super().__init__(where + message, hint)
+        self.file = file
+        self.line = line
+
+
+class ProgramRaised(ProgramError):
+    """The program ended with an exception of its own."""
+
+
+class ProgramStalled(ProgramError):
+    """The program ran into the simulated-time limit or the stall limit."""
+
+    exit_code = 3
+
+
+class ProgramKilled(ProgramError):
+    """The program had to be killed, or died without a word."""
+
+
+class NotSimulated(ProgramError):
+    """The program used a part of ev3dev2 that a simulated brick does not have."""
+
+
+class HostError(TuisimError):
+    """The child process died early or sent what the protocol does not allow."""
+
+
+class LogError(TuisimError):
+    """A log or a stored run cannot be read.
+
+    Args:
+        message: What was wrong.
+        hint: What to do next.
+        file: The file.
+        row: The row in it, from 1; 0 where none is known.
+    """
+
+    def __init__(self, message: str, hint: str = "", *, file: str = "", row: int = 0) -> None:
+        where = f"{file}, row {row}: " if row else f"{file}: " if file else ""
+        super().__init__(where + message, hint)
+        self.file = file
+        self.row = row
+
+
+class ExportError(TuisimError):
+    """An export could not be written; nothing half written is left."""

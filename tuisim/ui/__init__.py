@@ -1,0 +1,1 @@
+"""The app: Textual widgets over the host."""

@@ -1,0 +1,41 @@
+"""What the panels show: one frozen picture of the run, made once a frame by the bridge."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tuisim.core.field import Field
+from tuisim.core.sensors.color import ColorReading
+from tuisim.core.spec import RunSpec
+from tuisim.core.state import Instant
+
+IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
+"""Run states: no run yet, child is starting, time moves, stands still, waits in input(), over."""
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """One moment as every panel sees it. Sensor values are those of `instant`."""
+
+    state: str
+    end: str
+    """How the run ended (`protocol.Ended.end`), empty unless `state` is ended."""
+    spec: RunSpec
+    field: Field | None
+    """None until the mat has been prepared."""
+    instant: Instant
+    time_s: float
+    line: int
+    """Line of the program that lets the time pass, 0 for none."""
+    speed: float
+    """1.0 real time, 0 as fast as possible."""
+    colors: Mapping[str, ColorReading]
+    """By sensor name, such as `left`."""
+    ultrasonic_mm: int | None
+    rays: tuple[tuple[float, float], ...]
+    """Ultrasonic rays as (world angle in degrees, length in mm)."""
+    gyro_deg: int
+    gyro_rate_dps: int
+    pen_down: bool
+    notice: str = ""
