@@ -41,8 +41,10 @@ class ProfileSpec:
     """A move to a position covers about half the distance: the encoder counts twice a tick."""
     keep_speed_when_stopped: bool = False
     """A stopped motor remembers its speed, and the next start begins with it."""
-    ramp_when_stopped: bool = False
-    """Unused speed of a stopped motor goes on changing."""
+    timed_stop_skips_tick: bool = False
+    """A timed move does not move in the tick at which its time is up."""
+    direction_from_set_point: bool = False
+    """A move to an absolute position goes the way of the set point's sign, not of the difference."""
     pair_tail_ns: int = 0
     """How long a blocking call on two motors stands still after the move."""
     forward_noise_only: bool = False
@@ -68,6 +70,8 @@ NBEV3DEVSIM = ProfileSpec(
     round_forward_speeds=True,
     halve_position_moves=True,
     keep_speed_when_stopped=True,
+    timed_stop_skips_tick=True,
+    direction_from_set_point=True,
     pair_tail_ns=110 * MS,
     forward_noise_only=True,
     ultrasonic_period_ticks=3,

@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from struct import Struct
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
+
+TICK_RECORD = Struct("<IIdddddfffHH")
+"""tick, line, x_mm, y_mm, heading_deg, left_position_deg, right_position_deg,
+left_speed_dps, right_speed_dps, gyro_zero_deg, flags, actions.
+
+`line` is the program's own line that let the time pass (0: none). `gyro_deg` is
+gyro_zero_deg - heading_deg. `actions` counts the user actions applied before this tick."""
+
+FLAG_LEFT_RUNNING = 1
+FLAG_RIGHT_RUNNING = 2
+FLAG_PEN_DOWN = 4
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
 
+from tuisim.core.state import TICK_RECORD
 from tuisim.errors import LogError
 
 HEADER_BYTES = 64
@@ -28,17 +29,6 @@ FORMAT_VERSION = 1
 
 TELEMETRY_MAGIC = b"TUISIMTL"
 OUTPUT_MAGIC = b"TUISIMOU"
-
-TICK_RECORD = Struct("<IIdddddfffHH")
-"""tick, line, x_mm, y_mm, heading_deg, left_position_deg, right_position_deg,
-left_speed_dps, right_speed_dps, gyro_zero_deg, flags, actions.
-
-`line` is the program's own line that let the time pass (0: none). `gyro_deg` is
-gyro_zero_deg - heading_deg. `actions` counts the user actions applied before this tick."""
-
-FLAG_LEFT_RUNNING = 1
-FLAG_RIGHT_RUNNING = 2
-FLAG_PEN_DOWN = 4
 
 OUTPUT_ROW = Struct("<IIqIB3x")
 """Bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""

@@ -1,0 +1,168 @@
+"""Motors and drive: figures of both profiles, and one answer however ticks are grouped."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import NBEV3DEVSIM, ROBOLAB, ProfileSpec
+from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
+
+
+class MemorySink:
+    """Tick records in memory, with the header space of the file."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.buffer = bytearray(64 * 4096)
+
+    def room(self, records: int) -> bytearray:
+        need = 64 * (1 + self.count + records)
+        if need > len(self.buffer):
+            self.buffer += bytes(need)
+        return self.buffer
+
+    def publish(self, count: int) -> None:
+        self.count = count
+
+    def records(self) -> bytes:
+        return bytes(self.buffer[64 : 64 + 64 * self.count])
+
+
+def simulation(profile: ProfileSpec, motor_noise: int = 0, weight: float = 6.0) -> Simulation:
+    world = WorldSpec(start=Pose(0.0, 0.0, 0.0), noise=NoiseSpec(0, motor_noise))
+    return Simulation(RunSpec(RobotSpec(weight=weight), world, profile, seed=5), MemorySink())
+
+
+@pytest.mark.parametrize(
+    ("speed", "seconds", "distance_mm"), [(525, 2.0, 428.63), (1050, 2.0, 696.94), (-525, 2.0, -428.01)]
+)
+def test_old_profile_moves_for_seconds(speed: float, seconds: float, distance_mm: float) -> None:
+    sim = simulation(NBEV3DEVSIM)
+    for motor in (sim.left, sim.right):
+        motor.run_until(speed, sim.end_tick_after(0, int(seconds * NS_PER_S)))
+    sim.advance(90)
+    assert sim.x_mm == pytest.approx(distance_mm, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("speed", "rotations", "distance_mm", "encoder"),
+    [(525, 1, 86.55, 371.7), (420, 2, 177.88, 742.0), (210, 1, 88.03, 367.27), (525, 5, 437.18, 1806.7)],
+)
+def test_old_profile_halves_position_moves(speed: float, rotations: int, distance_mm: float, encoder: float) -> None:
+    sim = simulation(NBEV3DEVSIM)
+    for motor in (sim.left, sim.right):
+        motor.run_to(360.0 * rotations, speed, backwards=False)
+    while not sim.changed:
+        sim.advance(1000, until_change=True)
+    assert sim.x_mm == pytest.approx(distance_mm, abs=0.01)
+    assert sim.left.position_deg == pytest.approx(encoder, abs=0.1)
+
+
+def test_old_profile_turns_on_the_spot() -> None:
+    sim = simulation(NBEV3DEVSIM)
+    sim.left.run_to(-576.0, 420.0, backwards=True)
+    sim.right.run_to(576.0, 420.0, backwards=False)
+    sim.advance(200)
+    assert sim.heading_deg == pytest.approx(91.47, abs=0.01)
+
+
+@pytest.mark.parametrize("speed", [100.0, 525.0, 1050.0])
+@pytest.mark.parametrize("backwards", [False, True], ids=["forwards", "backwards"])
+def test_position_moves_end_exactly(speed: float, backwards: bool) -> None:
+    sim = simulation(ROBOLAB)
+    goal = -360.0 if backwards else 360.0
+    for motor in (sim.left, sim.right):
+        motor.run_to(goal, speed, backwards)
+    sim.advance(1000, until_change=True)
+    assert sim.left.position_deg == goal
+    assert abs(sim.x_mm) == pytest.approx(math.pi * 56, abs=1e-9)
+    assert sim.left.moving_dps == 0
+
+
+def test_seed_experiment_is_at_its_place_at_tick_162() -> None:
+    sim = simulation(NBEV3DEVSIM)
+    sim.place(Pose(150.0, 500.0, 0.0))
+    for motor in (sim.left, sim.right):
+        motor.run(525.0)
+    sim.advance(162)
+    assert sim.x_mm == pytest.approx(1459.50, abs=0.01)
+
+
+def script(sim: Simulation, step: int) -> bytes:
+    """Drive through every kind of command, `step` ticks a call."""
+
+    def advance(ticks: int) -> None:
+        while ticks > 0:
+            ticks -= sim.advance(min(step, ticks))
+
+    sim.left.run(300.0)
+    sim.right.run(-420.0)
+    advance(50)
+    sim.left.run_until(1000.0, sim.end_tick_after(sim.due_ns(sim.tick), NS_PER_S))
+    advance(120)
+    sim.left.run_to(sim.left.position_deg - 500, 400.0, backwards=True)
+    sim.right.run_to(sim.right.position_deg + 333, 250.0, backwards=False)
+    advance(90)
+    sim.left.run(0.0)
+    advance(40)
+    sim.right.stop(sim.spec.profile)
+    advance(17)
+    sink = sim._sink
+    assert isinstance(sink, MemorySink)
+    return sink.records()
+
+
+@pytest.mark.parametrize("profile", [ROBOLAB, NBEV3DEVSIM], ids=lambda profile: profile.name)
+@pytest.mark.parametrize("weight", [0.0, 3.0, 7.3], ids=["weightless", "light", "odd"])
+@pytest.mark.parametrize("noise", [0, 50], ids=["quiet", "noisy"])
+def test_grouping_of_ticks_does_not_matter(profile: ProfileSpec, weight: float, noise: int) -> None:
+    whole = script(simulation(profile, noise, weight), 10_000)
+    assert script(simulation(profile, noise, weight), 1) == whole
+    assert script(simulation(profile, noise, weight), 7) == whole
+
+
+def test_tight_loops_agree_with_the_full_tick() -> None:
+    class Slow(Simulation):
+        def _glide(self, ticks: int) -> None:
+            for _ in range(ticks):
+                self._tick()
+
+    spec = simulation(ROBOLAB).spec
+    assert script(Slow(spec, MemorySink()), 10_000) == script(Simulation(spec, MemorySink()), 10_000)
+
+
+@pytest.mark.parametrize("profile", [ROBOLAB, NBEV3DEVSIM], ids=lambda profile: profile.name)
+def test_braking_down_the_ramp(profile: ProfileSpec) -> None:
+    sim = simulation(profile)
+    for motor in (sim.left, sim.right):
+        motor.run(525.0)
+    sim.advance(profile.tick_hz * 2)
+    before = sim.x_mm
+    for motor in (sim.left, sim.right):
+        motor.run(0.0)
+    sim.advance(profile.tick_hz * 3)
+    assert sim.x_mm - before == pytest.approx(76.0, abs=5.0)
+    assert sim.left.moving_dps == 0
+
+
+def test_seeds_give_different_noise_and_the_same_seed_the_same() -> None:
+    def end(seed: int) -> float:
+        spec = replace(simulation(ROBOLAB, motor_noise=50).spec, seed=seed)
+        sim = Simulation(spec, MemorySink())
+        sim.left.run(500.0)
+        sim.right.run(500.0)
+        sim.advance(300)
+        return sim.y_mm
+
+    assert end(1) == end(1)
+    assert end(1) != end(2)
+
+
+def test_no_gyro_change_when_the_robot_is_lifted() -> None:
+    sim = simulation(ROBOLAB)
+    sim.place(Pose(10.0, 20.0, -90.0))
+    instant = sim.instant()
+    assert instant.gyro_zero_deg - instant.pose.heading_deg == 0

@@ -1,0 +1,170 @@
+"""Wheel motors: what they were told, how their speed ramps, when a move is over.
+
+A motor is changed in place, tick by tick: this is the hottest data of the simulation.
+Angles in degrees of the wheel (one encoder count is one degree), speeds in degrees per
+second.
+"""
+
+from __future__ import annotations
+
+from tuisim.core.profile import ProfileSpec
+
+STOPPED, FOREVER, TIMED, POSITION = range(4)
+"""What a motor is doing."""
+
+ENDLESS = 1 << 60
+"""More ticks than any run has."""
+
+
+def ramped(speed: float, target: float, step: float, whole: bool) -> float:
+    """Return the speed one tick later.
+
+    Args:
+        speed: Speed now.
+        target: Speed asked for.
+        step: Change allowed in a tick; 0 for a motor without inertia.
+        whole: Round a speed of 0 or more to whole degrees per second.
+    """
+    if step == 0.0:
+        speed = target
+    elif speed < target:
+        speed += step
+        if speed > target:
+            speed = target
+    elif speed > target:
+        speed -= step
+        if speed < target:
+            speed = target
+    return float(int(speed + 0.5)) if whole and speed >= 0 else speed
+
+
+class Motor:
+    """One motor with its encoder."""
+
+    __slots__ = ("blocked", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "speed_dps", "target_dps")
+
+    def __init__(self) -> None:
+        self.mode = STOPPED
+        self.position_deg = 0.0
+        self.speed_dps = 0.0
+        """Speed the motor has reached; with `keep_speed_when_stopped` also remembered when it stands."""
+        self.target_dps = 0.0
+        self.sign = 1.0
+        """-1 while a move goes backwards at a speed given without sign."""
+        self.goal_deg = 0.0
+        self.end_tick = 0
+        self.counts_on_dps = 0.0
+        """How fast the encoder goes on counting though the wheel stands (halved position moves)."""
+        self.blocked = False
+
+    def run(self, speed_dps: float) -> None:
+        """Run until told otherwise."""
+        self._begin(FOREVER, speed_dps, 1.0)
+
+    def run_until(self, speed_dps: float, end_tick: int) -> None:
+        """Run until a tick is over."""
+        self._begin(TIMED, speed_dps, 1.0)
+        self.end_tick = end_tick
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
+        """Run to an encoder position at a speed given without sign."""
+        self._begin(POSITION, abs(speed_dps), -1.0 if backwards else 1.0)
+        self.goal_deg = goal_deg
+
+    def _begin(self, mode: int, speed_dps: float, sign: float) -> None:
+        if sign != self.sign:
+            # The wheel keeps turning the way it turns: only the way it is written down changes.
+            self.speed_dps = -self.speed_dps
+        self.mode, self.target_dps, self.sign = mode, speed_dps, sign
+        self.counts_on_dps = 0.0
+
+    def stop(self, profile: ProfileSpec) -> None:
+        """Stand still now."""
+        self.mode = STOPPED
+        self.target_dps = 0.0
+        self.counts_on_dps = 0.0
+        if not profile.keep_speed_when_stopped:
+            self.speed_dps = 0.0
+            self.sign = 1.0
+
+    @property
+    def moving_dps(self) -> float:
+        """The speed at which the wheel turns, with its sign."""
+        return 0.0 if self.mode == STOPPED else self.speed_dps * self.sign
+
+    def quiet_ticks(self, tick: int, tick_s: float, halved: bool) -> int:
+        """Return for how many ticks nothing but the ramp can change this motor.
+
+        Args:
+            tick: Ticks done.
+            tick_s: Length of a tick in seconds.
+            halved: Whether the encoder counts twice in a move to a position.
+        """
+        if self.mode == TIMED:
+            return max(0, self.end_tick - tick - 1)
+        if self.mode == POSITION:
+            fastest = max(abs(self.speed_dps), abs(self.target_dps)) * tick_s
+            if fastest == 0.0:
+                return ENDLESS
+            left = (self.goal_deg - self.position_deg) * self.sign
+            return max(0, int(left / (2 * fastest if halved else fastest)) - 1)
+        return ENDLESS
+
+    def step(self, tick: int, profile: ProfileSpec, ramp_step: float, tick_s: float, noise_dps: float) -> float:
+        """Do one tick, whatever it brings.
+
+        Args:
+            tick: The tick that is being done.
+            profile: The rules.
+            ramp_step: Change of speed in a tick.
+            tick_s: Length of a tick in seconds.
+            noise_dps: Added to the speed; 0 for none.
+
+        Returns:
+            Degrees by which the wheel turned.
+        """
+        if self.mode == STOPPED:
+            self.position_deg += self.counts_on_dps * tick_s
+            return 0.0
+        if self.mode == TIMED and (tick > self.end_tick or (tick == self.end_tick and profile.timed_stop_skips_tick)):
+            self.stop(profile)
+            return 0.0
+        self.speed_dps = ramped(self.speed_dps, self.target_dps, ramp_step, profile.round_forward_speeds)
+        speed = self._disturbed(profile, noise_dps) if noise_dps else self.speed_dps
+        turned = speed * self.sign * tick_s
+        if self.mode == POSITION:
+            return self._step_to_goal(turned, profile)
+        self.position_deg += turned
+        if self.mode == TIMED and tick == self.end_tick:
+            self.stop(profile)
+        return turned
+
+    def _step_to_goal(self, turned: float, profile: ProfileSpec) -> float:
+        left = (self.goal_deg - self.position_deg) * self.sign
+        if profile.halve_position_moves:
+            if turned * self.sign > left:
+                # The encoder counts this step, the wheel does not make it, and the count goes on.
+                self.position_deg += turned
+                counts_on = self.target_dps * self.sign
+                self.stop(profile)
+                self.counts_on_dps = counts_on
+                return 0.0
+            self.position_deg += 2 * turned
+            return turned
+        if turned * self.sign >= left:
+            turned = self.goal_deg - self.position_deg
+            self.position_deg = self.goal_deg
+            self.stop(profile)
+            return turned
+        self.position_deg += turned
+        return turned
+
+    def _disturbed(self, profile: ProfileSpec, noise_dps: float) -> float:
+        limit = profile.max_speed_dps
+        if profile.forward_noise_only:
+            if self.speed_dps >= 0:
+                self.speed_dps = min(limit, float(round(self.speed_dps + noise_dps)))
+            return self.speed_dps
+        if self.speed_dps == 0.0:
+            return 0.0
+        return max(-limit, min(limit, float(round(self.speed_dps + noise_dps))))

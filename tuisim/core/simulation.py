@@ -1,0 +1,300 @@
+"""The simulation: robot, motors and pose, moved on in whole ticks.
+
+`advance` gives the same state to the last bit however the ticks are divided among
+calls: stretches in which nothing happens but motion are done in tight loops, and every
+loop does the same floating-point operations in the same order as a single tick.
+"""
+
+from __future__ import annotations
+
+import math
+from struct import Struct
+from typing import Protocol
+
+from tuisim.core import motors
+from tuisim.core.drive import mm_per_degree, turn_rate_dps
+from tuisim.core.geometry import Pose
+from tuisim.core.motors import Motor, ramped
+from tuisim.core.noise import wheel_noise
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Instant
+
+NS_PER_S = 1_000_000_000
+_FLOAT32 = Struct("<f")
+
+
+def float32(value: float) -> float:
+    """Return `value` as the telemetry stores it, so that viewers and programs see the same."""
+    return float(_FLOAT32.unpack(_FLOAT32.pack(value))[0])
+
+
+class TickSink(Protocol):
+    """Where tick records go."""
+
+    count: int
+
+    def room(self, records: int) -> memoryview:
+        """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k."""
+
+    def publish(self, count: int) -> None:
+        """Tell readers how many records are whole."""
+
+
+class Simulation:
+    """The world of one run.
+
+    Args:
+        spec: Robot, world, profile and seed.
+        sink: Gets one record a tick, beginning with tick 0.
+    """
+
+    __slots__ = (
+        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_tick_s", "actions", "changed", "gyro_zero_deg", "heading_deg",
+        "left", "light_noise", "line", "motor_noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
+    )  # fmt: skip
+
+    def __init__(self, spec: RunSpec, sink: TickSink) -> None:
+        self.spec = spec
+        self._sink = sink
+        self._hz = spec.profile.tick_hz
+        self._tick_s = 1.0 / self._hz
+        self._mm_per_deg = mm_per_degree(spec.robot)
+        self._ramp_step = 5000.0 / spec.robot.weight / self._hz if spec.robot.weight else 0.0
+        self.tick = 0
+        start = spec.world.start
+        self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
+        self.gyro_zero_deg = float32(start.heading_deg)
+        self.left, self.right = Motor(), Motor()
+        self.light_noise, self.motor_noise = spec.world.noise.light, spec.world.noise.motor
+        self.pen_down = spec.robot.pen.down
+        self.line = 0
+        """Source line that lets the time pass, for the record."""
+        self.actions = 0
+        """User actions applied so far."""
+        self.changed = False
+        """Set when a motor ends a move by itself; the caller clears it."""
+        self._left_dps = self._right_dps = 0.0
+        self._record()
+
+    # Reading
+
+    def due_ns(self, tick: int) -> int:
+        """Return when a tick falls due, in ns from the start: ceil(tick · 10⁹ / f)."""
+        return -(-tick * NS_PER_S // self._hz)
+
+    def ticks_at(self, time_ns: int) -> int:
+        """Return how many ticks have fallen due at a time."""
+        return time_ns * self._hz // NS_PER_S
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot is."""
+        return Pose(self.x_mm, self.y_mm, self.heading_deg)
+
+    def instant(self) -> Instant:
+        """Return the present moment, with values rounded as the telemetry stores them."""
+        left, right = float32(self._left_dps), float32(self._right_dps)
+        return Instant(
+            tick=self.tick,
+            pose=self.pose,
+            left_position_deg=self.left.position_deg,
+            right_position_deg=self.right.position_deg,
+            left_speed_dps=left,
+            right_speed_dps=right,
+            turn_rate_dps=turn_rate_dps(left, right, self.spec.robot),
+            gyro_zero_deg=self.gyro_zero_deg,
+            noise=NoiseSpec(self.light_noise, self.motor_noise),
+            seed=self.spec.seed,
+        )
+
+    # Changing
+
+    def place(self, pose: Pose) -> None:
+        """Put the robot somewhere; the gyro keeps the angle it shows."""
+        self.gyro_zero_deg = float32(self.gyro_zero_deg + pose.heading_deg - self.heading_deg)
+        self.x_mm, self.y_mm, self.heading_deg = pose.x_mm, pose.y_mm, pose.heading_deg
+
+    def reset_gyro(self) -> None:
+        """Let the gyro show 0 here."""
+        self.gyro_zero_deg = float32(self.heading_deg)
+
+    def end_tick_after(self, now_ns: int, duration_ns: int) -> int:
+        """Return the tick in which a timed move that starts now comes to its end."""
+        end_ns = now_ns + duration_ns
+        if self.spec.profile.timed_stop_skips_tick:
+            return -(-end_ns * self._hz // NS_PER_S)
+        return self.ticks_at(end_ns)
+
+    # Moving on
+
+    def advance(self, ticks: int, until_change: bool = False) -> int:
+        """Do some ticks.
+
+        Args:
+            ticks: How many.
+            until_change: Come back early when a motor ends a move.
+
+        Returns:
+            How many were done.
+        """
+        done = 0
+        halved = self.spec.profile.halve_position_moves
+        while done < ticks:
+            quiet = 0
+            if not self.motor_noise:
+                quiet = min(
+                    ticks - done,
+                    self.left.quiet_ticks(self.tick, self._tick_s, halved),
+                    self.right.quiet_ticks(self.tick, self._tick_s, halved),
+                )
+            if quiet > 0:
+                self._glide(quiet)
+                done += quiet
+            else:
+                self._tick()
+                done += 1
+                if until_change and self.changed:
+                    break
+        return done
+
+    def _tick(self) -> None:
+        """One tick in full: the rule that the loops below abbreviate."""
+        self.tick += 1
+        profile, step, tick_s = self.spec.profile, self._ramp_step, self._tick_s
+        left, right = self.left, self.right
+        before = (left.mode, right.mode)
+        left_noise = right_noise = 0.0
+        if self.motor_noise:
+            first, second = wheel_noise(self.spec.seed, self.tick)
+            left_noise, right_noise = first * self.motor_noise, second * self.motor_noise
+        left_deg = left.step(self.tick, profile, step, tick_s, left_noise)
+        right_deg = right.step(self.tick, profile, step, tick_s, right_noise)
+        left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
+        heading = math.radians(self.heading_deg)
+        forward = (left_mm + right_mm) / 2
+        self.x_mm += forward * math.cos(heading)
+        self.y_mm += forward * math.sin(heading)
+        self.heading_deg += math.degrees((right_mm - left_mm) / self.spec.robot.wheel_spacing_mm)
+        if before != (left.mode, right.mode):
+            self.changed = True
+        self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
+        self._record()
+
+    def _record(self) -> None:
+        sink = self._sink
+        at = 64 + 64 * sink.count
+        sink.room(1)[at : at + 64] = TICK_RECORD.pack(
+            self.tick, self.line, self.x_mm, self.y_mm, self.heading_deg,
+            self.left.position_deg, self.right.position_deg, self._left_dps, self._right_dps,
+            self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF,
+        )  # fmt: skip
+        sink.publish(sink.count + 1)
+
+    def _flags(self) -> int:
+        return (
+            (FLAG_LEFT_RUNNING if self.left.mode else 0)
+            | (FLAG_RIGHT_RUNNING if self.right.mode else 0)
+            | (FLAG_PEN_DOWN if self.pen_down else 0)
+        )
+
+    def _glide(self, ticks: int) -> None:
+        """Do ticks in which only the ramps and the motion go on: the hottest loop."""
+        while ticks:
+            ramping = self._ramping_ticks(ticks)
+            if ramping:
+                self._glide_ramping(ramping)
+            else:
+                self._glide_steady(ticks)
+            ticks -= ramping or ticks
+
+    def _ramping_ticks(self, most: int) -> int:
+        """How many ticks until both motors have reached their speed, at most `most`."""
+        if not self._ramp_step:
+            jump = any(motor.mode and motor.speed_dps != motor.target_dps for motor in (self.left, self.right))
+            return min(most, int(jump))
+        longest = 0
+        for motor in (self.left, self.right):
+            if motor.mode and motor.speed_dps != motor.target_dps:
+                longest = max(longest, math.ceil(abs(motor.target_dps - motor.speed_dps) / self._ramp_step))
+        return min(most, longest)
+
+    def _glide_ramping(self, ticks: int) -> None:
+        left, right, step, tick_s = self.left, self.right, self._ramp_step, self._tick_s
+        whole, halved = self.spec.profile.round_forward_speeds, self.spec.profile.halve_position_moves
+        mm_per_deg, spacing = self._mm_per_deg, self.spec.robot.wheel_spacing_mm
+        left_on, right_on = left.mode != motors.STOPPED, right.mode != motors.STOPPED
+        left_twice = halved and left.mode == motors.POSITION
+        right_twice = halved and right.mode == motors.POSITION
+        line, zero, flags, actions = self.line, self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF
+        x, y, heading, hz = self.x_mm, self.y_mm, self.heading_deg, self._hz
+        pack, radians, cos, sin, degrees = TICK_RECORD.pack, math.radians, math.cos, math.sin, math.degrees
+        sink = self._sink
+        buffer, at = sink.room(ticks), 64 + 64 * sink.count
+        left_deg = right_deg = 0.0
+        for tick in range(self.tick + 1, self.tick + ticks + 1):
+            if left_on:
+                left.speed_dps = ramped(left.speed_dps, left.target_dps, step, whole)
+                left_deg = left.speed_dps * left.sign * tick_s
+                left.position_deg += 2 * left_deg if left_twice else left_deg
+            else:
+                left.position_deg += left.counts_on_dps * tick_s
+            if right_on:
+                right.speed_dps = ramped(right.speed_dps, right.target_dps, step, whole)
+                right_deg = right.speed_dps * right.sign * tick_s
+                right.position_deg += 2 * right_deg if right_twice else right_deg
+            else:
+                right.position_deg += right.counts_on_dps * tick_s
+            left_mm, right_mm = left_deg * mm_per_deg, right_deg * mm_per_deg
+            turn = radians(heading)
+            forward = (left_mm + right_mm) / 2
+            x += forward * cos(turn)
+            y += forward * sin(turn)
+            heading += degrees((right_mm - left_mm) / spacing)
+            buffer[at : at + 64] = pack(
+                tick, line, x, y, heading, left.position_deg, right.position_deg,
+                left_deg * hz, right_deg * hz, zero, flags, actions,
+            )  # fmt: skip
+            at += 64
+        self.tick += ticks
+        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+        self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
+        sink.publish(sink.count + ticks)
+
+    def _glide_steady(self, ticks: int) -> None:
+        left, right, tick_s, halved = self.left, self.right, self._tick_s, self.spec.profile.halve_position_moves
+        left_deg, right_deg = left.moving_dps * tick_s, right.moving_dps * tick_s
+        left_count = left_deg if left.mode else left.counts_on_dps * tick_s
+        right_count = right_deg if right.mode else right.counts_on_dps * tick_s
+        if halved and left.mode == motors.POSITION:
+            left_count = 2 * left_deg
+        if halved and right.mode == motors.POSITION:
+            right_count = 2 * right_deg
+        left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
+        forward = (left_mm + right_mm) / 2
+        turned = math.degrees((right_mm - left_mm) / self.spec.robot.wheel_spacing_mm)
+        x, y, heading = self.x_mm, self.y_mm, self.heading_deg
+        left_at, right_at = left.position_deg, right.position_deg
+        line, zero, flags, actions = self.line, self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF
+        left_dps, right_dps = left_deg * self._hz, right_deg * self._hz
+        pack, radians, cos, sin = TICK_RECORD.pack, math.radians, math.cos, math.sin
+        sink = self._sink
+        buffer, at = sink.room(ticks), 64 + 64 * sink.count
+        across, up = forward * cos(radians(heading)), forward * sin(radians(heading))
+        for tick in range(self.tick + 1, self.tick + ticks + 1):
+            left_at += left_count
+            right_at += right_count
+            x += across
+            y += up
+            if turned:
+                heading += turned
+                turn = radians(heading)
+                across, up = forward * cos(turn), forward * sin(turn)
+            buffer[at : at + 64] = pack(
+                tick, line, x, y, heading, left_at, right_at, left_dps, right_dps, zero, flags, actions
+            )
+            at += 64
+        self.tick += ticks
+        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+        left.position_deg, right.position_deg = left_at, right_at
+        self._left_dps, self._right_dps = left_dps, right_dps
+        sink.publish(sink.count + ticks)
