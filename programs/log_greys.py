@@ -1,0 +1,16 @@
+"""Log the light every tenth of a second until the mat is black."""
+# %%sim_magic_preloaded -b Grey_bands
+
+import time
+
+# Each line `NAME: number` becomes a row of the log and a point of the chart.
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+sensor_val = colorLeft.reflected_light_intensity_pc
+print('Colour: ' + str(sensor_val))
+
+while sensor_val > 0:
+    sensor_val = colorLeft.reflected_light_intensity_pc
+    print('Colour: ' + str(sensor_val))
+    time.sleep(0.1)
+
+tank_drive.off()

@@ -1,0 +1,28 @@
+"""A robot lab in the terminal: ev3dev2 programs on a simulated LEGO EV3 robot, in virtual time.
+
+The public names load their modules when they are first used, so that `import tuisim` is cheap.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tuisim.datalog.export import read_log
+    from tuisim.datalog.store import load_run
+
+__version__ = "0.1.0"
+__all__ = ["__version__", "load_run", "read_log"]
+
+_HOMES = {"load_run": "tuisim.datalog.store", "read_log": "tuisim.datalog.export"}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOMES])

@@ -1,0 +1,182 @@
+"""A program file: its text, its magic line, and which prelude it gets."""
+
+from __future__ import annotations
+
+import ast
+import io
+import re
+import shlex
+import tokenize
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tuisim.errors import ConfigError
+from tuisim.switches import nearest, parse_words
+
+MAX_PROGRAM_BYTES = 4 << 20
+
+PRELUDES: Mapping[str, str] = {
+    "sim_magic": "none",
+    "sim_magic_imports": "imports",
+    "sim_magic_preloaded": "preloaded",
+}
+"""The prelude that each magic stands for."""
+
+_MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
+_DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
+
+
+@dataclass(frozen=True, slots=True)
+class Magic:
+    """A program's magic line."""
+
+    line: int
+    """From 1."""
+    prelude: str
+    switches: Mapping[str, Any]
+    """By field of `Settings`."""
+    comment: bool
+    """Whether it stands in a comment; if not, it is not Python and must be blanked."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramFile:
+    """A program as read from its file."""
+
+    name: str
+    """File name."""
+    path: str
+    text: str
+    """The source; a magic line that is not a comment is blank, so that line numbers are the file's own."""
+    prelude: str
+    """none, imports or preloaded."""
+    switches: Mapping[str, Any] = field(default_factory=dict)
+    """Switches of the magic line, by field of `Settings`."""
+
+
+def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
+    """Yield (line number, text) of the lines before the first statement, a docstring left out."""
+    closing = ""
+    for number, raw in enumerate(lines, start=1):
+        line = raw.strip()
+        if closing:
+            closing = "" if closing in line else closing
+        elif not line or line.startswith(("#", "%")):
+            yield number, line
+        elif opened := _DOCSTRING.match(line):
+            quote = opened.group(1)
+            if quote not in line[opened.end() :]:
+                closing = quote
+        else:
+            return
+
+
+def find_magic(text: str, name: str) -> Magic | None:
+    """Return the magic line that stands before the program's first statement, if there is one.
+
+    Args:
+        text: The program.
+        name: Its file name, for errors.
+
+    Raises:
+        ConfigError: the magic is none of `PRELUDES`, or a switch in it is wrong.
+    """
+    for number, line in _head(text.splitlines()):
+        match = _MAGIC.fullmatch(line)
+        if match is None:
+            continue
+        where = f"{name}, line {number}"
+        if match["name"] not in PRELUDES:
+            raise ConfigError(f"no such magic %%{match['name']}", nearest(match["name"], PRELUDES), file=where)
+        try:
+            switches = parse_words(shlex.split(match["words"]))
+        except ConfigError as error:
+            raise ConfigError(error.message, error.hint, file=where) from None
+        except ValueError as error:
+            raise ConfigError(f"the magic line cannot be split into words: {error}", file=where) from None
+        return Magic(number, PRELUDES[match["name"]], switches, match["comment"] is not None)
+    return None
+
+
+def _imports_ev3dev2(text: str) -> bool:
+    try:
+        tree = ast.parse(text)
+    # The program's own mistakes are reported when it runs; here a glance must do.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return re.search(r"^\s*(from|import)\s+ev3dev2\b", text, re.MULTILINE) is not None
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import(names=names) if any(alias.name.split(".")[0] == "ev3dev2" for alias in names):
+                return True
+            case ast.ImportFrom(module=str(module), level=0) if module.split(".")[0] == "ev3dev2":
+                return True
+    return False
+
+
+def parse_program(text: str, name: str, path: str = "") -> ProgramFile:
+    """Return a program from its text.
+
+    Raises:
+        ConfigError: its magic line is wrong.
+    """
+    magic = find_magic(text, name)
+    if magic is None:
+        return ProgramFile(name, path, text, "none" if _imports_ev3dev2(text) else "preloaded")
+    if not magic.comment:
+        lines = text.splitlines(keepends=True)
+        raw = lines[magic.line - 1]
+        lines[magic.line - 1] = raw[len(raw.rstrip("\r\n")) :]
+        text = "".join(lines)
+    return ProgramFile(name, path, text, str(magic.switches.get("preload", magic.prelude)), magic.switches)
+
+
+def read_program(path: Path) -> ProgramFile:
+    """Read a program file.
+
+    Raises:
+        ConfigError: it is missing, a directory, no Python text, too large, or its magic line is wrong.
+    """
+    shown = str(path)
+    try:
+        if path.is_dir():
+            raise ConfigError("is a directory, not a program", "name a Python file", file=shown)
+        if not path.exists():
+            raise ConfigError("there is no such program", _neighbours(path), file=shown)
+        # A device or a pipe may never end.
+        if not path.is_file():
+            raise ConfigError("is not a regular file", "name a Python file", file=shown)
+        with path.open("rb") as file:
+            data = file.read(MAX_PROGRAM_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(f"cannot be read: {reason}", file=shown) from None
+    if len(data) > MAX_PROGRAM_BYTES:
+        raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", "name a Python file", file=shown)
+    if path.suffix == ".ipynb":
+        raise ConfigError("is a notebook", "name a Python file", file=shown)
+    return parse_program(_decode(data, shown), path.name, shown)
+
+
+def _decode(data: bytes, shown: str) -> str:
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+        text = data.decode(encoding)
+    except (SyntaxError, UnicodeDecodeError) as error:
+        raise ConfigError(f"is not Python text: {error}", "save it as UTF-8", file=shown) from None
+    if "\0" in text:
+        raise ConfigError("is not Python text: it holds null characters", "name a Python file", file=shown)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _neighbours(path: Path) -> str:
+    """The hint for a missing file: programs beside it with a like name, and where to find more."""
+    import difflib
+
+    try:
+        beside = [other.name for other in path.parent.glob("*.py")]
+    except OSError:
+        beside = []
+    close = difflib.get_close_matches(path.name, beside, 3)
+    return f"did you mean {' or '.join(close)}?" if close else "see `tuisim programs` for examples"
