@@ -1,0 +1,265 @@
+"""Mats made ready for the sensors: an image becomes raw files that are mapped, not read.
+
+`prepare` does the slow part once for each image and disc diameter and keeps it in the
+cache folder; `open_field` maps what it made. numpy and Pillow are only imported by what
+needs them, so that a child process can open a field without either.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import mmap
+import os
+import tempfile
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.core.field import Field, disc_mask
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.errors import BackgroundError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+MAX_CACHED_FILES = 30
+"""The sums of one diameter are 33 MB; beyond so many files the least recently used go."""
+
+MAX_DIAMETER_PX = 128
+"""One disc row of white pixels must fit a signed 16-bit sum."""
+
+_LAYOUT = 1
+"""Part of the file names: another layout or another way to decode needs another number."""
+_PART = ".part"
+_STALE_PART_S = 3600.0
+_BLOCK_ROWS = 64
+"""Rows summed at a time, so that they stay in the processor's cache."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldFiles:
+    """Where a prepared mat lies. Any process may open it, as long as the cache keeps it."""
+
+    width_px: int
+    height_px: int
+    pixels: Path
+    """Raw bytes, rows from the top, red, green and blue of each pixel."""
+    sums: tuple[tuple[int, Path], ...]
+    """Disc diameter and the file with its sums, laid out as `core.field.Field` says."""
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the files as dictionaries, lists, strings and numbers, ready for JSON."""
+        return {
+            "width_px": self.width_px,
+            "height_px": self.height_px,
+            "pixels": str(self.pixels),
+            "sums": [[diameter, str(path)] for diameter, path in self.sums],
+        }
+
+    @classmethod
+    def from_plain(cls, data: Mapping[str, Any]) -> FieldFiles:
+        """Rebuild what `to_plain` wrote.
+
+        Raises:
+            KeyError, TypeError, ValueError: `data` was not written by `to_plain`.
+        """
+        sums = tuple((int(diameter), Path(path)) for diameter, path in data["sums"])
+        return cls(int(data["width_px"]), int(data["height_px"]), Path(data["pixels"]), sums)
+
+
+def cache_folder() -> Path:
+    """Return where prepared mats are kept: `cache` in TUISIM_HOME, else the user's cache folder."""
+    if home := os.environ.get("TUISIM_HOME"):
+        return Path(home) / "cache"
+    import platformdirs
+
+    return platformdirs.user_cache_path("tuisim")
+
+
+def _pixels_size() -> int:
+    return FIELD_HEIGHT_MM * FIELD_WIDTH_MM * 3
+
+
+def _sums_size(diameter: int) -> int:
+    return (FIELD_HEIGHT_MM + diameter) * (FIELD_WIDTH_MM + diameter) * 3 * 4
+
+
+def prepare(image: Path, diameters: Iterable[int]) -> FieldFiles:
+    """Make an image ready to be read by colour sensors of some diameters.
+
+    The image is put on white; it begins at the top left corner of the field and is cut to
+    it. What the cache already has is not made again.
+
+    Args:
+        image: Any picture that Pillow reads; one pixel is one mm.
+        diameters: Disc diameters in pixels, in any order, also repeated.
+
+    Raises:
+        BackgroundError: the image cannot be read, a diameter is impossible, or the cache
+            folder cannot be written.
+    """
+    wanted = sorted(set(diameters))
+    for diameter in wanted:
+        if not 1 <= diameter <= MAX_DIAMETER_PX:
+            raise BackgroundError(f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}")
+    try:
+        content = image.read_bytes()
+    except OSError as error:
+        raise BackgroundError(f"cannot be read: {error.strerror or error}", file=str(image)) from error
+    folder = cache_folder() / "fields"
+    stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{_LAYOUT}"
+    sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in wanted)
+    files = FieldFiles(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
+    missing = [(diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))]
+    if not _in_use(files.pixels, _pixels_size()) or missing:
+        _make(files, missing, image, content)
+    return files
+
+
+def _in_use(path: Path, size: int) -> bool:
+    """Whether the cache has a file of that size; if so, it counts as used now."""
+    try:
+        if path.stat().st_size != size:
+            return False
+        os.utime(path)
+    except OSError:
+        return False
+    return True
+
+
+def _make(files: FieldFiles, missing: list[tuple[int, Path]], image: Path, content: bytes) -> None:
+    """Write the pixels and the missing sums into the cache, then make room."""
+    pixels = _decode(content, image)
+    folder = files.pixels.parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _store(files.pixels, pixels)
+        for diameter, path in missing:
+            _store(path, _disc_sums(pixels, diameter))
+        _trim(folder, {files.pixels, *(path for _, path in files.sums)})
+    except OSError as error:
+        raise BackgroundError(
+            f"the mat cannot be prepared: {error.strerror or error}",
+            "TUISIM_HOME may name another folder that can be written",
+            file=str(folder),
+        ) from error
+
+
+def _decode(content: bytes, image: Path) -> NDArray[np.uint8]:
+    """Return the field as an image shows it, shape (height, width, 3)."""
+    import io
+    import warnings
+
+    import numpy as np
+    from PIL import Image
+
+    field = Image.new("RGBA", (FIELD_WIDTH_MM, FIELD_HEIGHT_MM), "white")
+    try:
+        with warnings.catch_warnings():
+            # Pillow only warns of an image that would fill the memory.
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(io.BytesIO(content)) as picture:
+                field.alpha_composite(picture.convert("RGBA").crop((0, 0, *field.size)))
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
+        # Pillow raises a SyntaxError for a PNG with broken chunks.
+        hint = "a mat is a PNG or JPEG picture, 2362 × 1143 pixels"
+        raise BackgroundError("not a picture that can be read", hint, file=str(image)) from error
+    return np.asarray(field.convert("RGB"))
+
+
+def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
+    """Return the sums over every disc, shape (height + d, width + d, 3); see `core.field.Field`."""
+    import numpy as np
+
+    height, width, _ = pixels.shape
+    # From one disc to its right neighbour the sum gains the pixel after each row of the
+    # disc and loses the row's first: two small additions a row, and one running total.
+    dark = np.zeros((height + 2 * diameter, width + 2 * diameter + 1, 3), np.int16)
+    dark[diameter : diameter + height, diameter + 1 : diameter + 1 + width] = pixels
+    around = dark.reshape(len(dark), -1)
+    spans = [
+        (row, 3 * inside.index(True), 3 * (diameter - inside[::-1].index(True)))
+        for row, inside in enumerate(disc_mask(diameter))
+        if any(inside)
+    ]
+    sums = np.empty((height + diameter, width + diameter, 3), np.uint32)
+    samples = 3 * (width + diameter)
+    for top in range(0, len(sums), _BLOCK_ROWS):
+        block = sums[top : top + _BLOCK_ROWS]
+        change = np.zeros((len(block), samples), np.int16)
+        for row, first, after in spans:
+            beneath = around[top + row : top + row + len(block)]
+            change += beneath[:, after : after + samples]
+            change -= beneath[:, first : first + samples]
+        # A negative change wraps around in unsigned numbers, and the total wraps back.
+        np.cumsum(change.reshape(block.shape), axis=1, dtype=np.uint32, out=block)
+    return sums
+
+
+def _store(path: Path, array: NDArray[Any]) -> None:
+    """Write an array's bytes; another process sees the whole file or none."""
+    handle, part = tempfile.mkstemp(suffix=_PART, dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(array.data)
+        Path(part).replace(path)
+    finally:
+        with suppress(FileNotFoundError):
+            Path(part).unlink()
+
+
+def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
+    for path in folder.iterdir():
+        # Another process may be making room too.
+        with suppress(FileNotFoundError):
+            yield path.stat().st_mtime, path
+
+
+def _trim(folder: Path, keep: set[Path]) -> None:
+    """Remove the least recently used files beyond MAX_CACHED_FILES, and what killed processes left."""
+    files = sorted(_by_age(folder))
+    stale = [path for used, path in files if path.suffix == _PART and used < time.time() - _STALE_PART_S]
+    cached = [path for _, path in files if path.suffix != _PART]
+    surplus = max(0, len(cached) - MAX_CACHED_FILES)
+    for path in stale + [path for path in cached if path not in keep][:surplus]:
+        path.unlink(missing_ok=True)
+
+
+def _mapped(path: Path, size: int) -> memoryview:
+    try:
+        with path.open("rb") as stream:
+            found = os.fstat(stream.fileno()).st_size
+            if found != size:
+                raise BackgroundError(f"has {found} bytes, not {size}", "remove it: it is made again", file=str(path))
+            return memoryview(mmap.mmap(stream.fileno(), size, access=mmap.ACCESS_READ))
+    except OSError as error:
+        message = f"the prepared mat cannot be opened: {error.strerror or error}"
+        raise BackgroundError(message, file=str(path)) from error
+
+
+def open_field(files: FieldFiles) -> Field:
+    """Map a prepared mat, in any process.
+
+    Raises:
+        BackgroundError: a file is gone, for example because the cache made room, or is not whole.
+    """
+    width, height = files.width_px, files.height_px
+    pixels = _mapped(files.pixels, 3 * width * height)
+    sums = {d: _mapped(path, 12 * (width + d) * (height + d)).cast("I") for d, path in files.sums}
+    return Field(width, height, pixels, sums)
+
+
+def mat_pixels(files: FieldFiles) -> NDArray[np.uint8]:
+    """Return a prepared mat for drawing: shape (height, width, 3), rows from the top, read-only.
+
+    Raises:
+        BackgroundError: the file is gone or not whole.
+    """
+    import numpy as np
+
+    shape = (files.height_px, files.width_px, 3)
+    return np.frombuffer(_mapped(files.pixels, shape[0] * shape[1] * 3), np.uint8).reshape(shape)
