@@ -1,0 +1,309 @@
+"""World: the mat from above with robot, pen trace, rays and obstacles; the robot can be dragged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+from textual import events
+from textual.app import ComposeResult
+from textual.message import Message
+from textual.widget import Widget
+
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.ui.cellview import PixelView
+from tuisim.ui.render.mat import Pixels
+from tuisim.ui.render.robot import drawn_scale, shape_of
+from tuisim.ui.render.scene import ScenePainter, SceneState
+from tuisim.ui.render.viewport import ZOOMS, Viewport, following
+from tuisim.ui.snapshot import Snapshot
+from tuisim.ui.strips import use_exact_crops
+
+TURN_STEP_DEG = 5.0
+"""How far one notch of the mouse wheel turns the robot."""
+
+_RAY_LAG_PX = 0.75
+"""Rays are cast anew once the robot has moved so far or turned them so far at their ends:
+they change far more cells than the robot does, and this little cannot be seen."""
+
+_SHOWS_UNTIL_TAKEN = 10
+"""Moments shown before a dropped robot that was not taken jumps back."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Grip:
+    """A drag under way: where it began."""
+
+    pose: Pose
+    x_mm: float
+    y_mm: float
+    turns: bool
+
+
+class World(Widget, can_focus=True):
+    """The panel: a frame around the picture."""
+
+    PANEL_ID: ClassVar[str] = "world"
+    TITLE: ClassVar[str] = "World"
+
+    DEFAULT_CSS = """
+    World > WorldView { width: 1fr; height: 1fr; }
+    """
+
+    @dataclass
+    class PoseDragged(Message):
+        """The user moved or turned the robot.
+
+        `done` is False while the mouse button is still down.
+        """
+
+        pose: Pose
+        done: bool
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._view = WorldView(self._dragged)
+
+    def compose(self) -> ComposeResult:
+        """The picture is the only child."""
+        yield self._view
+
+    def _dragged(self, pose: Pose, done: bool) -> None:
+        self.post_message(self.PoseDragged(pose, done))
+
+    @property
+    def show_rays(self) -> bool:
+        """Whether the ultrasonic rays are drawn."""
+        return self._view.show_rays
+
+    @show_rays.setter
+    def show_rays(self, on: bool) -> None:
+        self._view.show_rays = on
+        self._view.repaint_scene()
+
+    @property
+    def zoom(self) -> int:
+        """1, 2 or 4; above 1 the view follows the robot."""
+        return self._view.zoom
+
+    @zoom.setter
+    def zoom(self, zoom: int) -> None:
+        self._view.zoom = zoom if zoom in ZOOMS else 1
+        self.border_title = f"{self.TITLE} {self.zoom}×" if self.zoom > 1 else self.TITLE
+        self._view.repaint_scene()
+
+    def cycle_zoom(self) -> None:
+        """Go to the next zoom, and from the last to the first."""
+        self.zoom = ZOOMS[(ZOOMS.index(self.zoom) + 1) % len(ZOOMS)]
+
+    def set_mat(self, pixels: Pixels) -> None:
+        """Lay out a mat: shape (1143, 2362, 3), one pixel a mm. Until then the panel is blank."""
+        self._view.set_mat(pixels)
+
+    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float]) -> None:
+        """Add points that the pen drew, joined to those before; NaN lifts the pen."""
+        self._view.extend_trace(xs_mm, ys_mm)
+
+    def clear_trace(self) -> None:
+        """Forget the trace."""
+        self._view.clear_trace()
+
+    def set_ghost(self, pose: Pose | None) -> None:
+        """Show a second robot where it was read, or none."""
+        self._view.ghost = pose
+        self._view.repaint_scene()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment."""
+        self._view.show(snapshot)
+
+
+class WorldView(PixelView):
+    """The picture itself.
+
+    Args:
+        dragged: Called with a pose and whether the drag is over.
+    """
+
+    def __init__(self, dragged: Callable[[Pose, bool], None]) -> None:
+        super().__init__()
+        self.show_rays = False
+        self.zoom = 1
+        self.ghost: Pose | None = None
+        self._tell = dragged
+        self._mat: Pixels | None = None
+        self._trace_xs: list[float] = []
+        self._trace_ys: list[float] = []
+        self._trace_new = 0
+        self._painter: ScenePainter | None = None
+        self._port: Viewport | None = None
+        self._snapshot: Snapshot | None = None
+        self._scene: SceneState | None = None
+        self._grip: _Grip | None = None
+        self._held: Pose | None = None
+        self._held_shows = 0
+
+    def on_mount(self) -> None:
+        """See to it that only changed cells are sent."""
+        use_exact_crops()
+
+    def on_resize(self) -> None:
+        """Draw for the new size."""
+        self.repaint_scene()
+
+    def set_mat(self, pixels: Pixels) -> None:
+        """Lay out a mat."""
+        self._mat = pixels
+        self._painter = None
+        self.repaint_scene()
+
+    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float]) -> None:
+        """Add points of the pen; they are drawn with the next moment."""
+        self._trace_xs += xs_mm
+        self._trace_ys += ys_mm
+
+    def clear_trace(self) -> None:
+        """Forget the trace."""
+        self._trace_xs.clear()
+        self._trace_ys.clear()
+        self._trace_new = 0
+        if self._painter:
+            self._painter.clear_trace()
+        self.repaint_scene()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment, if it differs from what is shown."""
+        self._snapshot = snapshot
+        if self._held is not None and self._grip is None:
+            self._held_shows -= 1
+            if self._held_shows <= 0 or snapshot.instant.pose == self._held:
+                self._held = None
+        self._draw()
+
+    def repaint_scene(self) -> None:
+        """Draw again, whatever was drawn last."""
+        self._scene = None
+        self._draw()
+
+    def _draw(self) -> None:
+        if self._snapshot is None or self._mat is None or not self.size or not self.is_mounted:
+            return
+        scene = self._scene_of(self._snapshot)
+        port = following(self.size.width, 2 * self.size.height, self.zoom, scene.pose, self._port)
+        if self._painter is None:
+            self._painter = ScenePainter(self._mat, self.ground_rgb, self.color_mode.grey)
+            self._trace_new = 0
+        if scene == self._scene and port == self._port and self._trace_new == len(self._trace_xs):
+            return
+        if self._trace_new < len(self._trace_xs):
+            xs, ys = self._trace_xs[self._trace_new :], self._trace_ys[self._trace_new :]
+            self._painter.extend_trace(np.array(xs), np.array(ys))
+            self._trace_new = len(self._trace_xs)
+        self._scene, self._port = scene, port
+        self.set_picture(self._painter.paint(port, scene))
+
+    def _scene_of(self, snapshot: Snapshot) -> SceneState:
+        spec = snapshot.spec
+        pose = self._held or snapshot.instant.pose
+        scene = SceneState(spec.robot, pose, spec.world.obstacles, ghost=self.ghost)
+        if not self.show_rays or self._held is not None:
+            return scene
+        last = self._scene
+        if last is not None and last.rays and last.rays_from is not None and not self._rays_are_old(last, snapshot):
+            return replace(scene, rays=last.rays, rays_from=last.rays_from)
+        return replace(scene, rays=snapshot.rays, rays_from=snapshot.instant.pose)
+
+    def _rays_are_old(self, last: SceneState, snapshot: Snapshot) -> bool:
+        cast, now = last.rays_from, snapshot.instant.pose
+        if cast is None or self._port is None or len(last.rays) != len(snapshot.rays):
+            return True
+        if last.obstacles != snapshot.spec.world.obstacles or last.robot != snapshot.spec.robot:
+            return True
+        moved_mm = math.hypot(now.x_mm - cast.x_mm, now.y_mm - cast.y_mm)
+        longest_mm = max(length for _, length in snapshot.rays)
+        turned_mm = math.radians(abs(now.heading_deg - cast.heading_deg)) * longest_mm
+        lengthened_mm = max(abs(a[1] - b[1]) for a, b in zip(last.rays, snapshot.rays, strict=True))
+        still = moved_mm + turned_mm > 0 and snapshot.instant.left_speed_dps == snapshot.instant.right_speed_dps == 0
+        return still or max(moved_mm, turned_mm, lengthened_mm) > _RAY_LAG_PX * self._port.mm_per_px
+
+    def _at(self, event: events.MouseEvent) -> tuple[float, float]:
+        """World position under the mouse: the middle of the cell, or finer where the terminal tells."""
+        assert self._port is not None
+        col, row = event.pointer_x, event.pointer_y
+        if col == event.x and row == event.y:
+            col, row = col + 0.5, row + 0.5
+        return self._port.to_mm(col, 2 * row)
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Take hold of the robot."""
+        if event.button != 1 or self._port is None or self._snapshot is None:
+            return
+        pose = self._held or self._snapshot.instant.pose
+        x_mm, y_mm = self._at(event)
+        shape = shape_of(self._snapshot.spec.robot)
+        reach_mm = shape.half_width_mm * drawn_scale(shape, self._port) + 1.5 * self._port.mm_per_px
+        if math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) > max(reach_mm, shape.half_width_mm - shape.back_mm / 2):
+            return
+        self._grip = _Grip(pose, x_mm, y_mm, turns=event.shift or event.ctrl)
+        self.capture_mouse()
+        event.stop()
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        """Move or turn the robot that is held."""
+        if self._grip is None or self._port is None:
+            return
+        event.stop()
+        pose = self._dragged_to(self._grip, *self._at(event))
+        if pose != self._held:
+            self._held = pose
+            self._tell(pose, False)
+            self._draw()
+
+    def on_mouse_up(self, event: events.MouseUp) -> None:
+        """Let go of the robot."""
+        if self._grip is None:
+            return
+        event.stop()
+        self.release_mouse()
+        self._grip = None
+        self._held_shows = _SHOWS_UNTIL_TAKEN
+        if self._held is not None:
+            self._tell(self._held, True)
+
+    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+        """Turn the robot counter-clockwise."""
+        self._turn(event, TURN_STEP_DEG)
+
+    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
+        """Turn the robot clockwise."""
+        self._turn(event, -TURN_STEP_DEG)
+
+    def _turn(self, event: events.MouseEvent, angle_deg: float) -> None:
+        if self._snapshot is None or self._port is None:
+            return
+        event.stop()
+        pose = self._held or self._snapshot.instant.pose
+        self._held = replace(pose, heading_deg=pose.heading_deg + angle_deg)
+        self._held_shows = _SHOWS_UNTIL_TAKEN
+        if self._grip is not None:
+            self._grip = replace(self._grip, pose=replace(self._grip.pose, heading_deg=self._held.heading_deg))
+        self._tell(self._held, self._grip is None)
+        self._draw()
+
+    def _dragged_to(self, grip: _Grip, x_mm: float, y_mm: float) -> Pose:
+        start = grip.pose
+        if grip.turns:
+            before = math.atan2(grip.y_mm - start.y_mm, grip.x_mm - start.x_mm)
+            now = math.atan2(y_mm - start.y_mm, x_mm - start.x_mm)
+            turn = math.remainder(math.degrees(now - before), 360.0)
+            return replace(start, heading_deg=float(round(start.heading_deg + turn)))
+        return Pose(
+            float(round(min(max(start.x_mm + x_mm - grip.x_mm, 0), FIELD_WIDTH_MM))),
+            float(round(min(max(start.y_mm + y_mm - grip.y_mm, 0), FIELD_HEIGHT_MM))),
+            start.heading_deg,
+        )

@@ -1,0 +1,100 @@
+"""Viewport: which part of the field a picture shows, and how large."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+
+ZOOMS = (1, 2, 4)
+"""How often the whole-field scale can be enlarged."""
+
+_KEEP_INSIDE = 0.22
+"""A view that follows moves once the robot is nearer to an edge than this share of its size."""
+
+
+@dataclass(frozen=True, slots=True)
+class Viewport:
+    """A picture of part of the field. Picture pixels are square: half a character cell."""
+
+    width_px: int
+    height_px: int
+    mm_per_px: float
+    left_mm: float
+    """World x of the left edge of the picture."""
+    top_mm: float
+    """World y of the top edge of the picture."""
+
+    def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
+        """Return the picture column and row of a point of the world; whole numbers are pixel corners."""
+        return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_px
+
+    def to_mm(self, col_px: float, row_px: float) -> tuple[float, float]:
+        """Return the world point of a picture position."""
+        return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_px
+
+
+def whole_field(width_px: int, height_px: int) -> Viewport:
+    """Return the viewport that shows the whole field, centred, in a picture of that size (each at least 1)."""
+    return _around(width_px, height_px, _fit_mm_per_px(width_px, height_px), FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2)
+
+
+def following(width_px: int, height_px: int, zoom: int, pose: Pose, previous: Viewport | None) -> Viewport:
+    """Return a viewport that keeps the robot in sight.
+
+    The view stands still until the robot comes near an edge, and then jumps so that the
+    robot is in the middle again: a picture that moved all the time would have to be sent
+    whole each frame.
+
+    Args:
+        width_px: Width of the picture, at least 1.
+        height_px: Height of the picture, at least 1.
+        zoom: One of `ZOOMS`; 1 shows the whole field and never moves.
+        pose: Where the robot is.
+        previous: The viewport of the last frame, if there was one.
+    """
+    if zoom == 1:
+        return whole_field(width_px, height_px)
+    mm_per_px = _fit_mm_per_px(width_px, height_px) / zoom
+    same_scale = (
+        previous is not None
+        and (previous.width_px, previous.height_px) == (width_px, height_px)
+        and math.isclose(previous.mm_per_px, mm_per_px)
+    )
+    if same_scale and previous is not None and _well_inside(previous, pose):
+        return previous
+    x_mm = _held(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
+    y_mm = _held(pose.y_mm, height_px * mm_per_px, FIELD_HEIGHT_MM)
+    moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm)
+    return previous if previous is not None and moved == previous else moved
+
+
+def _fit_mm_per_px(width_px: int, height_px: int) -> float:
+    return max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / height_px)
+
+
+def _around(width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float) -> Viewport:
+    # Whole-pixel margins: a field edge that falls between pixels would be a blurred line.
+    left_px = round(width_px / 2 - x_mm / mm_per_px)
+    top_px = round(height_px / 2 - (FIELD_HEIGHT_MM - y_mm) / mm_per_px)
+    return Viewport(width_px, height_px, mm_per_px, -left_px * mm_per_px, FIELD_HEIGHT_MM + top_px * mm_per_px)
+
+
+def _held(centre_mm: float, shown_mm: float, field_mm: float) -> float:
+    """Return the centre of a view, held so that it shows no more than needed of what is off the field."""
+    if shown_mm >= field_mm:
+        return field_mm / 2
+    return min(max(centre_mm, shown_mm / 2), field_mm - shown_mm / 2)
+
+
+def _well_inside(view: Viewport, pose: Pose) -> bool:
+    col, row = view.to_px(pose.x_mm, pose.y_mm)
+    margin_col, margin_row = view.width_px * _KEEP_INSIDE, view.height_px * _KEEP_INSIDE
+    # Where the view already touches the end of the field there is nothing more to see.
+    left = view.left_mm <= 0 or col >= margin_col
+    right = view.left_mm + view.width_px * view.mm_per_px >= FIELD_WIDTH_MM or col <= view.width_px - margin_col
+    top = view.top_mm >= FIELD_HEIGHT_MM or row >= margin_row
+    bottom = view.top_mm - view.height_px * view.mm_per_px <= 0 or row <= view.height_px - margin_row
+    return left and right and top and bottom
