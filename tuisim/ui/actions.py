@@ -1,0 +1,148 @@
+"""Every key: what it does, what it is called, and when it works.
+
+To add a key: write its function in `ui.verbs` and add a line to `ACTIONS`. Binding,
+footer, help and command palette follow from the line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from tuisim.ui import verbs
+from tuisim.ui.panels import PANELS
+from tuisim.ui.snapshot import PAUSED, RUNNING, STARTING, WAITING
+
+if TYPE_CHECKING:
+    from tuisim.ui.app import Lab
+
+IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
+"""States in which there is a child process."""
+
+PROGRAM, ROBOT, PANEL, FILES, APP = "Program", "Robot", "Panels", "Files", "App"
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """What decides whether a key works."""
+
+    state: str
+    has_program: bool
+    has_run: bool
+    """Whether there has been a run, so that there is a log."""
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One line of `ACTIONS`."""
+
+    id: str
+    key: str
+    """As Textual names it."""
+    title: str
+    group: str
+    do: Callable[[Lab], None]
+    why_not: Callable[[Situation], str] = lambda _: ""
+    """Why it does nothing now; empty if it works."""
+    footer: str = ""
+    """Short word for the footer; empty keeps it out."""
+    shown_key: str = ""
+    """How the key is written for people, if not as in `key`."""
+
+    @property
+    def key_label(self) -> str:
+        """The key as people write it."""
+        return self.shown_key or _KEY_LABELS.get(self.key, self.key)
+
+
+_KEY_LABELS = {
+    "space": "space",
+    "full_stop": ".",
+    "left_square_bracket": "[",
+    "right_square_bracket": "]",
+    "question_mark": "?",
+}
+
+
+def _can_run(now: Situation) -> str:
+    if not now.has_program:
+        return "No program yet: o opens one"
+    return "The program is running already: S stops it" if now.state in IN_RUN else ""
+
+
+def _can_stop(now: Situation) -> str:
+    return "" if now.state in IN_RUN else "Nothing is running: R runs the program"
+
+
+def _can_step(now: Situation) -> str:
+    if now.state == PAUSED:
+        return ""
+    return "One tick works while paused: space pauses" if now.state in IN_RUN else _can_stop(now)
+
+
+def _can_change_world(now: Situation) -> str:
+    return "Not during a run: S stops it" if now.state in IN_RUN else ""
+
+
+def _can_export(now: Situation) -> str:
+    return "" if now.has_run else "No log yet: R runs the program"
+
+
+def _nudge(key: str, words: str, forward: tuple[float, float], turn_deg: float = 0.0) -> Action:
+    label = key.replace("shift+", "⇧").replace("ctrl+", "ctrl ")
+    for name, arrow in (("left", "←"), ("right", "→"), ("up", "↑"), ("down", "↓")):
+        label = label.replace(name, arrow)
+    do = partial(verbs.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=turn_deg)
+    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, shown_key=label)
+
+
+def _nudges() -> list[Action]:
+    ways = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
+    coarse = [_nudge(key, f"10 mm {key}", (10 * x, 10 * y)) for key, (x, y) in ways.items()]
+    fine = [_nudge(f"shift+{key}", f"1 mm {key}", (x, y)) for key, (x, y) in ways.items()]
+    turns = [
+        _nudge("ctrl+left", "5° counter-clockwise", (0.0, 0.0), 5.0),
+        _nudge("ctrl+right", "5° clockwise", (0.0, 0.0), -5.0),
+    ]
+    return coarse + fine + turns
+
+
+def _toggles() -> list[Action]:
+    return [
+        Action(f"panel-{p.id}", p.key, f"{p.title} on or off", PANEL, partial(verbs.toggle, panel=p.id), footer=p.id)
+        for p in PANELS.values()
+    ]
+
+
+# The footer shows them in this order, as far as they fit; `help` and `quit` always.
+ACTIONS: Mapping[str, Action] = {
+    action.id: action
+    for action in (
+        Action("run", "R", "Run the program", PROGRAM, verbs.run, _can_run, "run"),
+        Action("stop", "S", "Stop the program", PROGRAM, verbs.stop, _can_stop, "stop"),
+        Action("pause", "space", "Pause or go on", PROGRAM, verbs.pause, _can_stop, "pause"),
+        Action("tick", "full_stop", "One tick, while paused", PROGRAM, verbs.tick, _can_step, "tick"),
+        Action("open", "o", "Open a program", FILES, verbs.open_program, _can_change_world, "open"),
+        Action("mats", "b", "Choose a mat", ROBOT, verbs.choose_mat, _can_change_world, "mats"),
+        Action("home", "m", "Robot back to its start", ROBOT, verbs.home, footer="start"),
+        Action("pen", "p", "Pen up or down", ROBOT, verbs.pen, footer="pen"),
+        Action("slower", "left_square_bracket", "Slower", PROGRAM, verbs.slower, footer="slower"),
+        Action("faster", "right_square_bracket", "Faster", PROGRAM, verbs.faster, footer="faster"),
+        Action("export", "e", "Export the log to a file", FILES, verbs.export, _can_export, "export"),
+        Action("zoom", "v", "Zoom the world", ROBOT, verbs.zoom, footer="zoom"),
+        Action("clear", "C", "Clear the pen trace", ROBOT, verbs.clear_trace, footer="clear"),
+        *_toggles(),
+        Action("rays", "U", "Ultrasonic rays on or off", PANEL, verbs.rays, footer="rays"),
+        *_nudges(),
+        Action("help", "question_mark", "Help: all keys", APP, verbs.show_help, footer="help"),
+        Action("quit", "q", "Quit", APP, verbs.leave, footer="quit"),
+    )
+}
+"""Every key by the id of what it does."""
+
+
+def working(now: Situation) -> list[Action]:
+    """Return the actions that do something now, in the order of the table."""
+    return [action for action in ACTIONS.values() if not action.why_not(now)]

@@ -1,0 +1,371 @@
+"""The app: panels, keys, and one run at a time."""
+
+from __future__ import annotations
+
+import os
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+from textual import events
+from textual.app import App, ComposeResult
+from textual.binding import Binding, BindingType
+from textual.command import Provider
+from textual.widget import Widget
+
+from tuisim.errors import TuisimError
+from tuisim.protocol import Ended
+from tuisim.ui.actions import ACTIONS, IN_RUN, Situation
+from tuisim.ui.bridge import Bridge, News
+from tuisim.ui.desk import Desk
+from tuisim.ui.feed import Feed, Series, sample_series
+from tuisim.ui.footer import KeyFooter
+from tuisim.ui.pacer import Pacer
+from tuisim.ui.session import AppSettings
+from tuisim.ui.snapshot import ENDED, Snapshot
+from tuisim.ui.verbs import speed_label
+
+if TYPE_CHECKING:
+    from tuisim.core.spec import RunSpec
+    from tuisim.ui.mat import Mat
+    from tuisim.ui.panels.chart import Chart
+    from tuisim.ui.panels.code import Code
+    from tuisim.ui.panels.output import Output
+    from tuisim.ui.panels.world import World
+
+AFTER_FIRST_PAINT_S = 0.05
+"""The screen is painted more than once at the start; what is large is sent after that."""
+_CURSOR_QUERY = "\x1b[6n"
+END_WORDS = {
+    "finished": "finished",
+    "raised": "error",
+    "stopped": "stopped",
+    "time_limit": "time limit",
+    "output_limit": "output limit",
+}
+"""How a run's end is written; other ends as they are."""
+
+
+def _palette() -> type[Provider]:
+    from tuisim.ui.palette import ActionProvider
+
+    return ActionProvider
+
+
+class Lab(App[None]):
+    """The robot lab.
+
+    Args:
+        settings: What the command line decided.
+    """
+
+    CSS_PATH = "tuisim.tcss"
+    TITLE = "tuisim"
+    COMMANDS = {_palette}
+    NOTIFICATION_TIMEOUT = 4
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()),
+        Binding("escape", "leave_field", "Leave a field", show=False),
+    ]
+
+    def __init__(self, settings: AppSettings) -> None:
+        super().__init__()
+        self.settings = settings
+        self.bridge = Bridge(settings)
+        self.desk = Desk(settings.panels_on, settings.panels_off)
+        self.key_footer = KeyFooter()
+        self.pacer = Pacer(settings.fps)
+        self._feed: Feed | None = None
+        self._drawn: object = None
+        self._run_when_ready = settings.autorun
+
+    # Life
+
+    def compose(self) -> ComposeResult:
+        """Lay out the desk and the footer."""
+        yield self.desk
+        yield self.key_footer
+
+    def on_ready(self) -> None:
+        """Begin what costs time, after the first paint."""
+        if self.is_headless:
+            self.pacer.asks = False
+        self.situation_changed()
+        self.set_timer(AFTER_FIRST_PAINT_S, self._begin)
+
+    def _begin(self) -> None:
+        self.desk.ensure("world", "output", "chart")
+        self._prepare_mat()
+        self.set_interval(1 / self.settings.fps, self._beat)
+
+    def on_unmount(self) -> None:
+        """Leave no child behind."""
+        self.bridge.close()
+
+    # The mat
+
+    def _prepare_mat(self) -> None:
+        self.run_worker(
+            partial(self._prepare_mat_in_thread, self.bridge.spec), thread=True, group="mat", exclusive=True
+        )
+
+    def _prepare_mat_in_thread(self, spec: RunSpec) -> None:
+        from tuisim.ui.mat import prepare_mat
+
+        try:
+            mat = prepare_mat(spec)
+        except TuisimError as error:
+            self.call_from_thread(self.complain, error)
+            return
+        self.call_from_thread(self._mat_ready, mat)
+
+    def _mat_ready(self, mat: Mat) -> None:
+        if mat.name != self.bridge.spec.world.background:
+            return
+        self.bridge.mat = mat
+        if world := self._world:
+            world.set_mat(mat.pixels)
+        self.draw(force=True)
+        if self._run_when_ready:
+            self._run_when_ready = False
+            if self.bridge.program:
+                self.start_run()
+
+    def change_mat(self, name: str) -> None:
+        """Lay out another mat; the robot goes to its start."""
+        from tuisim.ui.opening import with_mat
+
+        try:
+            self._load(with_mat(self.bridge.spec, name))
+        except TuisimError as error:
+            self.complain(error)
+
+    def open_program(self, path: str) -> None:
+        """Open a program, with the world it asks for."""
+        from tuisim.ui.opening import open_program
+
+        try:
+            program, spec = open_program(path, self.bridge.spec)
+        except TuisimError as error:
+            self.complain(error)
+            return
+        self.bridge.load(spec, program)
+        self._load(spec)
+        self.say(f"{program.name} is open: R runs it")
+
+    def _load(self, spec: RunSpec) -> None:
+        self.bridge.load(spec, self.bridge.program)
+        if world := self._world:
+            world.clear_trace()
+        if self.bridge.mat is None or self.bridge.mat.name != spec.world.background:
+            self.bridge.mat = None
+            self._prepare_mat()
+        self._introduce_program()
+        self.situation_changed()
+        self.draw(force=True)
+
+    # A run
+
+    def start_run(self) -> None:
+        """Start the program, as soon as the mat is ready."""
+        if self.bridge.mat is None:
+            self._run_when_ready = True
+            self.say("The mat is being prepared; the program starts at once after that")
+            return
+        try:
+            self.bridge.start()
+        except TuisimError as error:
+            self.complain(error)
+            return
+        assert self.bridge.run is not None
+        self._feed = Feed(self.bridge.run)
+        if self._output:
+            self._output.clear()
+        if self._chart:
+            self._chart.clear()
+        if self._code:
+            self._code.mark_error(0)
+        self.situation_changed()
+
+    def _beat(self) -> None:
+        """Take what the run has written, and show a frame if the terminal has shown the last one."""
+        news = self.bridge.poll()
+        if news.rows:
+            self._take_rows(news)
+        if output := self._output:
+            if news.prompt is not None and not output.asking:
+                self._ask(news.prompt)
+            elif news.prompt is None and output.asking:
+                output.stop_asking()
+        if news.ended:
+            self._ended(news.ended)
+        if self.pacer.ready():
+            self.draw()
+
+    def _take_rows(self, news: News) -> None:
+        if self._output:
+            self._output.add(news.rows, news.skipped)
+        self._append(sample_series(news.rows))
+
+    def _append(self, series: Series) -> None:
+        if chart := self._chart:
+            for name, (times, values) in series.items():
+                chart.append(name, times, values)
+
+    def _ask(self, prompt: str) -> None:
+        if not self.desk.shown("output"):
+            self.desk.toggle("output")
+        if self._output:
+            self._output.ask(prompt)
+
+    def _ended(self, ended: Ended) -> None:
+        good = ended.end in ("finished", "stopped")
+        words = ended.summary or END_WORDS.get(ended.end, ended.end)
+        self.notify(words, severity="information" if good else "error", markup=False)
+        if self._code:
+            self._code.mark_error(ended.error_line)
+        if self._output and ended.error:
+            self._output.add_error(ended.error)
+        self.situation_changed()
+
+    # The picture
+
+    def draw(self, force: bool = False) -> None:
+        """Show the newest moment in every panel, if it is not what they show already."""
+        snapshot = self.bridge.snapshot()
+        now = (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, id(snapshot.spec))
+        if now == self._drawn and not force:
+            return
+        self._drawn = now
+        self._feed_panels()
+        self.desk.show(snapshot)
+        self._show_footer(snapshot)
+        if self.pacer.drawn():
+            self.call_after_refresh(self._ask_terminal)
+
+    def _feed_panels(self) -> None:
+        if self._feed is None or self.bridge.mat is None:
+            return
+        if world := self._world:
+            xs, ys = self._feed.trace_points()
+            if xs:
+                world.extend_trace(xs, ys)
+        if self.desk.shown("chart"):
+            self._append(self._feed.chart_series(self.bridge.mat))
+
+    def _ask_terminal(self) -> None:
+        # The answer arrives as a CursorPosition event once the frame has been worked through.
+        if self._driver is not None:
+            self._driver.write(_CURSOR_QUERY)
+
+    def on_cursor_position(self, event: events.CursorPosition) -> None:
+        """The terminal has shown a frame."""
+        self.pacer.answered()
+
+    def situation_changed(self) -> None:
+        """Bring the footer up to date."""
+        self._show_footer(self.bridge.snapshot())
+
+    def _show_footer(self, snapshot: Snapshot) -> None:
+        status = END_WORDS.get(snapshot.end, snapshot.end) if snapshot.state == ENDED else snapshot.state
+        if snapshot.state in IN_RUN or snapshot.speed != 1:
+            status += f" {speed_label(snapshot.speed)}"
+        shown = frozenset(panel for panel in self.desk.panels if self.desk.shown(panel))
+        self.key_footer.show(self.situation(), status, shown)
+
+    def situation(self) -> Situation:
+        """Return what decides which keys work."""
+        return Situation(self.bridge.state, self.bridge.program is not None, bool(self.bridge.run_id))
+
+    # Panels
+
+    def on_desk_added(self, message: Desk.Added) -> None:
+        """Tell a panel that has just come what it has missed."""
+        if message.panel == "world" and (world := self._world):
+            world.show_rays = self.settings.rays
+            if self.bridge.mat:
+                world.set_mat(self.bridge.mat.pixels)
+            if self.focused is None:
+                world.focus()
+        if message.panel == "code":
+            self._introduce_program()
+        self.call_after_refresh(self.draw, force=True)
+
+    def on_desk_rearranged(self) -> None:
+        """Panels came, went or moved."""
+        self.call_after_refresh(self.draw, force=True)
+
+    def _introduce_program(self) -> None:
+        if code := self._code:
+            program = self.bridge.program
+            code.set_program(program.name if program else "", program.text if program else "")
+
+    def _panel(self, panel: str) -> Any:
+        # Typed by the properties below; a hidden panel still takes what it is fed.
+        return self.desk.panels.get(panel)
+
+    @property
+    def _world(self) -> World | None:
+        return cast("World | None", self._panel("world"))
+
+    @property
+    def _output(self) -> Output | None:
+        return cast("Output | None", self._panel("output"))
+
+    @property
+    def _chart(self) -> Chart | None:
+        return cast("Chart | None", self._panel("chart"))
+
+    @property
+    def _code(self) -> Code | None:
+        return cast("Code | None", self._panel("code"))
+
+    # What the user does
+
+    def action_act(self, name: str) -> None:
+        """Do what a key stands for, or say why it does nothing now."""
+        action = ACTIONS[name]
+        if reason := action.why_not(self.situation()):
+            self.say(reason)
+            return
+        action.do(self)
+
+    def action_leave_field(self) -> None:
+        """Leave an input field."""
+        self.set_focus(self._world if self.desk.shown("world") else None)
+
+    def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
+        """The robot was dragged with the mouse."""
+        self.bridge.place(message.pose)
+
+    def on_output_answered(self, message: Output.Answered) -> None:
+        """The user answered `input()`."""
+        self.bridge.answer(message.text)
+        self.action_leave_field()
+
+    def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
+        """Show where the robot was at the chart's cursor."""
+
+    def on_positioning_applied(self, message: Any) -> None:
+        """A pose was typed in."""
+        self.bridge.place(message.pose)
+
+    def on_click(self, event: events.Click) -> None:
+        """A click beside every field leaves it."""
+        if isinstance(event.widget, Widget) and not event.widget.can_focus:
+            self.action_leave_field()
+
+    def say(self, text: str) -> None:
+        """Show a short notice."""
+        self.notify(text, timeout=3, markup=False)
+
+    def complain(self, error: TuisimError) -> None:
+        """Show an error."""
+        self.notify(str(error), severity="error", timeout=8, markup=False)
+
+
+def run_app(settings: AppSettings) -> None:
+    """Run the app in this terminal until the user quits."""
+    system = {"truecolor": "truecolor", "256": "256", "16": "standard"}.get(settings.colors)
+    if system:
+        os.environ["TEXTUAL_COLOR_SYSTEM"] = system
+    Lab(settings).run()

@@ -1,0 +1,112 @@
+"""The place where the panels are: mounts them when they are first shown, and lays them out."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from textual import events
+from textual.containers import Container
+from textual.message import Message
+from textual.widget import Widget
+
+from tuisim.ui.layout import arrange, size_class
+from tuisim.ui.panels import PANELS, Panel
+from tuisim.ui.snapshot import Snapshot
+
+
+class Desk(Container):
+    """All panels.
+
+    Args:
+        on: Ids of panels shown whatever the size.
+        off: Ids of panels hidden whatever the size.
+    """
+
+    class Rearranged(Message):
+        """Panels came, went or moved."""
+
+    class Added(Message):
+        """A panel was made."""
+
+        def __init__(self, panel: str) -> None:
+            super().__init__()
+            self.panel = panel
+
+    def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
+        super().__init__(id="desk")
+        self.panels: dict[str, Widget] = {}
+        """Those that have been shown once, by id."""
+        self._asked: dict[str, bool] = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
+        """What was asked for, the latest last."""
+        self._left_out: tuple[str, ...] = ()
+
+    def shown(self, panel: str) -> bool:
+        """Whether a panel is on the screen."""
+        return panel in self.panels and self.panels[panel].display
+
+    def visible(self) -> list[Panel]:
+        """Return the panels on the screen."""
+        return [cast(Panel, widget) for widget in self.panels.values() if widget.display]
+
+    def toggle(self, panel: str) -> None:
+        """Show a panel, or hide it; one asked for is given room before the others."""
+        show = not self.shown(panel)
+        self._asked.pop(panel, None)
+        self._asked[panel] = show
+        before = {panel_id for panel_id in PANELS if self.shown(panel_id)}
+        self.lay_out()
+        title = PANELS[panel].title
+        if show and not self.shown(panel):
+            self.app.notify(f"{title} does not fit here: hide another panel or enlarge the terminal")
+            return
+        gone = [PANELS[p] for p in PANELS if p in before and p != panel and not self.shown(p)]
+        if gone:
+            names = ", ".join(f"{info.title} ({info.key})" for info in gone)
+            self.app.notify(f"{title} takes the room of {names}")
+
+    def _wanted(self) -> list[str]:
+        """Ids of the panels to show, the most wanted first."""
+        size = size_class(self.size.width, self.size.height + 1)
+        asked = [panel for panel, on in reversed(self._asked.items()) if on]
+        rest = [info.id for info in PANELS.values() if size in info.sizes and info.id not in self._asked]
+        return asked + rest
+
+    def lay_out(self) -> None:
+        """Place every panel anew."""
+        if not self.size:
+            return
+        arrangement = arrange(self._wanted(), self.size.width, self.size.height)
+        with self.app.batch_update():
+            for panel, widget in self.panels.items():
+                widget.display = panel in arrangement.boxes
+            for panel, box in arrangement.boxes.items():
+                styles = self._panel(panel).styles
+                styles.width, styles.height = box.width, box.height
+                styles.offset = (box.x, box.y)
+        self._left_out = arrangement.left_out
+        self.post_message(self.Rearranged())
+
+    def _panel(self, panel: str) -> Widget:
+        if panel not in self.panels:
+            widget = cast(Widget, PANELS[panel].load()())
+            widget.add_class("panel")
+            self.panels[panel] = widget
+            self.mount(widget)
+            self.post_message(self.Added(panel))
+        return self.panels[panel]
+
+    def ensure(self, *panels: str) -> None:
+        """Make panels that are to be fed from the start, shown or not."""
+        for panel in panels:
+            if panel not in self.panels:
+                self._panel(panel).display = False
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out for the new size."""
+        self.lay_out()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Let every panel on the screen show a moment."""
+        for panel in self.visible():
+            if cast(Widget, panel).is_attached:
+                panel.show(snapshot)

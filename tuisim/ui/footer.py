@@ -1,0 +1,83 @@
+"""The footer: the keys that work now, as many as fit, and the state of the run."""
+
+from __future__ import annotations
+
+from rich.style import Style
+from rich.text import Text
+from textual.widget import Widget
+
+from tuisim.ui.actions import ACTIONS, Action, Situation, working
+from tuisim.ui.panels import PANELS
+
+_ALWAYS = ("help", "quit")
+_GAP = 2
+
+
+def fitting(actions: list[Action], width: int) -> list[Action]:
+    """Return the actions whose keys and words fit a footer, help and quit before any other.
+
+    Args:
+        actions: Those that work, the most useful first.
+        width: Cells.
+    """
+    always = [ACTIONS[action] for action in _ALWAYS]
+    left = width - sum(_cells(action) for action in always)
+    chosen = []
+    for action in actions:
+        if action.footer and action not in always:
+            if _cells(action) > left:
+                break
+            left -= _cells(action)
+            chosen.append(action)
+    return chosen + always
+
+
+def _cells(action: Action) -> int:
+    return len(action.key_label) + 1 + len(action.footer) + _GAP
+
+
+class KeyFooter(Widget):
+    """One row at the bottom."""
+
+    DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
+    ALLOW_SELECT = False
+
+    def __init__(self) -> None:
+        super().__init__(id="footer")
+        self._situation = Situation("idle", False, False)
+        self._status = ""
+        self._on: frozenset[str] = frozenset()
+
+    def show(self, situation: Situation, status: str, panels_on: frozenset[str]) -> None:
+        """Show the keys for a situation.
+
+        Args:
+            situation: Decides which keys work.
+            status: State of the run, at the right.
+            panels_on: Panels whose keys are shown as switched on.
+        """
+        if (situation, status, panels_on) != (self._situation, self._status, self._on):
+            self._situation, self._status, self._on = situation, status, panels_on
+            self.refresh()
+
+    def render(self) -> Text:
+        """Return the row."""
+        width = self.size.width
+        status = f" {self._status} " if self._status else ""
+        key_style = self.get_component_rich_style("footer--key", partial=True)
+        line = Text(no_wrap=True, end="")
+        for action in fitting(working(self._situation), width - len(status)):
+            meta = Style(meta={"@click": f"app.act('{action.id}')"})
+            line.append(f" {action.key_label}", key_style + meta)
+            line.append(f" {action.footer}", self._word_style(action) + meta)
+        line.append(" " * max(0, width - len(status) - len(line)))
+        line.append(status, self.get_component_rich_style("footer--status", partial=True))
+        return line
+
+    def _word_style(self, action: Action) -> Style:
+        panel = action.id.removeprefix("panel-")
+        if panel in PANELS and panel not in self._on:
+            return self.get_component_rich_style("footer--off", partial=True)
+        return Style()
+
+    COMPONENT_CLASSES = {"footer--key", "footer--status", "footer--off"}

@@ -1,0 +1,77 @@
+"""Panels: one file a panel, and the table of them.
+
+To add a panel: write its file, a `Widget` with `PANEL_ID`, `TITLE` and
+`show(snapshot)`, and add a line to `PANELS`. Its key, its place on the screen, the help
+and the command palette follow from the line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import ClassVar, Protocol, cast
+
+from tuisim.ui.snapshot import Snapshot
+
+SMALL, MEDIUM, LARGE = "small", "medium", "large"
+"""Sizes of terminal: from 80×24, from 112×34, from 170×50."""
+
+MAIN, BOTTOM, SIDE = "main", "bottom", "side"
+"""Where a panel sits: the large place, the strip below it, the column beside both."""
+
+
+class Panel(Protocol):
+    """What every panel has besides being a `Widget`."""
+
+    PANEL_ID: ClassVar[str]
+    TITLE: ClassVar[str]
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment; nearly free if nothing changed."""
+
+
+@dataclass(frozen=True, slots=True)
+class PanelInfo:
+    """One line of `PANELS`. Rows and columns include the border."""
+
+    id: str
+    title: str
+    key: str
+    path: str
+    """Module and class, imported when the panel is first shown."""
+    place: str
+    sizes: tuple[str, ...]
+    """Sizes of terminal at which it is on unless the user says otherwise."""
+    min_rows: int
+    good_rows: int
+    """It gets so many before another gets more than its least."""
+    weight: int = 1
+    """Its share of the width among panels that stand side by side."""
+
+    def load(self) -> type[Panel]:
+        """Import the panel's class."""
+        module, _, name = self.path.partition(":")
+        return cast("type[Panel]", getattr(import_module(module), name))
+
+
+ALL = (SMALL, MEDIUM, LARGE)
+_HERE = "tuisim.ui.panels"
+
+# In the order in which they keep their place when there is not room for all.
+PANELS: Mapping[str, PanelInfo] = {
+    panel.id: panel
+    for panel in (
+        PanelInfo("world", "World", "W", f"{_HERE}.world:World", MAIN, ALL, 8, 14),
+        PanelInfo(
+            "instrumentation", "Instrumentation", "i", f"{_HERE}.instrumentation:Instrumentation", SIDE, ALL, 8, 15
+        ),
+        PanelInfo("output", "Output", "O", f"{_HERE}.output:Output", BOTTOM, ALL, 5, 9),
+        PanelInfo("arrays", "Sensor arrays", "A", f"{_HERE}.arrays:Arrays", SIDE, (MEDIUM, LARGE), 8, 13),
+        PanelInfo("code", "Code", "D", f"{_HERE}.code:Code", BOTTOM, (MEDIUM, LARGE), 5, 9),
+        PanelInfo("chart", "Chart", "c", f"{_HERE}.chart:Chart", BOTTOM, (LARGE,), 8, 16, weight=2),
+        PanelInfo("controls", "Simulator controls", "H", f"{_HERE}.controls:Controls", SIDE, (MEDIUM, LARGE), 10, 12),
+        PanelInfo("positioning", "Positioning", "X", f"{_HERE}.positioning:Positioning", SIDE, (LARGE,), 6, 7),
+    )
+}
+"""Every panel by id."""

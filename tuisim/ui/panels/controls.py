@@ -1,0 +1,95 @@
+"""Simulator controls: buttons for the mouse, and what the run is made of."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from rich.style import Style
+from rich.text import Text
+from textual.widget import Widget
+
+from tuisim.ui.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot
+from tuisim.ui.verbs import speed_label
+
+_STATES = {IDLE: "ready", STARTING: "starting", RUNNING: "running", PAUSED: "paused", WAITING: "waits for input"}
+_LABEL_CELLS = 9
+
+
+class Controls(Widget, can_focus=False):
+    """Run, Stop and Pause, speed, program, mat, profile, seed, pen and state."""
+
+    PANEL_ID: ClassVar[str] = "controls"
+    TITLE: ClassVar[str] = "Simulator controls"
+    ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"controls--button", "controls--off", "controls--label"}
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._program = ""
+        self._shown: tuple[object, ...] = ()
+        self._snapshot: Snapshot | None = None
+
+    def set_program(self, name: str) -> None:
+        """Show the program's name; empty for none."""
+        if name != self._program:
+            self._program = name
+            self.refresh()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment."""
+        shown = (snapshot.state, snapshot.end, snapshot.speed, snapshot.pen_down, id(snapshot.spec))
+        if shown != self._shown:
+            self._shown, self._snapshot = shown, snapshot
+            self.refresh()
+
+    def _button(self, text: str, action: str, works: bool) -> Text:
+        name = "controls--button" if works else "controls--off"
+        style = self.get_component_rich_style(name, partial=True)
+        return Text(f" {text} ", style + Style(meta={"@click": f"app.act('{action}')"}))
+
+    def _line(self, label: str, *parts: str | Text) -> Text:
+        line = Text(f"{label:<{_LABEL_CELLS}}", self.get_component_rich_style("controls--label", partial=True))
+        for part in parts:
+            line.append(part, "not bold") if isinstance(part, str) else line.append_text(part)
+        return line
+
+    def render(self) -> Text:
+        """Return the panel's content."""
+        now = self._snapshot
+        if now is None:
+            return Text()
+        in_run = now.state in _STATES and now.state != IDLE
+        buttons = Text(" ").join(
+            (
+                self._button("R Run", "run", bool(self._program) and not in_run),
+                self._button("S Stop", "stop", in_run),
+                self._button("␣ Go on" if now.state == PAUSED else "␣ Pause", "pause", in_run),
+            )
+        )
+        spec = now.spec
+        speed = (
+            " ",
+            self._button("[", "slower", True),
+            f" {speed_label(now.speed):^4} ",
+            self._button("]", "faster", True),
+        )
+        noise = spec.world.noise
+        lines = [
+            buttons,
+            Text(),
+            self._line("State", _STATES.get(now.state, now.end or "ended")),
+            self._line("Speed", *speed[1:]),
+            self._line("Program", self._program or "none: o opens one"),
+            self._line("Mat", spec.world.background),
+            self._line("Robot", spec.robot.name),
+            self._line("Profile", f"{spec.profile.name}, seed {spec.seed}"),
+            self._line("Pen", f"{'down' if now.pen_down else 'up'}, {spec.robot.pen.color}"),
+            self._line("Noise", f"light ±{noise.light}, motor ±{noise.motor}"),
+        ]
+        if self.size.height < len(lines):
+            del lines[1]
+        width = self.size.width
+        for line in lines:
+            line.truncate(width, overflow="ellipsis")
+        return Text("\n", no_wrap=True).join(lines[: self.size.height])

@@ -1,0 +1,1 @@
+"""Screens that come over the desk: pickers, dialogs, help."""

@@ -1,0 +1,35 @@
+"""What the app is started with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tuisim.core.spec import RunSpec
+from tuisim.host import Program
+
+DEFAULT_FPS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class AppSettings:
+    """Everything the command line decides about the app."""
+
+    spec: RunSpec
+    program: Program | None = None
+    """None opens the app without a program."""
+    background: str = "Empty_Map"
+    """Name of the mat; `spec.world.background` agrees with it."""
+    panels_on: frozenset[str] = field(default_factory=frozenset)
+    """Ids of panels shown whatever the size of the terminal."""
+    panels_off: frozenset[str] = field(default_factory=frozenset)
+    """Ids of panels hidden whatever the size of the terminal."""
+    autorun: bool = False
+    """Run the program as soon as the mat is ready."""
+    rays: bool = False
+    """Draw the ultrasonic rays."""
+    speed: float = 1.0
+    """1.0 real time, 0 as fast as possible."""
+    fps: int = DEFAULT_FPS
+    """Most frames a second."""
+    colors: str = "auto"
+    """auto, truecolor, 256, 16 or none; must be set before the terminal is opened."""

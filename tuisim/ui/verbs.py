@@ -1,0 +1,168 @@
+"""What the keys do: one function a verb, from the app to nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tuisim.core.geometry import Pose
+from tuisim.ui.panels import PANELS
+from tuisim.ui.snapshot import PAUSED
+
+if TYPE_CHECKING:
+    from tuisim.ui.app import Lab
+    from tuisim.ui.panels.world import World
+
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
+"""What `[` and `]` step through; 0 is as fast as possible."""
+
+
+def speed_label(speed: float) -> str:
+    """Return a speed as people write it: ¼×, 2×, max."""
+    return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
+
+
+def run(lab: Lab) -> None:
+    """Start the program."""
+    lab.start_run()
+
+
+def stop(lab: Lab) -> None:
+    """End the program."""
+    lab.bridge.stop()
+
+
+def pause(lab: Lab) -> None:
+    """Stand still, or go on."""
+    if lab.bridge.state == PAUSED:
+        lab.bridge.resume()
+    else:
+        lab.bridge.pause()
+
+
+def tick(lab: Lab) -> None:
+    """Let one tick pass."""
+    lab.bridge.step()
+
+
+def _change_speed(lab: Lab, by: int) -> None:
+    speed = lab.bridge.speed
+    at = SPEEDS.index(speed) if speed in SPEEDS else min(range(6), key=lambda i: abs(SPEEDS[i] - speed))
+    to = at + by
+    if not 0 <= to < len(SPEEDS):
+        lab.say(f"Speed is {speed_label(speed)} already: that is the {'slowest' if by < 0 else 'fastest'}")
+        return
+    lab.bridge.set_speed(SPEEDS[to])
+    lab.situation_changed()
+
+
+def slower(lab: Lab) -> None:
+    """One step down in speed."""
+    _change_speed(lab, -1)
+
+
+def faster(lab: Lab) -> None:
+    """One step up in speed."""
+    _change_speed(lab, 1)
+
+
+def pen(lab: Lab) -> None:
+    """Pen up if it is down, down if it is up."""
+    lab.bridge.set_pen(not lab.bridge.pen_down)
+
+
+def home(lab: Lab) -> None:
+    """Put the robot back to where the mat or the command line has it start."""
+    lab.bridge.place(lab.bridge.home)
+
+
+def nudge(lab: Lab, right_mm: float, up_mm: float, turn_deg: float) -> None:
+    """Move the robot a little."""
+    pose = lab.bridge.pose
+    lab.bridge.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
+
+
+def toggle(lab: Lab, panel: str) -> None:
+    """Show a panel, or hide it."""
+    lab.desk.toggle(panel)
+    lab.situation_changed()
+
+
+def _world(lab: Lab) -> World | None:
+    world = lab.desk.panels.get("world")
+    if world is None or not world.display:
+        lab.say(f"The world is hidden: {PANELS['world'].key} shows it")
+        return None
+    from tuisim.ui.panels.world import World
+
+    assert isinstance(world, World)
+    return world
+
+
+def rays(lab: Lab) -> None:
+    """Draw the ultrasonic rays, or not."""
+    if world := _world(lab):
+        world.show_rays = not world.show_rays
+        lab.draw(force=True)
+
+
+def zoom(lab: Lab) -> None:
+    """Next zoom of the world."""
+    if world := _world(lab):
+        world.cycle_zoom()
+        lab.draw(force=True)
+
+
+def clear_trace(lab: Lab) -> None:
+    """Wipe the pen's trace off."""
+    if world := _world(lab):
+        world.clear_trace()
+        lab.draw(force=True)
+
+
+def choose_mat(lab: Lab) -> None:
+    """Ask for a mat and lay it out."""
+    from tuisim.ui.screens.mats import MatPicker
+
+    def lay(name: str | None) -> None:
+        if name:
+            lab.change_mat(name)
+
+    lab.push_screen(MatPicker(lab.bridge.spec.world.background), lay)
+
+
+def open_program(lab: Lab) -> None:
+    """Ask for a program and open it."""
+    from tuisim.ui.screens.programs import ProgramPicker
+
+    def take(path: str | None) -> None:
+        if path:
+            lab.open_program(path)
+
+    lab.push_screen(ProgramPicker(), take)
+
+
+def export(lab: Lab) -> None:
+    """Ask for a file and write the log to it."""
+    from tuisim.ui.screens.export import ExportDialog
+
+    run_id = lab.bridge.run_id
+    program = lab.bridge.program
+    if run_id and program:
+        lab.push_screen(ExportDialog(run_id, program.name))
+
+
+def show_help(lab: Lab) -> None:
+    """Show every key."""
+    from tuisim.ui.screens.help import HelpScreen
+
+    lab.push_screen(HelpScreen())
+
+
+def leave(lab: Lab) -> None:
+    """Quit, after a question if a program runs."""
+    if not lab.bridge.in_run:
+        lab.exit()
+        return
+    from tuisim.ui.screens.leave import LeaveQuestion
+
+    lab.push_screen(LeaveQuestion(), lambda yes: lab.exit() if yes else None)
