@@ -1,0 +1,242 @@
+"""The catalogue of runs: one SQLite file beside the run folders.
+
+It holds nothing that the folders do not hold, so that a missing, damaged or foreign file
+is made again from them. Each operation opens it anew: two apps may use it at once.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import secrets
+import sqlite3
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tuisim.errors import LogError
+
+CATALOGUE_FILE = "runs.db"
+LOCK_FILE = "runs.lock"
+_SCHEMA_VERSION = 1
+_BUSY_S = 10.0
+
+_Result = TypeVar("_Result")
+
+HOME_HINT = "TUISIM_HOME may name another folder"
+
+_CREATE = """
+CREATE TABLE runs (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    id TEXT NOT NULL UNIQUE,
+    created TEXT NOT NULL,
+    program TEXT NOT NULL,
+    background TEXT NOT NULL,
+    profile TEXT NOT NULL,
+    seed TEXT NOT NULL,
+    "end" TEXT NOT NULL,
+    ticks INTEGER,
+    time_s REAL,
+    samples INTEGER,
+    summary TEXT NOT NULL,
+    tags TEXT NOT NULL
+)
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class RunInfo:
+    """One line of the catalogue."""
+
+    number: int
+    """Counts all runs that there ever were, from 1; 0 asks for the next number."""
+    id: str
+    created: str
+    """ISO 8601, UTC."""
+    program: str
+    """Name of the program."""
+    background: str
+    profile: str
+    seed: int
+    end: str = ""
+    """How it ended, `running` or `interrupted`; empty in the file while there is no end."""
+    ticks: int | None = None
+    time_s: float | None = None
+    """Simulated seconds."""
+    samples: int | None = None
+    """None in the file while nobody has counted them."""
+    summary: str = ""
+    tags: str = ""
+    """Words with a blank between."""
+
+
+_NAMES = tuple(field.name for field in fields(RunInfo))
+_COLUMNS = ", ".join(f'"{name}"' for name in _NAMES)
+_INSERT = f"INSERT INTO runs ({_COLUMNS}) VALUES ({', '.join('?' * len(_NAMES))})"
+_SELECT = f"SELECT {_COLUMNS} FROM runs ORDER BY number"
+
+
+class _ForeignFile(sqlite3.DatabaseError):
+    """A database of another make or version."""
+
+
+class Catalogue:
+    """The catalogue in one home folder.
+
+    Args:
+        home: The folder; it need not exist yet.
+        scan: Reads all run folders, for a catalogue that must be made again.
+
+    Raises:
+        LogError: by every method, if the file cannot be read or written.
+    """
+
+    def __init__(self, home: Path, scan: Callable[[], Iterable[RunInfo]]) -> None:
+        self._home = home
+        self._path = home / CATALOGUE_FILE
+        self._scan = scan
+
+    def add(self, info: RunInfo) -> int:
+        """Add a run and return its number; a number that is taken is replaced by the next free one.
+
+        A run that is listed already keeps its line and number.
+        """
+
+        def insert(connection: sqlite3.Connection) -> int:
+            with _transaction(connection):
+                return _insert(connection, info)
+
+        return self._do(insert)
+
+    def update(self, run_id: str, **values: str | int | float | None) -> None:
+        """Change columns of a run, by name; a run that is not listed is left out."""
+        unknown = values.keys() - set(_NAMES)
+        if unknown:
+            raise ValueError(f"no such column: {', '.join(sorted(unknown))}")
+        assignments = ", ".join(f'"{name}" = ?' for name in values)
+        sql = f"UPDATE runs SET {assignments} WHERE id = ?"
+        self._do(lambda connection: connection.execute(sql, (*values.values(), run_id)))
+
+    def remove(self, run_ids: Iterable[str]) -> None:
+        """Take runs off the list."""
+        ids = [(run_id,) for run_id in run_ids]
+
+        def delete(connection: sqlite3.Connection) -> None:
+            with _transaction(connection):
+                connection.executemany("DELETE FROM runs WHERE id = ?", ids)
+
+        self._do(delete)
+
+    def rows(self) -> list[RunInfo]:
+        """Return every line, the oldest first."""
+        return self._do(lambda connection: [_info(row) for row in connection.execute(_SELECT)])
+
+    def _do(self, operation: Callable[[sqlite3.Connection], _Result]) -> _Result:
+        try:
+            try:
+                with closing(_open(self._path)) as connection:
+                    return operation(connection)
+            except sqlite3.DatabaseError as error:
+                if not _must_be_made_again(error):
+                    raise
+            self._make_again()
+            with closing(_open(self._path)) as connection:
+                return operation(connection)
+        except (sqlite3.Error, OSError) as error:
+            raise LogError(f"the list of runs cannot be used: {error}", HOME_HINT, file=str(self._path)) from error
+
+    def _make_again(self) -> None:
+        """Put a new catalogue, filled from the run folders, in the place of one that is no good."""
+        with locked(self._home):
+            # Another process may have done it while this one waited.
+            if _is_sound(self._path):
+                return
+            fresh = self._path.with_name(f".{CATALOGUE_FILE}.{secrets.token_hex(4)}.tmp")
+            try:
+                self._fill(fresh)
+                # A journal of the old file would be played into the new one.
+                for suffix in ("-wal", "-shm"):
+                    self._path.with_name(CATALOGUE_FILE + suffix).unlink(missing_ok=True)
+                os.replace(fresh, self._path)
+            finally:
+                fresh.unlink(missing_ok=True)
+
+    def _fill(self, path: Path) -> None:
+        with closing(sqlite3.connect(path, isolation_level=None)) as connection:
+            connection.execute("PRAGMA journal_mode = WAL")
+            with _transaction(connection):
+                connection.execute(_CREATE)
+                # Runs that know their number come first, so that none of the others takes it.
+                for info in sorted(self._scan(), key=lambda info: (not info.number, info.number, info.created)):
+                    _insert(connection, info)
+                connection.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
+
+
+@contextmanager
+def locked(home: Path) -> Iterator[None]:
+    """Keep other processes from changing what stands in more than one place of a home folder."""
+    home.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(home / LOCK_FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
+def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
+    # Immediate: a lock that is taken only at the first write fails at once where this one waits.
+    connection.execute("BEGIN IMMEDIATE")
+    with connection:
+        yield
+
+
+def _open(path: Path) -> sqlite3.Connection:
+    # Read-write without create: a missing file is made under the lock, filled from the folders.
+    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, timeout=_BUSY_S, isolation_level=None)
+    try:
+        version = connection.execute("PRAGMA user_version").fetchone()[0]
+        if version != _SCHEMA_VERSION:
+            raise _ForeignFile(f"version {version}")
+    except sqlite3.Error:
+        connection.close()
+        raise
+    return connection
+
+
+def _must_be_made_again(error: sqlite3.DatabaseError) -> bool:
+    """Whether the file is missing, damaged or not ours."""
+    if isinstance(error, _ForeignFile):
+        return True
+    code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF
+    return code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+
+
+def _is_sound(path: Path) -> bool:
+    try:
+        with closing(_open(path)) as connection:
+            return bool(connection.execute("PRAGMA quick_check").fetchone()[0] == "ok")
+    except sqlite3.DatabaseError as error:
+        if _must_be_made_again(error):
+            return False
+        raise
+
+
+def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
+    """Insert a run, with its number if that is free, and return the number it has got."""
+    listed = connection.execute("SELECT number FROM runs WHERE id = ?", (info.id,)).fetchone()
+    if listed is not None:
+        return int(listed[0])
+    free = not connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
+    number = info.number if info.number > 0 and free else None
+    # A seed may be larger than the integers of SQLite.
+    row = {**asdict(info), "number": number, "seed": str(info.seed)}
+    return int(connection.execute(_INSERT, tuple(row.values())).lastrowid or 0)
+
+
+def _info(row: tuple[Any, ...]) -> RunInfo:
+    info = RunInfo(*row)
+    return replace(info, seed=int(info.seed))

@@ -1,0 +1,144 @@
+"""File formats of a log: how each writes a frame and reads it back to the last bit.
+
+No format may write anything that differs between two identical runs: no times, no paths,
+no random numbers.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+
+Metadata = Mapping[str, Any]
+"""What travels with a log, ready for JSON."""
+
+METADATA_KEY = b"tuisim"
+"""Key of the metadata in the schema of Parquet and Arrow files."""
+
+_TIMEDELTA, _TEXT, _WHOLE = ("index",), ("variable",), ("run", "line")
+"""Columns of the frames by type; all others are floating-point numbers."""
+
+
+def companion_of(path: Path) -> Path:
+    """Return where the metadata of a file without room for them goes."""
+    return path.with_name(path.name + ".json")
+
+
+@dataclass(frozen=True, slots=True)
+class Exporter:
+    """One file format."""
+
+    write: Callable[[pd.DataFrame, Metadata, BinaryIO], None]
+    read: Callable[[Path], pd.DataFrame]
+    companion: bool
+    """Whether the metadata goes into a file of its own, NAME.csv.json, for want of room inside."""
+
+
+def _write_csv(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
+    # Floats are written as their shortest exact text, time spans as pandas prints them.
+    frame.to_csv(handle, index=False, lineterminator="\n", encoding="utf-8", mode="wb")
+
+
+def _read_csv(path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    names = list(pd.read_csv(path, nrows=0, encoding="utf-8").columns)
+    known: dict[Any, Any] = dict.fromkeys((*_TIMEDELTA, *_TEXT), "str") | dict.fromkeys(_WHOLE, "int64")
+    return _typed(
+        pd.read_csv(
+            path,
+            dtype={name: known[name] for name in names if name in known},
+            float_precision="round_trip",
+            # A variable may be called NA; only an empty number is a missing one.
+            keep_default_na=False,
+            na_values={name: [""] for name in names if name not in known},
+            encoding="utf-8",
+        )
+    )
+
+
+def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
+    names = [str(name) for name in frame.columns]
+    columns = [frame[name].astype("str") if name in _TIMEDELTA else frame[name] for name in frame.columns]
+    for values in zip(*(column.tolist() for column in columns), strict=True):
+        # A missing number is the only value that is not equal to itself.
+        row = {name: value if value == value else None for name, value in zip(names, values, strict=True)}
+        handle.write(json.dumps(row, ensure_ascii=False).encode() + b"\n")
+
+
+def _read_jsonl(path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    with open(path, encoding="utf-8") as handle:
+        rows = [json.loads(line) for line in handle]
+    beside = companion_of(path)
+    if not rows and beside.exists():
+        # Without a row nothing in the file itself names the columns.
+        return _typed(pd.DataFrame(columns=json.loads(beside.read_bytes())["columns"]))
+    return _typed(pd.DataFrame(rows))
+
+
+def _typed(frame: pd.DataFrame) -> pd.DataFrame:
+    """Give the columns of a text format their types, also those of a frame without rows."""
+    import pandas as pd
+
+    for name in frame.columns:
+        if name in _TIMEDELTA:
+            frame[name] = pd.to_timedelta(frame[name]).astype("timedelta64[ns]")
+        elif name in _TEXT:
+            frame[name] = frame[name].astype("str")
+        elif name in _WHOLE:
+            frame[name] = frame[name].astype("int64")
+        elif frame[name].dtype == object:
+            frame[name] = frame[name].astype("float64")
+    return frame
+
+
+def _table(frame: pd.DataFrame, metadata: Metadata) -> pa.Table:
+    import pyarrow as pa
+
+    table = pa.Table.from_pandas(frame, preserve_index=False)
+    text = json.dumps(metadata, sort_keys=True).encode()
+    return table.replace_schema_metadata({**(table.schema.metadata or {}), METADATA_KEY: text})
+
+
+def _write_parquet(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
+    import pyarrow.parquet as pq
+
+    pq.write_table(_table(frame, metadata), handle)
+
+
+def _read_parquet(path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    return pd.read_parquet(path)
+
+
+def _write_arrow(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
+    import pyarrow as pa
+
+    table = _table(frame, metadata)
+    with pa.ipc.new_file(handle, table.schema) as writer:
+        writer.write_table(table)
+
+
+def _read_arrow(path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    return pd.read_feather(path)
+
+
+EXPORTERS: Mapping[str, Exporter] = {
+    ".csv": Exporter(_write_csv, _read_csv, companion=True),
+    ".parquet": Exporter(_write_parquet, _read_parquet, companion=False),
+    ".jsonl": Exporter(_write_jsonl, _read_jsonl, companion=True),
+    ".arrow": Exporter(_write_arrow, _read_arrow, companion=False),
+}
+"""Every format by the suffix of its files. To add one: write its two functions and a line here."""

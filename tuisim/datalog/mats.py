@@ -1,0 +1,36 @@
+"""The mat that a stored run was made on, found again."""
+
+from __future__ import annotations
+
+from tuisim.assets import background
+from tuisim.core.field import Field
+from tuisim.datalog.runfile import StoredRun
+from tuisim.errors import ConfigError, LogError
+from tuisim.fields import FieldFiles, open_field, prepare
+
+
+def open_mat(run: StoredRun) -> Field:
+    """Return the mat of a run, prepared again if the cache has dropped it.
+
+    Raises:
+        LogError: there is no such mat any more, or its picture is another one now.
+    """
+    try:
+        made_on = None if run.field is None else FieldFiles.from_plain(run.field)
+        if made_on is not None and _all_there(made_on):
+            return open_field(made_on)
+        name = run.spec.world.background
+        image = background(name).image
+        found = prepare(image, {sensor.diameter_mm for sensor in run.spec.robot.color_sensors})
+        # The files are called after the content of the picture.
+        if made_on is not None and found.pixels.name != made_on.pixels.name:
+            raise LogError(f"the mat {name} is not the one of the run any more", file=str(image))
+        return open_field(found)
+    except ConfigError as error:
+        raise LogError(f"the mat of the run: {error.message}", error.hint, file=str(run.folder)) from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
+
+
+def _all_there(files: FieldFiles) -> bool:
+    return all(path.is_file() for path in (files.pixels, *(path for _, path in files.sums)))

@@ -1,0 +1,340 @@
+"""The run store: one folder a run, and the catalogue that lists them."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from tuisim.core.spec import RunSpec, to_plain
+from tuisim.datalog.catalogue import HOME_HINT, Catalogue, RunInfo, locked
+from tuisim.datalog.lock import is_held
+from tuisim.datalog.runfile import (
+    INTERRUPTED,
+    RUN_FORMAT,
+    RUNNING,
+    EndLike,
+    ProgramLike,
+    StoredProgram,
+    StoredRun,
+    end_document,
+    read_run,
+    read_run_file,
+    state_without_end,
+    write_run_file,
+)
+from tuisim.datalog.samples import samples_of
+from tuisim.datalog.views import OutputView, TelemetryView
+from tuisim.errors import LogError
+
+RUNS_FOLDER = "runs"
+LAST = "last"
+_COUNT_AT_ONCE_BYTES = 1 << 20
+"""Longer outputs are counted when the run is first listed, so that the end of a run is not held up."""
+_NS_PER_S = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class NewRun:
+    """A run that has been given its place."""
+
+    id: str
+    number: int
+    folder: Path
+
+
+def home_folder() -> Path:
+    """Return where runs are kept: `TUISIM_HOME`, or the user's data folder."""
+    home = os.environ.get("TUISIM_HOME")
+    if home:
+        return Path(home)
+    import platformdirs
+
+    return platformdirs.user_data_path("tuisim")
+
+
+class RunStore:
+    """All runs in one home folder; any number of processes may use it at once.
+
+    Args:
+        home: The folder, by default `home_folder()`. It is made when the first run is.
+    """
+
+    def __init__(self, home: Path | None = None) -> None:
+        self.home = (home_folder() if home is None else home).absolute()
+        self._runs = self.home / RUNS_FOLDER
+        self._catalogue = Catalogue(self.home, self._scan)
+
+    def folder(self, run_id: str) -> Path:
+        """Return the folder of a run."""
+        return self._runs / run_id
+
+    # Writing
+
+    def new_run(
+        self,
+        program: ProgramLike,
+        spec: RunSpec,
+        field: Mapping[str, Any] | None = None,
+        options: Mapping[str, Any] | None = None,
+        live: bool = False,
+    ) -> NewRun:
+        """Make the folder of a run that is about to start, with its `run.json`, and list it.
+
+        Args:
+            program: What is run.
+            spec: What the run is made of.
+            field: The files of the prepared mat as plain data, None if there are none.
+            options: How it is run, as plain data.
+            live: Whether it is paced against the wall clock.
+
+        Raises:
+            LogError: the home folder cannot be written.
+        """
+        now = datetime.now(UTC)
+        created = now.isoformat(timespec="milliseconds")
+        run_id, folder = self._new_folder(now)
+        stored = StoredProgram(program.name, program.path, program.text, program.prelude)
+        info = _info_of(run_id, created, stored, spec)
+        try:
+            number = self._catalogue.add(info)
+            write_run_file(
+                folder,
+                {
+                    "format": RUN_FORMAT,
+                    "id": run_id,
+                    "number": number,
+                    "created": created,
+                    "live": live,
+                    "program": {
+                        "name": stored.name,
+                        "path": stored.path,
+                        "text": stored.text,
+                        "sha256": stored.sha256,
+                        "prelude": stored.prelude,
+                    },
+                    "spec": to_plain(spec),
+                    "field": None if field is None else dict(field),
+                    "options": dict(options or {}),
+                    "tags": [],
+                    "end": None,
+                },
+            )
+        except LogError:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        return NewRun(run_id, number, folder)
+
+    def finish(self, run_id: str, end: EndLike) -> None:
+        """Record how a run ended.
+
+        Raises:
+            LogError: there is no such run, or it cannot be written.
+        """
+        self._edit(run_id, end=end_document(end))
+        output = OutputView(self.folder(run_id))
+        samples = _count_samples(output) if output.length <= _COUNT_AT_ONCE_BYTES else None
+        self._catalogue.update(
+            run_id,
+            end=end.end,
+            ticks=end.tick,
+            time_s=end.time_ns / _NS_PER_S,
+            samples=samples,
+            summary=end.summary,
+        )
+
+    def tag(self, run_id: str, tags: Iterable[str]) -> None:
+        """Replace the tags of a run.
+
+        Raises:
+            LogError: there is no such run, a tag is no single word, or the run cannot be written.
+        """
+        words = list(tags)
+        for word in words:
+            if word.split() != [word]:
+                raise LogError(f"{word!r} is no tag", "a tag is one word without blanks")
+        self._edit(run_id, tags=words)
+        self._catalogue.update(run_id, tags=" ".join(words))
+
+    def remove(self, run_id: str) -> None:
+        """Delete a run with everything that it recorded.
+
+        Raises:
+            LogError: there is no such run, it is still going on, or it cannot be deleted.
+        """
+        folder = self.folder(run_id)
+        if not folder.is_dir():
+            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        if not _has_end(folder) and state_without_end(folder) == RUNNING:
+            raise LogError(f"run {run_id} is still running", "stop it first")
+        # Renamed first: a run that is half deleted must not look like a run.
+        grave = folder.with_name(f".{run_id}.{secrets.token_hex(4)}.removed")
+        try:
+            os.replace(folder, grave)
+            shutil.rmtree(grave)
+        except OSError as error:
+            raise LogError(f"cannot be removed: {error.strerror or error}", file=str(folder)) from error
+        self._catalogue.remove([run_id])
+
+    # Reading
+
+    def runs(self) -> list[RunInfo]:
+        """Return every run, the oldest first; `end` is never empty.
+
+        Raises:
+            LogError: the home folder cannot be used.
+        """
+        try:
+            there = {entry.name for entry in os.scandir(self._runs) if entry.is_dir()}
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            raise LogError(f"cannot be read: {error.strerror or error}", HOME_HINT, file=str(self._runs)) from error
+        rows = self._catalogue.rows()
+        listed = {row.id for row in rows}
+        gone = {row.id for row in rows if row.id not in there and not self.folder(row.id).is_dir()}
+        strangers = [self._info_in(self.folder(name)) for name in sorted(there - listed) if not name.startswith(".")]
+        found = [info for info in strangers if info is not None]
+        if gone or found:
+            self._catalogue.remove(gone)
+            for info in found:
+                self._catalogue.add(info)
+            rows = self._catalogue.rows()
+        return [self._completed(row) for row in rows]
+
+    def find(self, text: str) -> RunInfo:
+        """Return the run that a user means: by full id, number, the start of an id, or `last`.
+
+        Raises:
+            LogError: there is none, or more than one.
+        """
+        rows = self.runs()
+        if not rows:
+            raise LogError(f"no run {text!r}: there are none yet", file=str(self.home))
+        if text == LAST:
+            return rows[-1]
+        tests = (lambda row: row.id == text, lambda row: str(row.number) == text, lambda row: row.id.startswith(text))
+        for matches in tests:
+            found = [row for row in rows if text and matches(row)]
+            if len(found) == 1:
+                return found[0]
+            if found:
+                some = ", ".join(row.id for row in found[:3])
+                raise LogError(f"{text!r} is the start of {len(found)} runs: {some}{' …' if len(found) > 3 else ''}")
+        raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
+
+    def load_run(self, run: str | Path) -> StoredRun:
+        """Return a run by its folder (a path) or by anything that `find` knows.
+
+        Raises:
+            LogError: there is no such run, or it is damaged.
+        """
+        if isinstance(run, Path):
+            return read_run(run)
+        if run not in ("", ".", "..") and "/" not in run and self.folder(run).is_dir():
+            return read_run(self.folder(run))
+        info = self.find(run)
+        return replace(read_run(self.folder(info.id)), number=info.number)
+
+    # Inside
+
+    def _new_folder(self, now: datetime) -> tuple[str, Path]:
+        while True:
+            run_id = f"{now:%Y%m%dT%H%M%S}-{secrets.token_hex(3)}"
+            folder = self.folder(run_id)
+            try:
+                folder.mkdir(parents=True)
+            except FileExistsError:
+                continue
+            except OSError as error:
+                what = error.strerror or str(error)
+                raise LogError(f"runs cannot be kept here: {what}", HOME_HINT, file=str(self.home)) from error
+            return run_id, folder
+
+    def _edit(self, run_id: str, **changes: Any) -> None:
+        folder = self.folder(run_id)
+        if not folder.is_dir():
+            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        with locked(self.home):
+            write_run_file(folder, {**read_run_file(folder), **changes})
+
+    def _scan(self) -> Iterator[RunInfo]:
+        for folder in sorted(self._runs.glob("[!.]*")):
+            info = self._info_in(folder)
+            if info is not None:
+                yield info
+
+    def _info_in(self, folder: Path) -> RunInfo | None:
+        """Return the catalogue line of a folder; None if it holds no run (yet) or a damaged one."""
+        try:
+            run = read_run(folder)
+        except LogError:
+            return None
+        # The folder's name counts: a copied run is another run.
+        info = replace(
+            _info_of(folder.name, run.created, run.program, run.spec), number=run.number, tags=" ".join(run.tags)
+        )
+        end = run.end
+        if end is None:
+            return info
+        return replace(info, end=end.end, ticks=end.tick, time_s=end.time_ns / _NS_PER_S, summary=end.summary)
+
+    def _completed(self, info: RunInfo) -> RunInfo:
+        """Fill in what the catalogue does not know yet, and remember it if it can no longer change."""
+        if info.end and info.samples is not None:
+            return info
+        folder = self.folder(info.id)
+        state = info.end or state_without_end(folder)
+        try:
+            samples = _count_samples(OutputView(folder))
+            known = replace(info, end=state, samples=samples)
+            if not info.end:
+                known = _with_last_record(known, folder)
+        except LogError as error:
+            return replace(info, end=state, summary=info.summary or str(error))
+        if info.end:
+            self._catalogue.update(info.id, samples=samples)
+        elif state == INTERRUPTED and is_held(folder) is False:
+            # Its process is gone for good. The end, should the host still bring it, replaces this.
+            self._catalogue.update(info.id, end=state, samples=samples, ticks=known.ticks, time_s=known.time_s)
+        return known
+
+
+def load_run(run: str | Path) -> StoredRun:
+    """Return a stored run by its folder (a path), its number, its id or the start of it, or `last`.
+
+    Raises:
+        LogError: there is no such run, or it is damaged.
+    """
+    return RunStore().load_run(run)
+
+
+def _info_of(run_id: str, created: str, program: StoredProgram, spec: RunSpec) -> RunInfo:
+    return RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
+
+
+def _count_samples(output: OutputView) -> int:
+    return sum(1 for _ in samples_of(output.rows()))
+
+
+def _has_end(folder: Path) -> bool:
+    try:
+        return read_run_file(folder)["end"] is not None
+    except LogError:
+        return False
+
+
+def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
+    last = TelemetryView(folder).last()
+    if last is None:
+        return replace(info, ticks=0, time_s=0.0)
+    try:
+        tick_hz = int(read_run_file(folder)["spec"]["profile"]["tick_hz"])
+    except (LogError, KeyError, TypeError):
+        return replace(info, ticks=last.tick)
+    return replace(info, ticks=last.tick, time_s=-(-last.tick * _NS_PER_S // tick_hz) / _NS_PER_S)

@@ -1,0 +1,235 @@
+"""Readers of a run folder's two binary files, also while the run goes on.
+
+A view never changes what it reads and never waits. A file that is not there yet reads as
+empty; one that has grown is mapped again.
+"""
+
+from __future__ import annotations
+
+import mmap
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.core.drive import turn_rate_dps
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.state import TICK_RECORD, Instant
+from tuisim.datalog.records import (
+    HEADER_BYTES,
+    OUTPUT_FILE,
+    OUTPUT_MAGIC,
+    TELEMETRY_FILE,
+    TELEMETRY_MAGIC,
+    OutputRow,
+    output_rows,
+    published_length,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+
+TICK_FIELDS = (
+    ("tick", "<u4"),
+    ("line", "<u4"),
+    ("x_mm", "<f8"),
+    ("y_mm", "<f8"),
+    ("heading_deg", "<f8"),
+    ("left_position_deg", "<f8"),
+    ("right_position_deg", "<f8"),
+    ("left_speed_dps", "<f4"),
+    ("right_speed_dps", "<f4"),
+    ("gyro_zero_deg", "<f4"),
+    ("flags", "<u2"),
+    ("actions", "<u2"),
+)
+"""Name and numpy type of each field of `core.state.TICK_RECORD`."""
+
+
+@dataclass(frozen=True, slots=True)
+class TickRecord:
+    """What the telemetry says of one tick; see `core.state.TICK_RECORD`."""
+
+    tick: int
+    line: int
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    left_position_deg: float
+    right_position_deg: float
+    left_speed_dps: float
+    right_speed_dps: float
+    gyro_zero_deg: float
+    flags: int
+    actions: int
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot was."""
+        return Pose(self.x_mm, self.y_mm, self.heading_deg)
+
+
+def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
+    """Return the moment of a record, ready for the functions of `core.sensors`.
+
+    Args:
+        record: What was recorded.
+        spec: What the run was made of.
+        noise: The noise at that tick; `runfile.noise_at` knows it.
+    """
+    return Instant(
+        tick=record.tick,
+        pose=record.pose,
+        left_position_deg=record.left_position_deg,
+        right_position_deg=record.right_position_deg,
+        left_speed_dps=record.left_speed_dps,
+        right_speed_dps=record.right_speed_dps,
+        turn_rate_dps=turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec.robot),
+        gyro_zero_deg=record.gyro_zero_deg,
+        noise=noise,
+        seed=spec.seed,
+    )
+
+
+class _Mapped:
+    """A recording mapped for reading, and mapped again when it has outgrown the map."""
+
+    def __init__(self, path: Path, magic: bytes, record_bytes: int) -> None:
+        self._path = path
+        self._magic = magic
+        self._record_bytes = record_bytes
+        self._map: mmap.mmap | None = None
+
+    def look(self) -> tuple[mmap.mmap | None, int, int]:
+        """Return the map (None while there is no file), the published length, and how much of it is there."""
+        if self._map is None:
+            self._open()
+        if self._map is None:
+            return None, 0, 0
+        # A copy of the header is made in one piece; read in place, a number that is just being
+        # written could be put together from the bytes of two.
+        published = published_length(self._map[:HEADER_BYTES], self._magic, str(self._path))
+        if published > self._room():
+            self._open()
+        return self._map, published, min(published, self._room())
+
+    def _room(self) -> int:
+        return 0 if self._map is None else (len(self._map) - HEADER_BYTES) // self._record_bytes
+
+    def _open(self) -> None:
+        try:
+            with open(self._path, "rb") as handle:
+                found = mmap.mmap(handle.fileno(), 0, access=mmap.ACCESS_READ)
+        except (FileNotFoundError, ValueError):  # ValueError: created, but still empty
+            return
+        # The writer sizes a new file before it writes the header.
+        if found[:HEADER_BYTES].strip(b"\0"):
+            # The old map is not closed: arrays may still look at it, and it goes with the last of them.
+            self._map = found
+
+
+class TelemetryView:
+    """The tick records of a run.
+
+    Args:
+        folder: The run folder.
+
+    Raises:
+        LogError: by every method, if the file is no recording or of another version.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._file = _Mapped(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size)
+
+    @property
+    def count(self) -> int:
+        """How many whole records there are; record k is that of tick k."""
+        return self._file.look()[2]
+
+    @property
+    def note(self) -> str:
+        """What is missing from a file that was cut off, or empty."""
+        _, published, there = self._file.look()
+        lost = published - there
+        return f"{TELEMETRY_FILE} was cut off: the last {lost} of {published} records are lost" if lost else ""
+
+    def last(self) -> TickRecord | None:
+        """Return the newest record, None if there is none yet."""
+        count = self.count
+        return self.record(count - 1) if count else None
+
+    def record(self, index: int) -> TickRecord:
+        """Return one record.
+
+        Raises:
+            IndexError: there is no such record (yet).
+        """
+        data, _, count = self._file.look()
+        if data is None or not 0 <= index < count:
+            raise IndexError(f"no telemetry record {index}, there are {count}")
+        return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + index * TICK_RECORD.size))
+
+    def array(self) -> np.ndarray[Any, Any]:
+        """Return all records as a structured array of `TICK_FIELDS`, shape (count,), read-only.
+
+        It is a view of the file, not a copy; records written later need another call.
+        """
+        import numpy as np
+
+        kind = np.dtype(list(TICK_FIELDS))
+        data, _, count = self._file.look()
+        if data is None or not count:
+            return np.empty(0, kind)
+        return np.frombuffer(data, kind, count, HEADER_BYTES)
+
+
+class OutputView:
+    """The rows that a run printed, spoke or was answered.
+
+    Args:
+        folder: The run folder.
+
+    Raises:
+        LogError: by every method, if the file is no recording or of another version.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._file = _Mapped(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1)
+        self._seen = 0
+
+    @property
+    def length(self) -> int:
+        """How many bytes of rows there are."""
+        return self._file.look()[2]
+
+    @property
+    def note(self) -> str:
+        """What is missing from a file that was cut off, or empty."""
+        _, published, there = self._file.look()
+        lost = published - there
+        return f"{OUTPUT_FILE} was cut off: its last {lost} bytes are lost" if lost else ""
+
+    def new_rows(self, limit: int | None = None) -> list[OutputRow]:
+        """Return the rows since the last call, at most `limit`; the others come with the next call."""
+        rows: list[OutputRow] = []
+        data, _, end = self._file.look()
+        if data is None or limit == 0:
+            return rows
+        for row, after in output_rows(data, self._seen, end):
+            rows.append(row)
+            self._seen = after
+            if len(rows) == limit:
+                break
+        return rows
+
+    def all_rows(self) -> list[OutputRow]:
+        """Return every row so far; what `new_rows` returns next does not change."""
+        return list(self.rows())
+
+    def rows(self) -> Iterator[OutputRow]:
+        """Yield what `all_rows` returns, one by one: a run may print a million lines."""
+        data, _, end = self._file.look()
+        if data is not None:
+            for row, _ in output_rows(data, 0, end):
+                yield row
