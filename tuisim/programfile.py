@@ -42,7 +42,7 @@ class Magic:
 
 
 @dataclass(frozen=True, slots=True)
-class ProgramFile:
+class ProgramSource:
     """A program as read from its file."""
 
     name: str
@@ -115,7 +115,7 @@ def _imports_ev3dev2(text: str) -> bool:
     return False
 
 
-def parse_program(text: str, name: str, path: str = "") -> ProgramFile:
+def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     """Return a program from its text.
 
     Raises:
@@ -123,16 +123,16 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramFile:
     """
     magic = find_magic(text, name)
     if magic is None:
-        return ProgramFile(name, path, text, "none" if _imports_ev3dev2(text) else "preloaded")
+        return ProgramSource(name, path, text, "none" if _imports_ev3dev2(text) else "preloaded")
     if not magic.comment:
         lines = text.splitlines(keepends=True)
         raw = lines[magic.line - 1]
         lines[magic.line - 1] = raw[len(raw.rstrip("\r\n")) :]
         text = "".join(lines)
-    return ProgramFile(name, path, text, str(magic.switches.get("preload", magic.prelude)), magic.switches)
+    return ProgramSource(name, path, text, str(magic.switches.get("preload", magic.prelude)), magic.switches)
 
 
-def read_program(path: Path) -> ProgramFile:
+def read_program(path: Path) -> ProgramSource:
     """Read a program file.
 
     Raises:

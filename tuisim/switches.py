@@ -80,7 +80,9 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
     return f"did you mean {' or '.join(close)}?" if close else f"one of {', '.join(names)}"
 
 
-def _number(low: float, high: float) -> Callable[[str, str], float]:
+def number(low: float, high: float) -> Callable[[str, str], float]:
+    """Return a converter from the text after a flag to a number in a range."""
+
     def convert(text: str, flag: str) -> float:
         try:
             value = float(text)
@@ -93,7 +95,9 @@ def _number(low: float, high: float) -> Callable[[str, str], float]:
     return convert
 
 
-def _whole(low: int, high: int) -> Callable[[str, str], int]:
+def whole(low: int, high: int) -> Callable[[str, str], int]:
+    """Return a converter from the text after a flag to a whole number in a range."""
+
     def convert(text: str, flag: str) -> int:
         try:
             value = int(text)
@@ -131,7 +135,7 @@ def _speed(text: str, flag: str) -> float:
     if text == MAX_SPEED_WORD:
         return 0.0
     try:
-        return _number(MIN_SPEED, MAX_SPEED)(text, flag)
+        return number(MIN_SPEED, MAX_SPEED)(text, flag)
     except ConfigError:
         allowed = f"{MAX_SPEED_WORD}, or a number from {MIN_SPEED:g} to {MAX_SPEED:g}"
         raise ConfigError(f"no such speed {text!r}", allowed, key=flag) from None
@@ -141,8 +145,8 @@ def _not_solid(text: str, flag: str) -> NoReturn:
     raise ConfigError("obstacles cannot be made solid yet", "leave the switch out", key=flag)
 
 
-_position = _number(-MAX_POSITION_MM, MAX_POSITION_MM)
-_angle = _number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
+_position = number(-MAX_POSITION_MM, MAX_POSITION_MM)
+_angle = number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
 
 WORLD, RUN, APP, PANEL = "world", "run", "app", "panels (app)"
 
@@ -153,12 +157,12 @@ SWITCHES: tuple[Switch, ...] = (
     Switch(WORLD, ("-x", "--x"), "x_mm", "start x in mm", "MM", _position),
     Switch(WORLD, ("-y", "--y"), "y_mm", "start y in mm", "MM", _position),
     Switch(WORLD, ("-a", "--angle"), "heading_deg", "start heading, counter-clockwise from +x", "DEG", _angle),
-    Switch(WORLD, ("-N", "--sensornoise"), "light_noise", "light noise, 0 … 128", "N", _whole(0, MAX_LIGHT_NOISE)),
-    Switch(WORLD, ("-M", "--motornoise"), "motor_noise", "motor noise, 0 … 500", "N", _whole(0, MAX_MOTOR_NOISE)),
+    Switch(WORLD, ("-N", "--sensornoise"), "light_noise", "light noise, 0 … 128", "N", whole(0, MAX_LIGHT_NOISE)),
+    Switch(WORLD, ("-M", "--motornoise"), "motor_noise", "motor noise, 0 … 500", "N", whole(0, MAX_MOTOR_NOISE)),
     Switch(WORLD, ("-p", "--pendown"), "pen_down", "start with the pen down"),
     Switch(WORLD, ("-P", "--pencolor"), "pen_color", "red, orange or green", "COLOUR", _one_of(PEN_COLORS)),
     Switch(RUN, ("--profile",), "profile", "rules of the brick, see `tuisim profiles`", "NAME", _profile),
-    Switch(RUN, ("--seed",), "seed", "seed of noise and of `random`", "N", _whole(0, MAX_SEED)),
+    Switch(RUN, ("--seed",), "seed", "seed of noise and of `random`", "N", whole(0, MAX_SEED)),
     Switch(RUN, ("--speed",), "speed", "max, or times real time", "N", _speed),
     Switch(RUN, ("--preload",), "preload", "names given to the program", "|".join(PRELOADS), _one_of(PRELOADS)),
     Switch(RUN, ("--solid",), "solid", argparse.SUPPRESS, "", _not_solid),
@@ -166,7 +170,7 @@ SWITCHES: tuple[Switch, ...] = (
     Switch(APP, ("-C", "--clear"), "clear_trace", "start with a clear trace"),
     Switch(APP, ("-u", "--ultrasound"), "rays", "show the ultrasonic rays"),
     Switch(APP, ("-q", "--quiet"), "quiet", "never speak aloud"),
-    Switch(APP, ("--fps",), "fps", "most frames a second, 1 … 60", "N", _whole(1, 60)),
+    Switch(APP, ("--fps",), "fps", "most frames a second, 1 … 60", "N", whole(1, 60)),
     Switch(APP, ("--colors",), "colors", "auto, truecolor, 256, 16 or none", "DEPTH", _one_of(COLOR_DEPTHS)),
     Switch(PANEL, ("-O", "--output"), "panels_on", "show the output", panel="output"),
     Switch(PANEL, ("-A", "--array"), "panels_on", "show the sensor arrays", panel="arrays"),

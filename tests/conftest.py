@@ -1,0 +1,33 @@
+"""What all tests share: a home of their own, so that no test reads or writes the user's runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_home(tmp_path_factory: pytest.TempPathFactory) -> object:
+    """One home for the whole session, because preparing a mat for each test would be slow."""
+    patch = pytest.MonkeyPatch()
+    patch.setenv("TUISIM_HOME", str(tmp_path_factory.mktemp("home")))
+    patch.delenv("TUISIM_ASSETS", raising=False)
+    yield
+    patch.undo()
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty home for tests that look at what is stored."""
+    folder = tmp_path / "home"
+    monkeypatch.setenv("TUISIM_HOME", str(folder))
+    return folder
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The folder that holds the package, the mats and the programs."""
+    return ROOT

@@ -1,0 +1,121 @@
+"""The command line: arguments in, errors to exit codes, nothing else.
+
+To add a command: write its file in `commands/`, and add a line to `COMMANDS`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace, RawDescriptionHelpFormatter
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+
+from tuisim import __version__
+from tuisim.errors import ConfigError, TuisimError
+from tuisim.switches import SwitchParser
+
+COMMANDS: Mapping[str, str] = {
+    "open": "open the app (also without this word)",
+    "run": "run programs without the app",
+    "runs": "list, show, export or remove stored runs",
+    "backgrounds": "list the mats",
+    "programs": "list the example programs",
+    "profiles": "list the profiles and what each call costs",
+}
+"""Every command and what it does."""
+
+EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130
+EXIT_BROKEN_PIPE = 141
+"""What a shell shows for a program that SIGPIPE ended."""
+
+
+def _parser(command: str) -> SwitchParser:
+    """The parser of one command; that of `open` also introduces the others."""
+    if command == "open":
+        listing = "\n".join(f"  tuisim {name:<12} {what}" for name, what in COMMANDS.items())
+        parser = SwitchParser(
+            prog="tuisim",
+            usage="tuisim [PROGRAM] [switches]\n       tuisim COMMAND …",
+            description="A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.",
+            epilog=f"commands (each has its own --help):\n{listing}\n\n"
+            "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, holds switches too;\n"
+            "those given here win.",
+            formatter_class=RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
+        parser.add_argument("program", nargs="?", metavar="PROGRAM", help="a Python file, or an example's name")
+        parser.add_argument("--version", action="version", version=f"tuisim {__version__}")
+        parser.add_switches()
+        return parser
+    what = f"{COMMANDS[command].capitalize()}."
+    parser = SwitchParser(prog=f"tuisim {command}", description=what, allow_abbrev=False)
+    import_module(f"tuisim.commands.{command}").add_arguments(parser)
+    return parser
+
+
+def _open(arguments: Namespace) -> int:
+    """Start the app."""
+    from tuisim.commands.prepare import prepare
+
+    prepared = prepare(arguments.program, arguments)
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise ConfigError("the app needs a terminal", "use `tuisim run PROGRAM` where there is none")
+    from tuisim.ui.app import run_app
+    from tuisim.ui.session import AppSettings
+
+    settings = prepared.settings
+    run_app(
+        AppSettings(
+            spec=prepared.spec,
+            program=prepared.program,
+            background=prepared.spec.world.background,
+            panels_on=frozenset(settings.panels_on),
+            panels_off=frozenset(settings.panels_off),
+            autorun=settings.autorun,
+            rays=settings.rays,
+            speed=1.0 if settings.speed is None else settings.speed,
+            fps=settings.fps,
+            colors=settings.colors,
+        )
+    )
+    return 0
+
+
+def _dispatch(words: Sequence[str]) -> int:
+    command, rest = (words[0], words[1:]) if words and words[0] in COMMANDS else ("open", words)
+    # Intermixed, because switches may stand between two programs.
+    arguments = _parser(command).parse_intermixed_args(rest)
+    if command == "open":
+        return _open(arguments)
+    return int(import_module(f"tuisim.commands.{command}").execute(arguments))
+
+
+def _silence_stdout() -> None:
+    """Keep the interpreter from complaining about a closed pipe when it flushes at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def run_command(words: Sequence[str]) -> int:
+    """Run one command and return its exit code; expected errors become one line on stderr.
+
+    Args:
+        words: The command line without the program's own name.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        # A terminal without UTF-8 must not turn a program's output into an error of ours.
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        code = _dispatch(words)
+        sys.stdout.flush()
+        return code
+    except TuisimError as error:
+        print("tuisim:", " ".join(str(error).split("\n")), file=sys.stderr)
+        return error.exit_code
+    except BrokenPipeError:
+        _silence_stdout()
+        return EXIT_BROKEN_PIPE
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED

@@ -1,0 +1,78 @@
+"""How a run ended, for the shell: exit code, last-state line, JSON object."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+from tuisim.datalog.records import STDERR, STDOUT
+from tuisim.datalog.runfile import RunEnd, StoredRun
+from tuisim.datalog.samples import parse_sample
+from tuisim.protocol import Ended
+
+EXIT_RAISED, EXIT_LIMIT, EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 1, 3, 130, 141
+LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit"})
+"""The ends of a run that a limit brought about."""
+
+NS_PER_S = 1_000_000_000
+
+
+def exit_code_of(ended: Ended | RunEnd) -> int:
+    """Return the shell's exit code for the end of a run."""
+    if ended.end == "finished":
+        return EXIT_RAISED if ended.exit_code else 0
+    return EXIT_LIMIT if ended.end in LIMIT_ENDS else EXIT_RAISED
+
+
+def describe(run: StoredRun) -> dict[str, Any]:
+    """Return a stored run as plain data: what it was, how it ended, where the robot is, what it logged."""
+    last = run.telemetry.last()
+    end = run.end
+    printed = [row.text for row in run.output.all_rows() if row.stream == STDOUT]
+    return {
+        "run": run.number,
+        "id": run.id,
+        "created": run.created,
+        "program": run.program.name,
+        "path": run.program.path,
+        "background": run.spec.world.background,
+        "robot": run.spec.robot.name,
+        "profile": run.spec.profile.name,
+        "seed": run.spec.seed,
+        "state": run.state,
+        "tick": last.tick if last else 0,
+        "time_s": (end.time_ns if end else last.tick * NS_PER_S // run.spec.profile.tick_hz if last else 0) / NS_PER_S,
+        "x_mm": last.x_mm if last else run.spec.world.start.x_mm,
+        "y_mm": last.y_mm if last else run.spec.world.start.y_mm,
+        "heading_deg": last.heading_deg if last else run.spec.world.start.heading_deg,
+        "lines": len(printed),
+        "samples": sum(parse_sample(text) is not None for text in printed),
+        "summary": end.summary if end else "",
+        "error": end.error if end else "",
+        "error_line": end.error_line if end else 0,
+        "notes": list(run.notes),
+    }
+
+
+def last_state(facts: dict[str, Any]) -> str:
+    """Return the line that a run ends with, from what `describe` returned."""
+    state = facts["state"].replace("_", " ")
+    what = f"{state}: {facts['summary']}" if facts["summary"] and facts["state"] != "finished" else state
+    samples = f"{facts['samples']} sample{'s' * (facts['samples'] != 1)}"
+    return (
+        f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
+        f"x {facts['x_mm']:.2f} mm, y {facts['y_mm']:.2f} mm, heading {facts['heading_deg']:.2f}° · "
+        f"{samples} · run {facts['run']}"
+    )
+
+
+def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
+    """Print how a run ended: the program's own traceback and the last state on stderr, or JSON on stdout."""
+    facts = describe(run)
+    if facts["error"] and not any(row.stream == STDERR for row in run.output.all_rows()):
+        print(facts["error"].rstrip("\n"), file=sys.stderr)
+    if as_json:
+        print(json.dumps({**facts, "exit_code": exit_code}), flush=True)
+    else:
+        print(last_state(facts), file=sys.stderr)

@@ -1,0 +1,96 @@
+"""`tuisim run`: programs without the app, one after another."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from collections.abc import Sequence
+
+from tuisim.commands import outcome
+from tuisim.commands.follow import Follower
+from tuisim.commands.prepare import Prepared, prepare
+from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
+from tuisim.datalog.runfile import StoredRun
+from tuisim.datalog.store import RunStore
+from tuisim.errors import ConfigError
+from tuisim.host import RunOptions, start_run
+from tuisim.switches import SwitchParser, number
+
+MAX_TIME_LIMIT_S = 1e6
+DEFAULT_TIME_LIMIT_S = 600.0
+
+
+def add_arguments(parser: SwitchParser) -> None:
+    """Declare the arguments of `tuisim run`."""
+    limit = number(0.001, MAX_TIME_LIMIT_S)
+    parser.description = (
+        "Run programs without the app. What a program prints goes to stdout, the rest to stderr. "
+        "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit; the worst of several."
+    )
+    parser.add_argument("programs", nargs="+", metavar="PROGRAM", help="a Python file, or an example's name")
+    add = parser.add_argument_group("data and limits").add_argument
+    add("--export", action="append", default=[], metavar="FILE",
+        help=f"write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated")  # fmt: skip
+    add("--telemetry", metavar="FILE", help="write every tick of the one program")
+    add("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", type=lambda text: limit(text, "--timeout"),
+        help=f"simulated seconds allowed ({DEFAULT_TIME_LIMIT_S:g})")  # fmt: skip
+    add("--input", action="append", default=[], metavar="TEXT", help="answer to an input(); may be repeated")
+    add("--json", action="store_true", help="one JSON object a program on stdout; what programs print goes to stderr")
+    parser.add_switches()
+
+
+def execute(arguments: Namespace) -> int:
+    """Run the programs and return the worst exit code.
+
+    Raises:
+        ConfigError: a program or a switch is wrong; nothing was run.
+        ExportError: a target cannot be written; checked before anything is run.
+        HostError: a child process could not be started or spoke nonsense.
+    """
+    # All input is checked before the first program runs.
+    prepared = [prepare(word, arguments) for word in arguments.programs]
+    telemetry = arguments.telemetry
+    for target in (*arguments.export, telemetry):
+        if target is not None:
+            check_target(target)
+    if telemetry is not None and len(prepared) > 1:
+        raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
+    store = RunStore()
+    code, done = _run_all(prepared, arguments, store)
+    for target in arguments.export:
+        export_samples(done, target)
+    if telemetry is not None:
+        export_telemetry(done[0], telemetry)
+    return code
+
+
+def _run_all(prepared: Sequence[Prepared], arguments: Namespace, store: RunStore) -> tuple[int, list[StoredRun]]:
+    """Run one after another until all are done or the user interrupts; return exit code and runs."""
+    done: list[StoredRun] = []
+    code = 0
+    for one in prepared:
+        exit_code, run_id = _run_one(one, arguments, store)
+        done.append(store.load_run(run_id))
+        outcome.report(done[-1], exit_code, as_json=arguments.json)
+        code = max(code, exit_code)
+        if exit_code in (outcome.EXIT_INTERRUPTED, outcome.EXIT_BROKEN_PIPE):
+            break
+    return code, done
+
+
+def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int, str]:
+    """Run one program to its end and return exit code and run id."""
+    assert one.program is not None
+    speed = one.settings.speed or 0.0
+    options = RunOptions(
+        live=speed > 0,
+        speed=speed,
+        time_limit_s=arguments.timeout,
+        answers=tuple(arguments.input),
+    )
+    handle = start_run(one.program, one.spec, options, store)
+    try:
+        ended, cut = Follower(handle, sys.stderr if arguments.json else sys.stdout).to_the_end()
+    finally:
+        handle.close()
+    return cut or outcome.exit_code_of(ended), handle.run_id

@@ -1,0 +1,135 @@
+"""`tuisim runs`: the stored runs."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from tuisim.commands.outcome import describe, last_state
+from tuisim.commands.tables import table
+from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
+from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
+from tuisim.datalog.runfile import StoredRun
+from tuisim.datalog.store import RunStore
+from tuisim.errors import ConfigError
+from tuisim.switches import SwitchParser, nearest
+
+ACTIONS = ("list", "show", "rm", "export")
+STREAMS = {STDOUT: "stdout", STDERR: "stderr", SPEECH: "speech", INPUT: "input"}
+_MARKS = {STDOUT: "", STDERR: "! ", SPEECH: "says: ", INPUT: "> "}
+SHORTEST = 40
+"""Characters of a summary in the list."""
+
+
+def add_arguments(parser: SwitchParser) -> None:
+    """Declare the arguments of `tuisim runs`."""
+    parser.usage = (
+        "tuisim runs [list] [--json]\n"
+        "       tuisim runs show RUN… [--json]\n"
+        "       tuisim runs rm RUN…\n"
+        "       tuisim runs export RUN… FILE… [--telemetry FILE]"
+    )
+    parser.description = "A RUN is its number, its id or the start of it, the folder's path, or `last`."
+    parser.add_argument("action", nargs="?", default="list", metavar="list|show|rm|export", help="what to do")
+    parser.add_argument("words", nargs="*", metavar="RUN", help=f"runs; for export also files: {', '.join(EXPORTERS)}")
+    parser.add_argument("--telemetry", metavar="FILE", help="export every tick of the one run")
+    parser.add_argument("--json", action="store_true", help="as JSON")
+
+
+def execute(arguments: Namespace) -> int:
+    """Do what `action` says.
+
+    Raises:
+        ConfigError: no such action, or arguments that it cannot use.
+        LogError: no such run.
+        ExportError: a target cannot be written.
+    """
+    action, words, store = arguments.action, arguments.words, RunStore()
+    match action:
+        case "list" if not words:
+            _list(store, as_json=arguments.json)
+        case "show" if words:
+            for run in _load(store, words):
+                _show(run, as_json=arguments.json)
+        case "rm" if words:
+            # All are looked up before the first is gone.
+            for found in [store.find(word) for word in words]:
+                store.remove(found.id)
+        case "export":
+            _export(store, words, arguments.telemetry)
+        case _ if action not in ACTIONS:
+            raise ConfigError(f"no such action {action!r}", nearest(action, ACTIONS), key="runs")
+        case _:
+            raise ConfigError("which run?" if not words else "takes no run", "see `tuisim runs --help`", key=action)
+    return 0
+
+
+def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
+    return [store.load_run(Path(word) if "/" in word else word) for word in words]
+
+
+def _list(store: RunStore, *, as_json: bool) -> None:
+    runs = store.runs()
+    if as_json:
+        print(json.dumps([asdict(run) for run in runs]))
+    elif not runs:
+        print(f"no runs yet in {store.home}")
+    else:
+        rows = [
+            (
+                *(run.number, run.created[:19].replace("T", " "), run.program, run.background, run.profile, run.seed),
+                *(run.end, f"{run.time_s or 0:.2f}", run.samples or 0, _cut(run.summary), run.tags),
+            )
+            for run in runs
+        ]
+        heads = ("RUN", "UTC", "PROGRAM", "MAT", "PROFILE", "SEED", "END", "SECONDS", "SAMPLES", "", "")
+        print(table(heads, rows))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= SHORTEST else text[: SHORTEST - 1] + "…"
+
+
+def _plain(row: OutputRow) -> dict[str, object]:
+    return {"time_s": row.time_ns / 1e9, "line": row.line, "stream": STREAMS[row.stream], "text": row.text}
+
+
+def _show(run: StoredRun, *, as_json: bool) -> None:
+    facts = describe(run)
+    rows = run.output.all_rows()
+    if as_json:
+        print(json.dumps(facts | {"output": [_plain(row) for row in rows]}))
+        return
+    print(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
+          f"seed {facts['seed']}")  # fmt: skip
+    print(last_state(facts))
+    for note in facts["notes"]:
+        print(f"note: {note}")
+    for row in rows:
+        print(f"{row.time_ns / 1e9:10.3f} s  {_MARKS[row.stream]}{row.text}")
+    if facts["error"]:
+        print(facts["error"].rstrip("\n"))
+
+
+def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> None:
+    files = [Path(word) for word in words if Path(word).suffix.lower() in EXPORTERS]
+    names = [word for word in words if Path(word).suffix.lower() not in EXPORTERS]
+    if not names or not (files or telemetry is not None):
+        hint = f"tuisim runs export RUN… FILE…, a file ends in {', '.join(EXPORTERS)}"
+        raise ConfigError("needs a run and a file", hint, key="export")
+    if telemetry is not None and len(names) > 1:
+        raise ConfigError("takes one run", f"got {len(names)}", key="--telemetry")
+    for target in (*files, telemetry):
+        if target is not None:
+            check_target(target)
+    runs = _load(store, names)
+    for note in (note for run in runs for note in run.notes):
+        print(f"note: {note}", file=sys.stderr)
+    for file in files:
+        export_samples(runs, file)
+    if telemetry is not None:
+        export_telemetry(runs[0], telemetry)
