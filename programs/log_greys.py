@@ -9,8 +9,10 @@ sensor_val = colorLeft.reflected_light_intensity_pc
 print('Colour: ' + str(sensor_val))
 
 while sensor_val > 0:
+    time.sleep(0.1)
     sensor_val = colorLeft.reflected_light_intensity_pc
     print('Colour: ' + str(sensor_val))
-    time.sleep(0.1)
 
+# One last row where the robot has come to rest.
 tank_drive.off()
+print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))

@@ -45,6 +45,8 @@ class ProfileSpec:
     """A timed move does not move in the tick at which its time is up."""
     direction_from_set_point: bool = False
     """A move to an absolute position goes the way of the set point's sign, not of the difference."""
+    chain_relative_moves: bool = True
+    """A relative move that follows another counts from the other's target, not from the position."""
     pair_tail_ns: int = 0
     """How long a blocking call on two motors stands still after the move."""
     forward_noise_only: bool = False
@@ -72,6 +74,7 @@ NBEV3DEVSIM = ProfileSpec(
     keep_speed_when_stopped=True,
     timed_stop_skips_tick=True,
     direction_from_set_point=True,
+    chain_relative_moves=False,
     pair_tail_ns=110 * MS,
     forward_noise_only=True,
     ultrasonic_period_ticks=3,

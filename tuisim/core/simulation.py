@@ -125,6 +125,11 @@ class Simulation:
             return -(-end_ns * self._hz // NS_PER_S)
         return self.ticks_at(end_ns)
 
+    def rewrite_record(self) -> None:
+        """Write the present tick's record again, after a change from outside."""
+        self._sink.count -= 1
+        self._record()
+
     # Moving on
 
     def advance(self, ticks: int, until_change: bool = False) -> int:

@@ -1,0 +1,392 @@
+"""Parent side of a run: starts the child, reads its events, sends commands, stops it.
+
+Nothing here blocks unless it is called `wait`, and nothing waits on the display: the
+child writes its recording by itself, and whoever wants to see it reads the run folder.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from tuisim import assets
+from tuisim.core.spec import RunSpec
+from tuisim.datalog.store import RunStore
+from tuisim.datalog.views import OutputView, TelemetryView
+from tuisim.errors import HostError
+from tuisim.fields import FieldFiles, prepare
+from tuisim.protocol import (
+    EVENTS,
+    PROTOCOL_VERSION,
+    Ended,
+    InputWanted,
+    Message,
+    Paused,
+    Resumed,
+    Started,
+    Stop,
+)
+
+STUCK_AFTER_S = 0.4
+"""A child that has not ended so long after a stop is killed."""
+ASK_AGAIN_S = 0.05
+ENDED_CHILD_S = 0.2
+"""How long a child may take to go after its last event."""
+STALL_FACTOR = 2.0
+"""A headless child without progress for so many stall limits of real time is stuck in C code."""
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What is run."""
+
+    name: str
+    """File name as shown to the user."""
+    text: str
+    prelude: str = "none"
+    """none, imports or preloaded."""
+    path: str = ""
+    """Where it came from; empty if it is in no file."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """How a run is carried out; nothing here changes what it logs, limits and answers apart."""
+
+    live: bool = False
+    """Paced against the wall clock and without limits; otherwise as fast as possible."""
+    speed: float = 1.0
+    """1.0 is real time, 0 as fast as possible."""
+    start_paused: bool = False
+    time_limit_s: float = 600.0
+    """Simulated; headless only."""
+    stall_limit_s: float = 60.0
+    """CPU seconds in one instant of simulated time; headless only."""
+    answers: tuple[str, ...] = ()
+    """Scripted answers to input(); headless only."""
+
+
+class _Envelope(msgspec.Struct):
+    kind: str
+
+
+_EVENT_FIELDS: Mapping[str, type[Any]] = {
+    kind: msgspec.defstruct(
+        f"{event.__name__}Fields",
+        [(field.name, {"int": int, "str": str, "bool": bool}[str(field.type)]) for field in fields(event)],
+    )
+    for kind, event in EVENTS.items()
+}
+
+
+def decode_event(line: bytes) -> Message:
+    """Return the event in one line from the child.
+
+    Raises:
+        HostError: the line is not an event of this protocol.
+    """
+    try:
+        event = EVENTS[msgspec.json.decode(line, type=_Envelope).kind]
+        values = msgspec.json.decode(line, type=_EVENT_FIELDS[event.kind])
+    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError) as error:
+        raise HostError(f"the program's process sent something that is no message: {line[:60]!r}") from error
+    return event(**msgspec.structs.asdict(values))
+
+
+class RunHandle:
+    """One run: its child process, pipes and recording. Made by `start_run`."""
+
+    def __init__(self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunStore) -> None:
+        self.program, self.spec, self.field = program, spec, field
+        self._options, self._store = options, store
+        run = store.new_run(program, spec, field.to_plain(), asdict(options), options.live)
+        self.run_id, self.number, self.folder = run.id, run.number, run.folder
+        self.ended: Ended | None = None
+        self.paused = False
+        self.waiting_for_input: str | None = None
+        self.telemetry, self.output = TelemetryView(self.folder), OutputView(self.folder)
+        self._rest = b""
+        self._end_of_events = False
+        self._stop_at: float | None = None
+        self._asked_at = 0.0
+        self._progress = (0, time.monotonic())
+        self._stack_asked = False
+        self._announced: Ended | None = None
+        self._announced_at = 0.0
+        self._start()
+
+    def _start(self) -> None:
+        command_read, self._command_fd = os.pipe()
+        self._event_fd, event_write = os.pipe()
+        lifeline_read, self._lifeline_fd = os.pipe()
+        inherited = (command_read, event_write, lifeline_read)
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-s", "-P", "-m", "tuisim.runtime", str(self.folder), *map(str, inherited)],
+                pass_fds=inherited,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=(self.folder / "child.log").open("wb"),
+                env=_child_environment(),
+                start_new_session=True,
+            )
+        finally:
+            for fd in inherited:
+                os.close(fd)
+        os.set_blocking(self._event_fd, False)
+        os.set_blocking(self._command_fd, False)
+
+    # Events
+
+    def fileno(self) -> int:
+        """Return the event pipe, for `select` or an event loop's reader."""
+        return self._event_fd
+
+    def pump(self) -> list[Message]:
+        """Return the events that have come in, without waiting; `Ended` comes once, as the last.
+
+        Must be called now and then while the run is on: it also kills a child that does not stop.
+
+        Raises:
+            HostError: the child sent rubbish; it has been killed.
+        """
+        if self.ended is not None:
+            return []
+        events = self._read_events()
+        for event in events:
+            match event:
+                case Started(protocol=number) if number != PROTOCOL_VERSION:
+                    self.kill()
+                    raise HostError(f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}")
+                case Paused():
+                    self.paused = True
+                case Resumed():
+                    self.paused = False
+                case InputWanted(prompt=prompt):
+                    self.waiting_for_input = prompt
+                case Ended():
+                    self._announced, self._announced_at = event, time.monotonic()
+        self._press_on()
+        final = self._final_event()
+        kept = [event for event in events if not isinstance(event, Ended)]
+        if final is None:
+            return kept
+        self._finish(final)
+        return [*kept, final]
+
+    def _read_events(self) -> list[Message]:
+        chunks = []
+        while not self._end_of_events:
+            try:
+                chunk = os.read(self._event_fd, 65536)
+            except BlockingIOError:
+                break
+            self._end_of_events = not chunk
+            chunks.append(chunk)
+        *lines, self._rest = (self._rest + b"".join(chunks)).split(b"\n")
+        try:
+            return [decode_event(line) for line in lines]
+        except HostError:
+            self.kill()
+            raise
+
+    def _final_event(self) -> Ended | None:
+        gone = self._process.poll() is not None
+        if self._announced is not None:
+            if not gone and time.monotonic() - self._announced_at > ENDED_CHILD_S:
+                self._kill_group()
+            return self._announced if gone else None
+        if not gone:
+            return None
+        last = self.telemetry.last()
+        tick = last.tick if last else 0
+        time_ns = -(-tick * 1_000_000_000 // self.spec.profile.tick_hz)
+        line = self._stuck_line()
+        if self._stop_at is not None:
+            where = f" in line {line}, where it was stuck" if line else ""
+            return Ended("stopped", tick, time_ns, summary=f"stopped{where}", error_line=line)
+        return self._crash(tick, time_ns, line)
+
+    def _crash(self, tick: int, time_ns: int, line: int) -> Ended:
+        code = self._process.returncode
+        if self._stack_asked:
+            summary = f"stuck in line {line}: no simulated time passed" if line else "stuck: no simulated time passed"
+            return Ended("stalled", tick, time_ns, 1, summary, error_line=line)
+        if code < 0:
+            summary = f"the program's process was ended by {signal.Signals(-code).name}"
+        else:
+            log = (self.folder / "child.log").read_text("utf-8", "replace").strip()
+            summary = f"the program's process ended with exit status {code}"
+            summary += f": {log.splitlines()[-1]}" if log else ""
+        return Ended("crashed", tick, time_ns, 1, summary, error_line=line)
+
+    def _finish(self, final: Ended) -> None:
+        self.ended = final
+        self.paused, self.waiting_for_input = False, None
+        for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
+            os.close(fd)
+        for name in ("child.log", "stack.txt"):
+            path = self.folder / name
+            if path.exists() and not path.stat().st_size:
+                path.unlink()
+        self._store.finish(self.run_id, final)
+
+    def wait(self, timeout_s: float | None = None) -> Ended | None:
+        """Wait until the run is over.
+
+        Returns:
+            How it ended, None if it is still going on after `timeout_s`.
+        """
+        until = None if timeout_s is None else time.monotonic() + timeout_s
+        while self.ended is None:
+            rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - time.monotonic())
+            if rest <= 0:
+                break
+            self.wait_for_event(rest)
+            self.pump()
+        return self.ended
+
+    def wait_for_event(self, timeout_s: float) -> None:
+        """Wait until the child has said something or is gone, at most so long."""
+        if self._end_of_events:
+            try:
+                self._process.wait(timeout_s)
+            except subprocess.TimeoutExpired:
+                return
+        else:
+            select.select([self._event_fd], [], [], timeout_s)
+
+    # Commands
+
+    def send(self, command: Message) -> None:
+        """Send a command; after the end of the run there is nobody to hear it."""
+        if self.ended is not None or self._announced is not None:
+            return
+        if command.kind == "answer":
+            self.waiting_for_input = None
+        try:
+            os.write(self._command_fd, command.line())
+        except (BrokenPipeError, BlockingIOError):
+            # The child is gone, or so stuck that its pipe is full: pump() finds out.
+            return
+        self._signal(signal.SIGUSR1)
+
+    def stop(self) -> None:
+        """Ask the program to stop; `pump` or `wait` kill it if it does not."""
+        if self._stop_at is None:
+            self._stop_at = time.monotonic()
+        self._asked_at = time.monotonic()
+        self.send(Stop())
+
+    def kill(self) -> None:
+        """End the child at once; what it has written stays."""
+        if self._stop_at is None:
+            self._stop_at = time.monotonic()
+        self._kill_group()
+
+    def close(self) -> None:
+        """Make sure that the child is gone and the run is recorded as ended."""
+        if self.ended is None:
+            self.kill()
+            self._process.wait()
+            while self.ended is None:
+                self.pump()
+
+    def _press_on(self) -> None:
+        """Repeat a stop that has not been heard, and kill what is stuck."""
+        now = time.monotonic()
+        if self._announced is not None:
+            return
+        if self._stop_at is not None:
+            if now - self._stop_at > STUCK_AFTER_S:
+                self._read_stack_and_kill()
+            elif now - self._asked_at > ASK_AGAIN_S:
+                self._asked_at = now
+                self._signal(signal.SIGUSR1)
+        elif not self._options.live and self._options.stall_limit_s:
+            tick = self.telemetry.count
+            if tick != self._progress[0]:
+                self._progress = (tick, now)
+            elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
+                self._read_stack_and_kill()
+
+    def _read_stack_and_kill(self) -> None:
+        if not self._stack_asked:
+            # faulthandler writes the stack even from inside a C call, within this one signal.
+            self._stack_asked = self._stop_at is None
+            self._signal(signal.SIGUSR2)
+            time.sleep(0.005)
+        self._kill_group()
+
+    def _stuck_line(self) -> int:
+        """Line of the program in the stack that a stuck child wrote, 0 if it wrote none."""
+        try:
+            stack = (self.folder / "stack.txt").read_text("utf-8", "replace")
+        except OSError:
+            return 0
+        file = self.program.path or self.program.name
+        for line in stack.splitlines():
+            if f'"{file}"' in line:
+                return int(line.partition(", line ")[2].partition(" ")[0] or 0)
+        return 0
+
+    def _signal(self, number: int) -> None:
+        if self._process.poll() is None:
+            self._process.send_signal(number)
+
+    def _kill_group(self) -> None:
+        try:
+            os.killpg(self._process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            return
+
+
+def _child_environment() -> dict[str, str]:
+    """The child's environment: no surprises from the user's, the same hashes every time."""
+    kept = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR") if name in os.environ}
+    package_folder = str(Path(__file__).parent.parent)
+    return {
+        **kept,
+        "PYTHONPATH": package_folder,
+        "PYTHONHASHSEED": "0",
+        "PYTHONUTF8": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "OMP_NUM_THREADS": "1",
+        "TZ": "UTC",
+        "LANG": "C.UTF-8",
+    }
+
+
+def field_files(spec: RunSpec) -> FieldFiles:
+    """Prepare the mat of a run for its robot's sensors, or find it prepared.
+
+    Raises:
+        BackgroundError: there is no such mat, or its image cannot be read.
+    """
+    return prepare(assets.background(spec.world.background).image, {s.diameter_mm for s in spec.robot.color_sensors})
+
+
+def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:
+    """Start a program.
+
+    Args:
+        program: What to run.
+        spec: Robot, world, profile and seed.
+        options: Live or headless, limits, answers.
+        store: Where the run is kept, by default the user's own.
+
+    Raises:
+        BackgroundError: there is no such mat.
+        LogError: the run cannot be stored.
+    """
+    return RunHandle(program, spec, field_files(spec), options, store or RunStore())

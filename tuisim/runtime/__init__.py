@@ -1,0 +1,1 @@
+"""The child process: runs one program against one simulation on virtual time."""

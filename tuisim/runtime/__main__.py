@@ -1,0 +1,115 @@
+"""Entry of the child: `python -m tuisim.runtime FOLDER COMMAND_FD EVENT_FD LIFELINE_FD`."""
+
+from __future__ import annotations
+
+from tuisim.runtime import real  # isort: skip - must come first: it keeps the real clock
+
+import fcntl
+import os
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+from tuisim import protocol
+from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.datalog.records import OutputWriter, TelemetryWriter
+from tuisim.fields import open_field
+from tuisim.runtime.channel import Channel
+from tuisim.runtime.clock import finish_datetime, finish_random, finish_selectors, loop_hook, patch_time
+from tuisim.runtime.config import RunConfig, read_config
+from tuisim.runtime.guard import limit_memory, refuse_processes, refuse_subprocess
+from tuisim.runtime.interrupts import Interrupts, die_with_host
+from tuisim.runtime.output import Output
+from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
+from tuisim.runtime.steering import Steering
+
+LOOP_TURNS = 500
+LOOP_COST_NS = 5_000_000
+"""So many turns of loops in which no time passed cost so much."""
+
+
+def main(arguments: list[str]) -> NoReturn:
+    """Do the run that a folder describes, then end the process."""
+    folder = Path(arguments[0])
+    command_fd, event_fd, lifeline_fd = map(int, arguments[1:4])
+    die_with_host(lifeline_fd)
+    lock_fd = os.open(folder / "lock", os.O_RDWR | os.O_CREAT, 0o644)
+    fcntl.flock(lock_fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    Child(folder, read_config(folder), Channel(command_fd, event_fd)).run()
+
+
+class Child:
+    """One run, put together.
+
+    Args:
+        folder: Run folder.
+        config: What to run.
+        channel: Pipes to the host.
+    """
+
+    def __init__(self, folder: Path, config: RunConfig, channel: Channel) -> None:
+        self._folder, self._config, self._channel = folder, config, channel
+        self._telemetry = TelemetryWriter(folder)
+        self._sim = Simulation(config.spec, self._telemetry)
+        self._output = Output(OutputWriter(folder))
+        steering = Steering(channel, folder, config.live, config.speed, config.start_paused)
+        limits = Limits()
+        if not config.live:
+            limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
+        file = config.path or config.name
+        self._session = Session(
+            self._sim, open_field(config.field), self._output, channel, steering, limits, file
+        )
+        session = self._session
+        self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
+        self._output.after_write = self._after_write
+
+    def _after_write(self) -> None:
+        if self._session.slow & (ATTENTION | STOPPING):
+            self._session.checkpoint()
+
+    def run(self) -> NoReturn:
+        """Run the program and end the process."""
+        # Imported here: threads must be on the baton before anything else imports `threading`.
+        from tuisim.runtime.baton import Baton
+        from tuisim.runtime.program import Outcome, ProgramRunner
+        from tuisim.runtime.threads import patch_threads
+        from tuisim.shim.install import install
+
+        session = self._session
+        turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
+        interrupts = Interrupts(session, frozenset({turn.__code__}))
+        baton = Baton(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
+        patch_time(session)
+        patch_threads(baton)
+        refuse_processes()
+        limit_memory()
+        install(
+            session,
+            {
+                "datetime": lambda module: finish_datetime(session, module),
+                "random": lambda module: finish_random(session, module),
+                "selectors": lambda module: finish_selectors(session, module),
+                "subprocess": refuse_subprocess,
+            },
+        )
+
+        def leave(outcome: Outcome) -> NoReturn:
+            interrupts.remove()
+            self._end(outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line)
+
+        runner = ProgramRunner(self._config, session, self._output, baton, turn, leave)
+        interrupts.install(self._folder)
+        self._channel.send(protocol.Started(protocol.PROTOCOL_VERSION, os.getpid()))
+        leave(runner.run())
+
+    def _end(self, end: str, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
+        self._telemetry.close()
+        self._output.close()
+        self._channel.send(
+            protocol.Ended(end, self._sim.tick, self._session.now, exit_code, summary, error, error_line)
+        )
+        real.exit_process(0)
+
+
+main(sys.argv[1:])

@@ -1,0 +1,52 @@
+"""What a run folder says about the run to do."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from tuisim.core.spec import RunSpec, from_plain
+from tuisim.fields import FieldFiles
+
+
+@dataclass(frozen=True, slots=True)
+class RunConfig:
+    """The part of `run.json` that the child needs."""
+
+    spec: RunSpec
+    field: FieldFiles
+    name: str
+    path: str
+    text: str
+    prelude: str
+    live: bool
+    speed: float
+    start_paused: bool
+    time_limit_s: float
+    stall_limit_s: float
+    answers: tuple[str, ...]
+
+
+def read_config(folder: Path) -> RunConfig:
+    """Read `run.json`.
+
+    Raises:
+        OSError, ValueError, KeyError, TypeError: the folder was not prepared by the host.
+    """
+    data = json.loads((folder / "run.json").read_text("utf-8"))
+    program, options = data["program"], data["options"]
+    return RunConfig(
+        spec=from_plain(data["spec"]),
+        field=FieldFiles.from_plain(data["field"]),
+        name=program["name"],
+        path=program["path"],
+        text=program["text"],
+        prelude=program["prelude"],
+        live=options["live"],
+        speed=options["speed"],
+        start_paused=options["start_paused"],
+        time_limit_s=options["time_limit_s"],
+        stall_limit_s=options["stall_limit_s"],
+        answers=tuple(options["answers"]),
+    )

@@ -1,0 +1,47 @@
+"""What a program may not do: start processes, or take all the memory. Not a sandbox."""
+
+from __future__ import annotations
+
+import os
+import resource
+import types
+from typing import Any, NoReturn
+
+MEMORY_LIMIT_BYTES = 1 << 30
+"""Address space of the child; beyond it the program gets a MemoryError."""
+
+_PROCESS_CALLS = (
+    "fork", "forkpty", "system", "popen", "posix_spawn", "posix_spawnp",
+    "execv", "execve", "execvp", "execvpe", "execl", "execle", "execlp", "execlpe",
+    "spawnv", "spawnve", "spawnvp", "spawnvpe", "spawnl", "spawnle", "spawnlp", "spawnlpe",
+)  # fmt: skip
+
+
+def limit_memory() -> None:
+    """Give the process a limit of address space."""
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    wanted = MEMORY_LIMIT_BYTES if hard == resource.RLIM_INFINITY else min(hard, MEMORY_LIMIT_BYTES)
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
+    except (OSError, ValueError):
+        # macOS knows the limit but does not keep it; the run is merely less protected there.
+        return
+
+
+def _refusal(name: str) -> Any:
+    def refuse(*_args: object, **_kwargs: object) -> NoReturn:
+        raise PermissionError(f"a program on the simulated brick cannot start other processes: {name}")
+
+    return refuse
+
+
+def refuse_processes() -> None:
+    """Let the calls of `os` that start processes say that they are not allowed."""
+    for name in _PROCESS_CALLS:
+        if hasattr(os, name):
+            setattr(os, name, _refusal(f"os.{name}"))
+
+
+def refuse_subprocess(module: types.ModuleType) -> None:
+    """The same for `subprocess`, after its import."""
+    vars(module)["Popen"].__init__ = _refusal("subprocess.Popen")

@@ -1,0 +1,21 @@
+"""How a run is ended from outside the program."""
+
+from __future__ import annotations
+
+
+class StopProgram(BaseException):
+    """Unwinds the program. Not an `Exception`, so that ordinary handlers let it pass.
+
+    Args:
+        end: Why, as in `protocol.Ended.end`.
+        summary: One line for the user.
+    """
+
+    def __init__(self, end: str, summary: str) -> None:
+        super().__init__(summary)
+        self.end = end
+        self.summary = summary
+
+
+class Deadlock(RuntimeError):
+    """Every thread of the program waits for another one."""

@@ -1,0 +1,117 @@
+"""Signals: a command has come, the program must be stopped again, an instant takes too long.
+
+A handler may raise only in the program's own code. Inside the runtime it just sets a
+bit, so that core code is never unwound half way; whose code it is, the frames say.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import fcntl
+import os
+import signal
+import types
+from pathlib import Path
+
+from tuisim.runtime import real
+from tuisim.runtime.session import ATTENTION, Session
+
+PACKAGE_FOLDER = str(Path(__file__).parent.parent) + os.sep
+RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
+STALL_LOOK_S = 1.0
+STACK_FILE = "stack.txt"
+
+
+def die_with_host(lifeline_fd: int) -> None:
+    """Let the end of the host end this process at once, even inside a long C call.
+
+    Args:
+        lifeline_fd: Read end of a pipe that nothing is ever written to. When the host is
+            gone the pipe ends, and the kernel sends SIGIO, whose default is to kill.
+    """
+    fcntl.fcntl(lifeline_fd, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(lifeline_fd, fcntl.F_SETFL, fcntl.fcntl(lifeline_fd, fcntl.F_GETFL) | os.O_ASYNC)
+    if real.select_files([lifeline_fd], [], [], 0)[0]:
+        # The host went before the signal was asked for.
+        real.exit_process(1)
+
+
+class Interrupts:
+    """Signal handlers of one run.
+
+    Args:
+        session: The run.
+        soft_codes: Code objects of the runtime inside which a handler may raise all the same.
+    """
+
+    def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
+        self._session = session
+        self._soft_codes = soft_codes
+        self._timer_on = False
+        self.main_is_parked = False
+        """Whether the main thread waits for its turn, where raising is harmless."""
+        self._stall_now, self._stall_s = -1, 0.0
+
+    def install(self, folder: Path) -> None:
+        """Begin to listen.
+
+        Args:
+            folder: Run folder; SIGUSR2 writes the stack there, also from inside a long C call.
+        """
+        self._stack_file = (folder / STACK_FILE).open("w")
+        faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
+        signal.signal(signal.SIGUSR1, self._on_command)
+        signal.signal(signal.SIGALRM, self._on_command)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        if self._session.limits.stall_s:
+            signal.signal(signal.SIGVTALRM, self._on_stall)
+            signal.setitimer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
+
+    def remove(self) -> None:
+        """Stop listening: the program is over."""
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        for number in (signal.SIGUSR1, signal.SIGALRM, signal.SIGVTALRM):
+            signal.signal(number, signal.SIG_IGN)
+
+    def _on_command(self, _number: int, frame: types.FrameType | None) -> None:
+        session = self._session
+        session.slow |= ATTENTION
+        if self._may_raise(frame):
+            try:
+                session.checkpoint()
+            finally:
+                self._raise_again_later()
+
+    def _raise_again_later(self) -> None:
+        # A program that swallows the stop gets it again and again, until the host kills it.
+        if self._session.stop_reason is not None and not self._timer_on:
+            self._timer_on = True
+            signal.setitimer(signal.ITIMER_REAL, RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S)
+
+    def _on_stall(self, _number: int, frame: types.FrameType | None) -> None:
+        session = self._session
+        if session.now != self._stall_now:
+            self._stall_now, self._stall_s = session.now, 0.0
+            return
+        self._stall_s += STALL_LOOK_S
+        if self._stall_s < session.limits.stall_s:
+            return
+        line = session.program_line()
+        session.ask_stop("stalled", f"no simulated time passed in {self._stall_s:g} s of computing, in line {line}")
+        if self._may_raise(frame):
+            self._raise_again_later()
+            session.checkpoint()
+
+    def _may_raise(self, frame: types.FrameType | None) -> bool:
+        """Whether the program's own code, or the library it called, is what is being carried out."""
+        if self.main_is_parked or (frame is not None and frame.f_code in self._soft_codes):
+            return True
+        while frame is not None:
+            file = frame.f_code.co_filename
+            if file == self._session.program_file:
+                return True
+            if file.startswith(PACKAGE_FOLDER):
+                return False
+            frame = frame.f_back
+        return False

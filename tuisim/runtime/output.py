@@ -1,0 +1,85 @@
+"""What the program prints, line by line into the run folder."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+
+from tuisim.datalog.records import STDOUT, OutputWriter
+
+
+class Output:
+    """Rows of output, each with the time, tick and source line that wrote it.
+
+    Args:
+        writer: The file.
+    """
+
+    def __init__(self, writer: OutputWriter) -> None:
+        self._writer = writer
+        self.place: Callable[[], tuple[int, int, int]] = lambda: (0, 0, 0)
+        """Gives tick, simulated ns and source line; set once the session exists."""
+        self.after_write: Callable[[], None] = lambda: None
+
+    def row(self, text: str, stream: int) -> None:
+        """Write one row."""
+        tick, now, line = self.place()
+        self._writer.write(text.encode("utf-8", "replace"), tick, now, line, stream)
+
+    def close(self) -> None:
+        """Cut the file to its size."""
+        self._writer.close()
+
+
+class LineStream(io.TextIOBase):
+    """`sys.stdout` or `sys.stderr` of the program.
+
+    Args:
+        output: Where whole lines go.
+        stream: STDOUT or STDERR.
+    """
+
+    encoding = "utf-8"
+    errors = "replace"
+
+    def __init__(self, output: Output, stream: int = STDOUT) -> None:
+        self._output, self._stream = output, stream
+        self._part = ""
+
+    @property
+    def name(self) -> str:
+        """As the real stream has it."""
+        return "<stdout>" if self._stream == STDOUT else "<stderr>"
+
+    def writable(self) -> bool:
+        """Always."""
+        return True
+
+    def write(self, text: str) -> int:
+        """Take text; whole lines are written at once."""
+        if not isinstance(text, str):
+            raise TypeError(f"write() argument must be str, not {type(text).__name__}")
+        if "\n" not in text:
+            self._part += text
+            return len(text)
+        *lines, rest = (self._part + text).split("\n")
+        # Cleared first: should writing a row end the program, nothing is written twice.
+        self._part = rest
+        for line in lines:
+            self._output.row(line, self._stream)
+        self._output.after_write()
+        return len(text)
+
+    def flush(self) -> None:
+        """Whole lines are out already; a part of a line waits for its end."""
+
+    def finish(self) -> None:
+        """Write what has no newline yet."""
+        if self._part:
+            part, self._part = self._part, ""
+            self._output.row(part, self._stream)
+
+    def take_part(self) -> str:
+        """Return what has no newline yet, as written elsewhere from now on."""
+        part, self._part = self._part, ""
+        return part

@@ -1,0 +1,163 @@
+"""Runs the program: its streams, its input, its module, and how it ended."""
+
+from __future__ import annotations
+
+import builtins
+import os
+import sys
+import types
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from tuisim.core.simulation import NS_PER_S
+from tuisim.datalog.records import INPUT, STDERR
+from tuisim.errors import LogError
+from tuisim.protocol import InputWanted
+from tuisim.runtime.baton import Baton
+from tuisim.runtime.config import RunConfig
+from tuisim.runtime.halt import Deadlock, StopProgram
+from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program
+from tuisim.runtime.output import LineStream, Output
+from tuisim.runtime.report import report_error
+from tuisim.runtime.session import LIVE, Session
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How the program ended, as in `protocol.Ended`."""
+
+    end: str
+    exit_code: int = 0
+    summary: str = ""
+    error: str = ""
+    error_line: int = 0
+
+
+class ProgramRunner:
+    """Everything the program sees of the process it runs in.
+
+    Args:
+        config: The run.
+        session: The program's clock.
+        output: Where its lines go.
+        baton: Its threads.
+        loop_hook: Called at the top of each loop body.
+        leave: Ends the process at once, with an outcome.
+    """
+
+    def __init__(
+        self,
+        config: RunConfig,
+        session: Session,
+        output: Output,
+        baton: Baton,
+        loop_hook: Callable[[], None],
+        leave: Callable[[Outcome], NoReturn],
+    ) -> None:
+        self._config, self._session, self._output, self._baton = config, session, output, baton
+        self._leave = leave
+        self._answers = list(config.answers)
+        self.stdout, self.stderr = LineStream(output), LineStream(output, STDERR)
+        self._builtins: Any = builtins
+        setattr(builtins, LOOP_HOOK, loop_hook)
+
+    def run(self) -> Outcome:
+        """Run prelude and program to their end, whatever it is."""
+        try:
+            self._prepare()
+            self._execute()
+            self._baton.join_all()
+        except BaseException as error:
+            # Whatever a program lets escape is an outcome, not an error of ours.
+            return self._outcome_of(error)
+        finally:
+            self.stdout.finish()
+            self.stderr.finish()
+        return Outcome("finished")
+
+    def _prepare(self) -> None:
+        file = self._session.program_file
+        sys.stdout, sys.stderr = self.stdout, self.stderr
+        sys.argv = [file]
+        sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
+        sys.excepthook = self._thread_error
+        import threading
+
+        threading.excepthook = lambda args: self._thread_error(args.exc_type, args.exc_value, args.exc_traceback)
+        self._builtins.input = self._input
+        os._exit = self._exit_now
+
+    def _execute(self) -> None:
+        code = compile_program(self._config.text, self._session.program_file)
+        module = types.ModuleType("__main__")
+        module.__dict__.update(__file__=self._session.program_file, __builtins__=builtins)
+        sys.modules["__main__"] = module
+        # What is prepared for the program costs it nothing.
+        self._session.free += 1
+        exec(compile_prelude(self._config.prelude), module.__dict__)
+        self._session.free -= 1
+        exec(code, module.__dict__)
+
+    # Ends
+
+    def _outcome_of(self, error: BaseException) -> Outcome:
+        stop = self._session.stop_reason
+        if stop is not None:
+            return Outcome(stop.end, 0, stop.summary)
+        match error:
+            case SystemExit():
+                return self._exit_outcome(error.code)
+            case LogError():
+                return Outcome("output_limit", 0, error.message)
+            case MemoryError():
+                return self._raised(MemoryError("the program used up the memory it may have"), error.__traceback__)
+        return self._raised(error, error.__traceback__)
+
+    def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
+        report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
+        for line in report.text.rstrip("\n").split("\n"):
+            self._output.row(line, STDERR)
+        end = "deadlock" if isinstance(error, Deadlock) else "raised"
+        return Outcome(end, 1, report.summary, report.text, report.line)
+
+    def _exit_outcome(self, code: object) -> Outcome:
+        if code is None or isinstance(code, int):
+            number = int(code or 0)
+        else:
+            self._output.row(str(code), STDERR)
+            number = 1
+        return Outcome("finished", number, f"the program ended itself with exit code {number}" if number else "")
+
+    def _exit_now(self, status: int) -> NoReturn:
+        self.stdout.finish()
+        self.stderr.finish()
+        self._leave(self._exit_outcome(status))
+
+    def _thread_error(self, _kind: Any, error: BaseException | None, _trace: Any) -> None:
+        if error is None or isinstance(error, StopProgram):
+            return
+        report = report_error(error, self._session.program_file, self._config.text)
+        for line in report.text.rstrip("\n").split("\n"):
+            self._output.row(line, STDERR)
+
+    # Input
+
+    def _input(self, prompt: object = "") -> str:
+        """The program's input(): scripted answers, or the user's, while the world goes on."""
+        session = self._session
+        self.stdout.write(str(prompt))
+        asked = self.stdout.take_part()
+        if not session.slow & LIVE:
+            answer = self._answers.pop(0) if self._answers else None
+        else:
+            session.channel.send(InputWanted(asked))
+            tick_ns = NS_PER_S // session.sim.spec.profile.tick_hz
+            while not session.steering.answers:
+                session.spend(tick_ns)
+            answer = session.steering.answers.popleft()
+        if answer is None:
+            self._output.row(asked, INPUT)
+            raise EOFError("there is no further answer to input()")
+        self._output.row(asked + answer, INPUT)
+        return answer

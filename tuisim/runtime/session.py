@@ -1,0 +1,224 @@
+"""The session: the program's clock, and what happens when time passes.
+
+Time moves only in `_advance`. In a headless run with one thread the way there is short;
+any mode that needs more (live pacing, threads, a command, stopping) sets a bit in
+`slow`, so that it costs nothing while it is off.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tuisim.core.field import Field
+from tuisim.core.profile import MS
+from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.protocol import Spoke
+from tuisim.datalog.records import SPEECH
+from tuisim.runtime.channel import Channel
+from tuisim.runtime.halt import StopProgram
+from tuisim.runtime.output import Output
+from tuisim.runtime.steering import Steering
+
+LIVE, ATTENTION, THREADS, STOPPING = 1, 2, 4, 8
+"""Bits of `Session.slow`: paced or pausable, a command waits, more than one thread, unwinding."""
+
+COMMANDS_AN_INSTANT = 100
+COMMAND_BURST_NS = 10 * MS
+"""So many calls that cost nothing cost this much together."""
+
+CHUNK_TICKS = 2000
+"""A long wait is done in pieces of so many ticks, to look for commands in between."""
+
+STOP_GRACE_NS = 2 * NS_PER_S
+"""Simulated time that a program's own cleaning up gets."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What ends a headless run; 0 is no limit."""
+
+    time_ns: int = 0
+    stall_s: float = 0.0
+    """CPU seconds in one instant of simulated time."""
+
+
+class Session:
+    """Clock of one run.
+
+    Args:
+        sim: The simulation.
+        field: The mat.
+        output: Where printed lines go.
+        channel: Pipes to the host.
+        steering: Commands: pause, speed, user actions.
+        limits: When to give up.
+        program_file: File name of the program's own frames.
+    """
+
+    def __init__(
+        self,
+        sim: Simulation,
+        field: Field,
+        output: Output,
+        channel: Channel,
+        steering: Steering,
+        limits: Limits,
+        program_file: str,
+    ) -> None:
+        self.sim, self.field, self.output, self.channel, self.steering = sim, field, output, channel, steering
+        self.limits = limits
+        self.program_file = program_file
+        self.now = 0
+        self.free = 0
+        self.slow = LIVE if steering.live else 0
+        self._due = sim.due_ns(1)
+        self._limit_ns = limits.time_ns or 1 << 62
+        self._commands, self._commands_at = 0, -1
+        self.stop_reason: StopProgram | None = None
+        self._stop_raised_at: int | None = None
+        self.sleep_threaded: Callable[[int, bool], None] | None = None
+        """Set by the baton: waits until a time (or a motor change) while other threads run."""
+
+    # What the shim calls
+
+    def spend(self, duration_ns: int) -> None:
+        """Let time pass."""
+        until = self.now + duration_ns
+        if self.slow or until >= self._due:
+            self._pass(until, False)
+        else:
+            self.now = until
+
+    def charge(self, cost_ns: int) -> None:
+        """Let the cost of a call pass, unless calls are free now."""
+        if not self.free:
+            self.spend(cost_ns)
+
+    def command(self) -> None:
+        """Count a call that costs nothing; a burst of them costs a little."""
+        if self._commands_at != self.now:
+            self._commands_at, self._commands = self.now, 0
+        self._commands += 1
+        if self._commands >= COMMANDS_AN_INSTANT:
+            self._commands = 0
+            self.spend(COMMAND_BURST_NS)
+        elif self.slow & (ATTENTION | STOPPING):
+            self.checkpoint()
+
+    def wait_for_motor(self, timeout_ns: int) -> None:
+        """Wait until a motor ends a move, at most so long."""
+        self._pass(self.now + timeout_ns, True)
+
+    def speak(self, text: str, wait_ns: int) -> None:
+        """Show a text as spoken and wait for so long."""
+        self.output.row(text, SPEECH)
+        self.channel.send(Spoke(text, self.now))
+        self.spend(wait_ns)
+
+    # Passing time
+
+    def _pass(self, until: int, on_change: bool) -> None:
+        if self.slow & (ATTENTION | STOPPING):
+            self.checkpoint()
+        if until > self.now:
+            self.sim.line = self.program_line()
+        if self.slow & THREADS and self.sleep_threaded is not None:
+            self.sleep_threaded(until, on_change)
+        else:
+            self.advance(until, on_change)
+
+    def advance(self, until: int, on_change: bool) -> bool:
+        """Move the clock on.
+
+        Args:
+            until: Simulated time in ns.
+            on_change: Come back early when a motor ends a move.
+
+        Returns:
+            Whether a motor ended the wait.
+        """
+        if until > self._limit_ns and not self.stop_reason:
+            self._run_ticks(self._limit_ns, False)
+            self.now = self._limit_ns
+            limit_s = self._limit_ns / NS_PER_S
+            raise self.request_stop("time_limit", f"stopped at the limit of {limit_s:g} s simulated time")
+        changed = self._run_ticks(until, on_change)
+        # A wait that a motor ended is over at the tick in which the motor stood still.
+        self.now = max(self.now, self.sim.due_ns(self.sim.tick)) if changed else until
+        self._due = self.sim.due_ns(self.sim.tick + 1)
+        return changed
+
+    def _run_ticks(self, until: int, on_change: bool) -> bool:
+        sim = self.sim
+        if self.slow & LIVE and not self.stop_reason:
+            return self._run_live(until, on_change)
+        sim.changed = False
+        target = sim.ticks_at(until)
+        while sim.tick < target:
+            sim.advance(min(target - sim.tick, CHUNK_TICKS), on_change)
+            if on_change and sim.changed:
+                return True
+            if self.slow & ATTENTION:
+                self.now = max(self.now, sim.due_ns(sim.tick))
+                self.checkpoint()
+        return False
+
+    def _run_live(self, until: int, on_change: bool) -> bool:
+        sim, steering = self.sim, self.steering
+        sim.changed = False
+        target = sim.ticks_at(until)
+        while sim.tick < target:
+            # Never ahead of the last tick of this wait: user actions belong right before a tick.
+            self.now = max(self.now, sim.due_ns(sim.tick))
+            ticks = steering.before_ticks(self, target - sim.tick)
+            sim.advance(ticks, on_change)
+            if on_change and sim.changed:
+                return True
+        return False
+
+    # Stopping
+
+    def checkpoint(self) -> None:
+        """Look for commands; raise if the program is to stop.
+
+        Raises:
+            StopProgram: first when stopping is asked for, then again once the grace time is over.
+        """
+        self.slow &= ~ATTENTION
+        self.steering.receive(self)
+        reason = self.stop_reason
+        if reason is None:
+            return
+        if self._stop_raised_at is None:
+            self._stop_raised_at = self.now
+            raise reason
+        if self.now - self._stop_raised_at > STOP_GRACE_NS or self.steering.grace_is_over():
+            raise reason
+
+    def request_stop(self, end: str, summary: str) -> StopProgram:
+        """Note that the run ends, and why; the first reason stays. Returns what to raise."""
+        if self.stop_reason is None:
+            self.stop_reason = StopProgram(end, summary)
+            self.steering.stop_asked()
+        self._stop_raised_at = self.now if self._stop_raised_at is None else self._stop_raised_at
+        self.slow |= STOPPING
+        return self.stop_reason
+
+    def ask_stop(self, end: str, summary: str) -> None:
+        """Note that the run is to end at the next checkpoint."""
+        if self.stop_reason is None:
+            self.stop_reason = StopProgram(end, summary)
+            self.steering.stop_asked()
+        self.slow |= STOPPING
+
+    def program_line(self) -> int:
+        """Return the line of the program that is being carried out, 0 if none is."""
+        frame = sys._getframe(1)
+        file = self.program_file
+        while frame is not None:
+            if frame.f_code.co_filename == file:
+                return frame.f_lineno
+            frame = frame.f_back  # type: ignore[assignment]
+        return 0

@@ -1,0 +1,177 @@
+"""Steering a run: commands from the host, pacing against the wall clock, user actions.
+
+User actions take effect right before a tick and are written down with it, so that a
+run can be repeated to the same bits.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import deque
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim import protocol
+from tuisim.core.geometry import Pose
+from tuisim.protocol import Message
+from tuisim.runtime import real
+from tuisim.runtime.channel import Channel
+
+if TYPE_CHECKING:
+    from tuisim.runtime.session import Session
+
+ACTIONS_FILE = "actions.jsonl"
+SLICE_S = 0.02
+"""Longest uninterrupted real wait."""
+BEHIND_S = 0.25
+"""A run that has fallen further behind than this starts its pace anew."""
+STOP_GRACE_S = 0.2
+"""Real time that a program's own cleaning up gets."""
+FAST_SLICE_TICKS = 64
+"""Ticks between two looks at the commands in a run without pacing."""
+
+
+class Steering:
+    """The host's hand on the run.
+
+    Args:
+        channel: Pipes to the host.
+        folder: Run folder, for the user actions.
+        live: Whether the run is paced and can be paused.
+        speed: 1.0 is real time, 0 as fast as possible.
+        paused: Begin standing still.
+    """
+
+    def __init__(self, channel: Channel, folder: Path, live: bool, speed: float, paused: bool) -> None:
+        self.live = live
+        self._channel, self._folder = channel, folder
+        self._speed = speed
+        self._paused = paused
+        self._steps = 0
+        self._anchor: tuple[float, int] | None = None
+        self._waiting: deque[Message] = deque()
+        self._actions_fd = -1
+        self._stop_asked_at: float | None = None
+        self.answers: deque[str | None] = deque()
+        """Answers to input() that have come in."""
+
+    # Commands
+
+    def receive(self, session: Session) -> None:
+        """Read the commands that have come in; user actions wait for the next tick."""
+        for command in self._channel.receive():
+            match command:
+                case protocol.Stop():
+                    session.ask_stop("stopped", "stopped")
+                case protocol.Pause():
+                    self._paused, self._steps = True, 0
+                case protocol.Resume():
+                    self._paused, self._steps = False, 0
+                case protocol.StepTicks(ticks=ticks):
+                    self._steps += max(0, ticks)
+                case protocol.SetSpeed(speed=speed):
+                    self._speed, self._anchor = max(0.0, speed), None
+                case _:
+                    self._waiting.append(command)
+
+    def stop_asked(self) -> None:
+        """Begin the grace time."""
+        self._stop_asked_at = real.monotonic()
+
+    def grace_is_over(self) -> bool:
+        """Whether the program has had its real time for cleaning up."""
+        return self._stop_asked_at is not None and real.monotonic() - self._stop_asked_at > STOP_GRACE_S
+
+    # Right before ticks
+
+    def before_ticks(self, session: Session, most: int) -> int:
+        """Wait until ticks may be done.
+
+        Args:
+            session: The run.
+            most: How many are wanted.
+
+        Returns:
+            How many to do now, at least 1.
+
+        Raises:
+            StopProgram: the run is to stop.
+        """
+        self.receive(session)
+        self._apply_actions(session)
+        if session.stop_reason is not None:
+            session.checkpoint()
+            return most
+        if self._paused and not self._steps:
+            self._hold(session)
+        if self._steps:
+            self._steps -= 1
+            return 1
+        if not self._speed:
+            return min(most, FAST_SLICE_TICKS)
+        return self._pace(session, most)
+
+    def _hold(self, session: Session) -> None:
+        self._channel.send(protocol.Paused(session.sim.tick, session.now, session.sim.line))
+        while self._paused and not self._steps and session.stop_reason is None:
+            self._channel.wait(1.0)
+            self.receive(session)
+            self._apply_actions(session)
+        session.checkpoint()
+        self._anchor = None
+        if not self._paused:
+            self._channel.send(protocol.Resumed())
+
+    def _pace(self, session: Session, most: int) -> int:
+        sim = session.sim
+        while True:
+            wall, simulated = real.monotonic(), sim.due_ns(sim.tick + 1)
+            if self._anchor is None:
+                self._anchor = (wall, sim.due_ns(sim.tick))
+            wait_s = self._anchor[0] + (simulated - self._anchor[1]) / 1e9 / self._speed - wall
+            if wait_s < -BEHIND_S:
+                self._anchor = None
+                return 1
+            if wait_s <= 0.0:
+                return 1
+            if self._channel.wait(min(wait_s, SLICE_S)):
+                self.receive(session)
+                self._apply_actions(session)
+                if session.stop_reason is not None:
+                    session.checkpoint()
+                    return most
+                if self._paused:
+                    return self.before_ticks(session, most)
+
+    # User actions
+
+    def _apply_actions(self, session: Session) -> None:
+        while self._waiting:
+            self.apply(session, self._waiting.popleft())
+
+    def apply(self, session: Session, action: Message) -> None:
+        """Carry out a user action now, right before the next tick, and write it down."""
+        sim = session.sim
+        match action:
+            case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
+                sim.place(Pose(x, y, heading))
+            case protocol.SetNoise(light=light, motor=motor):
+                sim.light_noise, sim.motor_noise = light, motor
+            case protocol.SetPen(down=down):
+                sim.pen_down = down
+            case protocol.Answer(text=text):
+                self.answers.append(text)
+            case _:
+                raise TypeError(f"not a user action: {action!r}")
+        sim.actions += 1
+        sim.rewrite_record()
+        self._write_down(sim.tick, action)
+
+    def _write_down(self, tick: int, action: Message) -> None:
+        if self._actions_fd < 0:
+            path = self._folder / ACTIONS_FILE
+            self._actions_fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+        row = {"tick": tick, "kind": action.kind, **asdict(action)}
+        os.write(self._actions_fd, json.dumps(row).encode() + b"\n")

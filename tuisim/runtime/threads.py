@@ -1,0 +1,91 @@
+"""Puts the program's `threading` and `_thread` on the baton."""
+
+from __future__ import annotations
+
+import _thread
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from tuisim.runtime.baton import FOREVER, Baton, SimulatedLock, Task
+
+
+def patch_threads(baton: Baton) -> None:
+    """Replace the lock and start functions, then import `threading` over them.
+
+    Must run before anything imports `threading`.
+    """
+    low: Any = _thread
+
+    class LockType(SimulatedLock):
+        """The type that the program sees as its lock."""
+
+        def __init__(self) -> None:
+            super().__init__(baton)
+
+    def start_new_thread(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any = None) -> int:
+        task = baton.spawn(lambda: _run_bare(function, args, kwargs or {}), daemon=True)
+        return id(task)
+
+    low.allocate_lock = low.allocate = LockType
+    low.lock = low.LockType = LockType
+    low.start_new_thread = low.start_new = start_new_thread
+    # Without the C queue, `queue` falls back on its own locks, which are these.
+    sys.modules["_queue"] = None  # type: ignore[assignment]
+
+    import threading
+
+    module: Any = threading
+    module._allocate_lock = module.Lock = LockType
+    module._CRLock = None
+    module.RLock = module._RLock = module._PyRLock
+    _patch_thread_class(baton, module.Thread)
+
+
+def _run_bare(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any) -> None:
+    try:
+        function(*args, **kwargs)
+    except SystemExit:
+        # As in Python: it ends the thread, silently.
+        pass
+    except Exception as error:  # the thread ends, the program goes on: Python's own rule
+        sys.excepthook(type(error), error, error.__traceback__)
+
+
+def _patch_thread_class(baton: Baton, thread: Any) -> None:
+    tasks: dict[int, Task] = {}
+
+    def start(self: Any) -> None:
+        if not self._initialized:
+            raise RuntimeError("thread.__init__() not called")
+        if self._started.is_set():
+            raise RuntimeError("threads can only be started once")
+        import threading
+
+        limbo: Any = threading
+        with limbo._active_limbo_lock:
+            limbo._limbo[self] = self
+        tasks[id(self)] = baton.spawn(self._bootstrap, daemon=bool(self.daemon))
+        self._started.wait()
+
+    def join(self: Any, timeout: float | None = None) -> None:
+        if not self._initialized:
+            raise RuntimeError("Thread.__init__() not called")
+        if not self._started.is_set():
+            raise RuntimeError("cannot join thread before it is started")
+        task = tasks.get(id(self))
+        if task is baton.current:
+            raise RuntimeError("cannot join current thread")
+        if task is not None:
+            baton.join(task, FOREVER if timeout is None else max(0, round(timeout * 1e9)))
+
+    def is_alive(self: Any) -> bool:
+        if not self._started.is_set():
+            return False
+        task = tasks.get(id(self))
+        return task is None or not task.done
+
+    thread.start, thread.join, thread.is_alive = start, join, is_alive
+    # Python's own end-of-thread lock is a real one: nobody waits for it here.
+    thread._set_tstate_lock = lambda self: None
+    thread._wait_for_tstate_lock = lambda self, block=True, timeout=-1: None

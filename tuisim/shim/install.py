@@ -1,0 +1,99 @@
+"""Builds the brick of a robot and hooks the library's modules as the program imports them."""
+
+from __future__ import annotations
+
+import importlib.abc
+import importlib.machinery
+import sys
+import types
+from collections.abc import Callable, Mapping, Sequence
+
+from tuisim.shim.devices import Brick
+from tuisim.shim.lego_sensors import ColorDevice, gyro_sensor, ultrasonic_sensor
+from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
+from tuisim.shim.overlay import glue_module, patch_lego_module
+from tuisim.shim.refused import REFUSED, refuse_classes
+from tuisim.shim.session import Session
+from tuisim.shim.sound import patch_sound_module
+from tuisim.shim.tacho import TachoMotor
+
+Finish = Callable[[types.ModuleType], None]
+
+
+class FinishingFinder(importlib.abc.MetaPathFinder):
+    """Lets a function finish a module right after its import.
+
+    Args:
+        finishers: By module name.
+    """
+
+    def __init__(self, finishers: Mapping[str, Finish]) -> None:
+        self._finishers = finishers
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        """Find the module as usual, with the finisher after its loader."""
+        finish = self._finishers.get(fullname)
+        if finish is None:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(fullname, path, target)
+        if spec is None or spec.loader is None:
+            return None
+        load = spec.loader.exec_module
+
+        def load_and_finish(module: types.ModuleType) -> None:
+            load(module)
+            finish(module)
+
+        spec.loader.exec_module = load_and_finish  # type: ignore[method-assign]
+        return spec
+
+
+def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
+    """Plug the robot's motors and sensors in.
+
+    Returns:
+        The brick, and its colour sensors by device path.
+    """
+    brick, robot, sim = Brick(), session.sim.spec.robot, session.sim
+    # Listed by port, so that a class asked for without an address finds the first port.
+    for port, motor in sorted(((robot.left_port, sim.left), (robot.right_port, sim.right)), key=lambda pair: pair[0]):
+        brick.add("tacho-motor", f"motor{len(brick.by_path)}", TachoMotor(session, motor, port).device())
+    colors: dict[str, ColorDevice] = {}
+    count = 0
+    for spec in sorted(robot.color_sensors, key=lambda sensor: sensor.port):
+        sensor = ColorDevice(session, spec)
+        brick.add("lego-sensor", f"sensor{count}", sensor.device())
+        colors[f"/sys/class/lego-sensor/sensor{count}"] = sensor
+        count += 1
+    if robot.ultrasonic is not None:
+        brick.add("lego-sensor", f"sensor{count}", ultrasonic_sensor(session, robot.ultrasonic).device())
+        count += 1
+    if robot.gyro is not None:
+        device, writers = gyro_sensor(session, robot.gyro)
+        brick.add("lego-sensor", f"sensor{count}", device.device(writers))
+    return brick, colors
+
+
+def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
+    """Prepare `import ev3dev2` for the program.
+
+    Args:
+        session: Clock and simulation.
+        more_finishers: Finishers of other modules, by name.
+    """
+    brick, colors = build_brick(session)
+    finishers: dict[str, Finish] = {
+        "ev3dev2.motor": lambda module: patch_motor_module(session, module),
+        "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
+        "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
+        "ev3dev2.sound": lambda module: patch_sound_module(session, module),
+        **dict.fromkeys(REFUSED, refuse_classes),
+        **more_finishers,
+    }
+    sys.meta_path.insert(0, FinishingFinder(finishers))
+    connect(session, brick)
+    sys.modules["ev3dev2_glue"] = glue_module(session)
+    # The library reads its buttons through this package and complains at import when it is missing.
+    sys.modules.setdefault("evdev", types.ModuleType("evdev", "Present, so that the library does not complain."))

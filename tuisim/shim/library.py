@@ -1,0 +1,162 @@
+"""Connects the genuine library to the simulated devices: replaces what touches the kernel."""
+
+from __future__ import annotations
+
+import select
+import types
+from collections.abc import Callable, Iterator
+from fnmatch import fnmatch
+from functools import wraps
+from typing import Any
+
+from tuisim.core.profile import MS
+from tuisim.shim.devices import Brick
+from tuisim.shim.session import Session
+
+
+class OpenAttribute:
+    """An attribute as an open file, for the few places where the library wants one."""
+
+    def __init__(self, brick: Brick, path: str, name: str) -> None:
+        self._device, self._name = brick.by_path[path], name
+
+    def seek(self, _position: int) -> None:
+        """Every read begins at the start anyway."""
+
+    def flush(self) -> None:
+        """Writes act at once."""
+
+    def read(self, _size: int = -1) -> bytes:
+        """Return the attribute's value."""
+        return str(self._device.read(self._name)).encode()
+
+    def write(self, text: bytes | str) -> None:
+        """Set the attribute."""
+        self._device.write(self._name, text if isinstance(text, str) else text.decode())
+
+
+class MotorPoll:
+    """Stands in for `select.poll` in the library: waits for a motor in simulated time."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def register(self, _file: OpenAttribute, _events: int = 0) -> None:
+        """Any motor that changes ends the wait; the library looks at its own again."""
+
+    def poll(self, timeout_ms: float | None = None) -> list[Any]:
+        """Wait until a motor ends a move, at most so long."""
+        self._session.wait_for_motor(int((1000 if timeout_ms is None else timeout_ms) * MS))
+        return []
+
+
+def connect(session: Session, brick: Brick) -> None:
+    """Patch `ev3dev2` before any of its submodules is imported.
+
+    Args:
+        session: Clock and simulation.
+        brick: The devices.
+    """
+    import ev3dev2
+
+    ev3dev2.get_current_platform = lambda: "ev3"
+    ev3dev2.list_device_names = _device_lister(brick)
+    _patch_device(ev3dev2.Device, brick)
+
+
+def _device_lister(brick: Brick) -> Callable[..., Iterator[str]]:
+    def list_device_names(class_path: str, name_pattern: str, **wanted: str | list[str]) -> Iterator[str]:
+        for name in brick.names(class_path):
+            readers = brick.by_path[f"{class_path}/{name}"].readers
+            if fnmatch(name, name_pattern) and all(
+                key in readers and _matches(str(readers[key]()), pattern) for key, pattern in wanted.items()
+            ):
+                yield name
+
+    return list_device_names
+
+
+def _matches(value: str, pattern: str | list[str]) -> bool:
+    # The library matches parts of the text, so that both outA and ev3-ports:outA find the port.
+    return any(part in value for part in pattern) if isinstance(pattern, list) else pattern in value
+
+
+def _patch_device(device_class: Any, brick: Brick) -> None:
+    devices = brick.by_path
+
+    def get_attr_int(self: Any, attribute: Any, name: str) -> tuple[Any, int]:
+        try:
+            value = devices[self._path].read(name)
+        except OSError as error:
+            self._raise_friendly_access_error(error, name, None)
+        return attribute, int(value)  # type: ignore[call-overload]
+
+    def get_attribute(self: Any, attribute: Any, name: str) -> tuple[Any, str]:
+        try:
+            value = devices[self._path].read(name)
+        except OSError as error:
+            self._raise_friendly_access_error(error, name, None)
+        return attribute, str(value)
+
+    def set_attribute(self: Any, attribute: Any, name: str, value: Any) -> Any:
+        try:
+            devices[self._path].write(name, value if isinstance(value, str) else value.decode("latin-1"))
+        except OSError as error:
+            self._raise_friendly_access_error(error, name, value)
+        return attribute
+
+    device_class.get_attr_int = get_attr_int
+    device_class.get_attr_string = get_attribute
+    device_class.get_attr_line = get_attribute
+    device_class._get_attribute = get_attribute
+    device_class._set_attribute = set_attribute
+    device_class.set_attr_string = set_attribute
+    device_class.set_attr_raw = set_attribute
+    device_class._attribute_file_open = lambda self, name: OpenAttribute(brick, self._path, name)
+
+
+def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return `function` with the library's own look-ups inside it costing nothing."""
+
+    @wraps(function)
+    def wrapper(*args: Any, **kwargs: Any) -> Any:
+        session.free += 1
+        try:
+            return function(*args, **kwargs)
+        finally:
+            session.free -= 1
+
+    return wrapper
+
+
+def patch_motor_module(session: Session, module: types.ModuleType) -> None:
+    """Finish `ev3dev2.motor` after its import."""
+    motor: Any = module
+    motor.select = types.SimpleNamespace(poll=lambda: MotorPoll(session), POLLPRI=select.POLLPRI)
+    motor.Motor.__init__ = free_of_charge(session, motor.Motor.__init__)
+    motor.Motor.wait = free_of_charge(session, motor.Motor.wait)
+    profile = session.sim.spec.profile
+    if profile.pair_tail_ns:
+        block = motor.MotorSet._block
+
+        def block_with_tail(self: Any) -> None:
+            block(self)
+            session.spend(profile.pair_tail_ns)
+
+        motor.MotorSet._block = block_with_tail
+    if profile.plain_state:
+        state = motor.Motor.state.fget
+        motor.Motor.state = property(lambda self: " ".join(state(self)))
+
+
+def patch_sensor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
+    """Finish `ev3dev2.sensor` after its import: looking up or setting the mode costs nothing."""
+    devices = brick.by_path
+    sensor: Any = module
+
+    def ensure_mode(self: Any, mode: str) -> None:
+        device = devices[self._path]
+        if device.readers["mode"]() != mode:
+            self.mode = mode
+
+    sensor.Sensor._ensure_mode = ensure_mode

@@ -1,0 +1,58 @@
+"""What the course adds to the library's classes: the `robolab` overlay.
+
+| added to ColorSensor | value |
+| --- | --- |
+| reflected_light_intensity_pc | 100 · int(red) / 255 |
+| full_reflected_light_intensity | 100 · (int(red) + int(green) + int(blue)) / 765 |
+| red, green, blue | whole channels, 0 … 255 |
+"""
+
+from __future__ import annotations
+
+import types
+from typing import Any
+
+from tuisim.shim.devices import Brick
+from tuisim.shim.lego_sensors import ColorDevice
+from tuisim.shim.library import free_of_charge
+from tuisim.shim.session import Session
+
+
+def patch_lego_module(
+    session: Session, module: types.ModuleType, brick: Brick, colors: dict[str, ColorDevice]
+) -> None:
+    """Add the course's properties to `ev3dev2.sensor.lego`.
+
+    Args:
+        session: Clock and simulation.
+        module: The imported module.
+        brick: The devices.
+        colors: Colour sensors by device path.
+    """
+    lego: Any = module
+    color_sensor = lego.ColorSensor
+
+    def channel(index: int) -> property:
+        return property(lambda self: colors[self._path].read().rgb[index])
+
+    color_sensor.reflected_light_intensity_pc = property(lambda self: colors[self._path].read().red_percent)
+    color_sensor.full_reflected_light_intensity = property(lambda self: colors[self._path].read().mean_percent)
+    color_sensor.red, color_sensor.green, color_sensor.blue = channel(0), channel(1), channel(2)
+    # The library's constructor reads the angle to remember where it began.
+    lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)
+
+
+def glue_module(session: Session) -> types.ModuleType:
+    """Return the module `ev3dev2_glue` that course programs import."""
+    glue = types.ModuleType("ev3dev2_glue", "Simulated time and messages, as the course has them.")
+
+    def get_clock() -> float:
+        """Return the simulated seconds since the program started."""
+        return session.sim.tick / session.sim.spec.profile.tick_hz
+
+    def pyState() -> dict[str, list[str]]:
+        """Return the answers of a notebook; without one there are none."""
+        return {"messages": []}
+
+    vars(glue).update(get_clock=get_clock, pyState=pyState)
+    return glue

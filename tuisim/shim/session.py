@@ -1,0 +1,34 @@
+"""What the shim needs to know of the session that runs the program."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from tuisim.core.field import Field
+from tuisim.core.simulation import Simulation
+
+
+class Session(Protocol):
+    """The program's clock and the simulation behind it."""
+
+    sim: Simulation
+    field: Field
+    now: int
+    """Simulated ns since the start."""
+    free: int
+    """Above 0 while calls cost nothing: the library's own look-ups, constructors, the prelude."""
+
+    def spend(self, duration_ns: int) -> None:
+        """Let time pass, whatever it costs."""
+
+    def charge(self, cost_ns: int) -> None:
+        """Let the stated cost of a call pass, unless calls are free now."""
+
+    def command(self) -> None:
+        """Count a call that costs nothing, so that no loop of them stands still for ever."""
+
+    def wait_for_motor(self, timeout_ns: int) -> None:
+        """Wait until a motor ends a move, at most so long."""
+
+    def speak(self, text: str, wait_ns: int) -> None:
+        """Show (and where possible say) a text; the program goes on after `wait_ns`."""

@@ -1,0 +1,174 @@
+"""Tacho motors: set points, commands and state, as the kernel driver has them."""
+
+from __future__ import annotations
+
+from tuisim.core.motors import STOPPED, Motor
+from tuisim.core.profile import MS, ProfileSpec
+from tuisim.shim.devices import SimDevice, refuse
+from tuisim.shim.session import Session
+
+COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")
+STOP_ACTIONS = ("coast", "brake", "hold")
+POLARITIES = ("normal", "inversed")
+COUNT_PER_ROT = 360
+LARGE_MOTOR_DRIVER = "lego-ev3-l-motor"
+MAX_RAMP_MS = 60_000
+
+
+class TachoMotor:
+    """One large motor on an output port.
+
+    Args:
+        session: Clock and simulation.
+        motor: The simulated motor.
+        port: Such as `outB`.
+    """
+
+    def __init__(self, session: Session, motor: Motor, port: str) -> None:
+        self._session = session
+        self._motor = motor
+        self._profile: ProfileSpec = session.sim.spec.profile
+        self._port = port
+        self._set_defaults()
+
+    def _set_defaults(self) -> None:
+        self._numbers = {
+            "speed_sp": 0, "position_sp": 0, "time_sp": 0, "duty_cycle_sp": 0, "ramp_up_sp": 0, "ramp_down_sp": 0,
+            "speed_pid/Kp": 1000, "speed_pid/Ki": 60, "speed_pid/Kd": 0,
+            "hold_pid/Kp": 80000, "hold_pid/Ki": 0, "hold_pid/Kd": 0,
+        }  # fmt: skip
+        self._stop_action = "coast"
+        self._polarity = "normal"
+        self._last_goal: float | None = None
+        self._holding = False
+
+    def device(self) -> SimDevice:
+        """Return the device that the library reads and writes."""
+        fixed = {
+            "address": f"ev3-ports:{self._port}",
+            "driver_name": LARGE_MOTOR_DRIVER,
+            "commands": " ".join(COMMANDS),
+            "stop_actions": " ".join(STOP_ACTIONS),
+            "count_per_rot": COUNT_PER_ROT,
+            "max_speed": int(self._profile.max_speed_dps),
+        }
+        readers = {name: (lambda value=value: value) for name, value in fixed.items()}
+        readers |= {name: (lambda name=name: self._numbers[name]) for name in self._numbers}
+        readers |= {
+            "position": lambda: round(self._motor.position_deg) * self._sign,
+            "speed": self._speed,
+            "duty_cycle": lambda: round(100 * self._speed() / self._profile.max_speed_dps),
+            "state": self.state,
+            "stop_action": lambda: self._stop_action,
+            "polarity": lambda: self._polarity,
+        }
+        writers = {name: (lambda text, name=name: self._set_number(name, text)) for name in self._numbers}
+        writers |= {
+            "command": self._command,
+            "position": self._set_position,
+            "stop_action": self._set_stop_action,
+            "polarity": self._set_polarity,
+        }
+        return SimDevice(self._session, readers, writers)
+
+    @property
+    def _sign(self) -> int:
+        return -1 if self._polarity == "inversed" else 1
+
+    def _speed(self) -> int:
+        motor = self._motor
+        kept = motor.speed_dps * motor.sign if self._profile.keep_speed_when_stopped else motor.moving_dps
+        return round(kept) * self._sign
+
+    def state(self) -> str:
+        """Return the state flags, blank-separated, in the driver's order."""
+        motor = self._motor
+        if motor.mode == STOPPED:
+            return "holding" if self._holding and not self._profile.plain_state else ""
+        if motor.speed_dps != motor.target_dps and not self._profile.plain_state:
+            return "running ramping"
+        return "running"
+
+    def _set_number(self, name: str, text: str) -> None:
+        try:
+            value = int(text)
+        except ValueError:
+            raise refuse(text) from None
+        limit = {"speed_sp": int(self._profile.max_speed_dps), "duty_cycle_sp": 100}.get(name)
+        if limit is not None and abs(value) > limit:
+            raise refuse(text)
+        if name not in ("speed_sp", "duty_cycle_sp", "position_sp") and value < 0:
+            raise refuse(text)
+        if name in ("ramp_up_sp", "ramp_down_sp") and value > MAX_RAMP_MS:
+            raise refuse(text)
+        self._numbers[name] = value
+        if name == "duty_cycle_sp" and self._direct and self._motor.mode != STOPPED:
+            self._run_direct()
+
+    _direct = False
+
+    def _set_position(self, text: str) -> None:
+        self._motor.position_deg = float(int(text) * self._sign)
+        self._last_goal = None
+
+    def _set_stop_action(self, text: str) -> None:
+        if text not in STOP_ACTIONS:
+            raise refuse(text)
+        self._stop_action = text
+
+    def _set_polarity(self, text: str) -> None:
+        if text not in POLARITIES:
+            raise refuse(text)
+        self._polarity = text
+
+    def _command(self, text: str) -> None:
+        if text not in COMMANDS:
+            raise refuse(text)
+        self._session.command()
+        self._direct = text == "run-direct"
+        speed = self._numbers["speed_sp"] * self._sign
+        motor = self._motor
+        # The stop action in force at the start of a move applies at its end.
+        self._holding = self._stop_action == "hold"
+        if text == "run-forever":
+            motor.run(float(speed))
+        elif text == "run-timed":
+            sim = self._session.sim
+            motor.run_until(float(speed), sim.end_tick_after(self._session.now, self._numbers["time_sp"] * MS))
+        elif text == "run-to-rel-pos":
+            self._run_relative(float(speed))
+            return
+        elif text == "run-to-abs-pos":
+            self._run_absolute(float(speed))
+        elif text == "run-direct":
+            self._run_direct()
+        elif text == "stop":
+            motor.stop(self._profile)
+        else:
+            self._reset()
+        self._last_goal = None
+
+    def _run_direct(self) -> None:
+        self._motor.run(self._profile.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign)
+
+    def _run_relative(self, speed: float) -> None:
+        delta = self._numbers["position_sp"] * self._sign
+        if delta == 0:
+            self._motor.stop(self._profile)
+            self._last_goal = None
+            return
+        base = self._motor.position_deg
+        if self._last_goal is not None and self._profile.chain_relative_moves:
+            base = self._last_goal
+        self._last_goal = base + delta
+        self._motor.run_to(self._last_goal, speed, self._last_goal < self._motor.position_deg)
+
+    def _run_absolute(self, speed: float) -> None:
+        goal = float(self._numbers["position_sp"] * self._sign)
+        start = 0.0 if self._profile.direction_from_set_point else self._motor.position_deg
+        self._motor.run_to(goal, speed, goal < start)
+
+    def _reset(self) -> None:
+        self._motor.stop(self._profile)
+        self._motor.position_deg = 0.0
+        self._set_defaults()
