@@ -11,12 +11,26 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from textual.message import Message
+
 from tuisim.ui import verbs
 from tuisim.ui.panels import PANELS
 from tuisim.ui.snapshot import PAUSED, RUNNING, STARTING, WAITING
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
+
+ACT = "act"
+"""Key of the style meta data that names the action of a word that can be clicked on."""
+
+
+class Act(Message):
+    """A word that stands for an action was clicked on."""
+
+    def __init__(self, action: str) -> None:
+        super().__init__()
+        self.action = action
+
 
 IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
 """States in which there is a child process."""
@@ -50,6 +64,8 @@ class Action:
     """Short word for the footer; empty keeps it out."""
     shown_key: str = ""
     """How the key is written for people, if not as in `key`."""
+    footer_key: str = ""
+    """How it is written in the footer, if it stands there for two."""
 
     @property
     def key_label(self) -> str:
@@ -128,8 +144,8 @@ ACTIONS: Mapping[str, Action] = {
         Action("mats", "b", "Choose a mat", ROBOT, verbs.choose_mat, _can_change_world, "mats"),
         Action("home", "m", "Robot back to its start", ROBOT, verbs.home, footer="start"),
         Action("pen", "p", "Pen up or down", ROBOT, verbs.pen, footer="pen"),
-        Action("slower", "left_square_bracket", "Slower", PROGRAM, verbs.slower, footer="slower"),
-        Action("faster", "right_square_bracket", "Faster", PROGRAM, verbs.faster, footer="faster"),
+        Action("slower", "left_square_bracket", "Slower", PROGRAM, verbs.slower, footer="speed", footer_key="[ ]"),
+        Action("faster", "right_square_bracket", "Faster", PROGRAM, verbs.faster),
         Action("export", "e", "Export the log to a file", FILES, verbs.export, _can_export, "export"),
         Action("zoom", "v", "Zoom the world", ROBOT, verbs.zoom, footer="zoom"),
         Action("clear", "C", "Clear the pen trace", ROBOT, verbs.clear_trace, footer="clear"),

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import events
 from textual.app import App, ComposeResult
@@ -14,7 +15,7 @@ from textual.widget import Widget
 
 from tuisim.errors import TuisimError
 from tuisim.protocol import Ended
-from tuisim.ui.actions import ACTIONS, IN_RUN, Situation
+from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
 from tuisim.ui.bridge import Bridge, News
 from tuisim.ui.desk import Desk
 from tuisim.ui.feed import Feed, Series, sample_series
@@ -22,13 +23,13 @@ from tuisim.ui.footer import KeyFooter
 from tuisim.ui.pacer import Pacer
 from tuisim.ui.session import AppSettings
 from tuisim.ui.snapshot import ENDED, Snapshot
+from tuisim.ui.speech import Voice
 from tuisim.ui.verbs import speed_label
 
 if TYPE_CHECKING:
     from tuisim.core.spec import RunSpec
     from tuisim.ui.mat import Mat
     from tuisim.ui.panels.chart import Chart
-    from tuisim.ui.panels.code import Code
     from tuisim.ui.panels.output import Output
     from tuisim.ui.panels.world import World
 
@@ -60,7 +61,7 @@ class Lab(App[None]):
 
     CSS_PATH = "tuisim.tcss"
     TITLE = "tuisim"
-    COMMANDS = {_palette}
+    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {_palette}
     NOTIFICATION_TIMEOUT = 4
     BINDINGS: ClassVar[list[BindingType]] = [
         *(Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()),
@@ -74,6 +75,7 @@ class Lab(App[None]):
         self.desk = Desk(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
+        self.voice = Voice(settings.quiet)
         self._feed: Feed | None = None
         self._drawn: object = None
         self._run_when_ready = settings.autorun
@@ -100,6 +102,7 @@ class Lab(App[None]):
     def on_unmount(self) -> None:
         """Leave no child behind."""
         self.bridge.close()
+        self.voice.hush()
 
     # The mat
 
@@ -122,7 +125,7 @@ class Lab(App[None]):
         if mat.name != self.bridge.spec.world.background:
             return
         self.bridge.mat = mat
-        if world := self._world:
+        if world := self.desk.world:
             world.set_mat(mat.pixels)
         self.draw(force=True)
         if self._run_when_ready:
@@ -154,7 +157,7 @@ class Lab(App[None]):
 
     def _load(self, spec: RunSpec) -> None:
         self.bridge.load(spec, self.bridge.program)
-        if world := self._world:
+        if world := self.desk.world:
             world.clear_trace()
         if self.bridge.mat is None or self.bridge.mat.name != spec.world.background:
             self.bridge.mat = None
@@ -178,20 +181,27 @@ class Lab(App[None]):
             return
         assert self.bridge.run is not None
         self._feed = Feed(self.bridge.run)
-        if self._output:
-            self._output.clear()
-        if self._chart:
-            self._chart.clear()
-        if self._code:
-            self._code.mark_error(0)
+        if self.desk.output:
+            self.desk.output.clear()
+        if self.desk.chart:
+            self.desk.chart.clear()
+        if self.desk.code:
+            self.desk.code.mark_error(0)
         self.situation_changed()
 
     def _beat(self) -> None:
         """Take what the run has written, and show a frame if the terminal has shown the last one."""
-        news = self.bridge.poll()
+        try:
+            news = self.bridge.poll()
+        except TuisimError as error:
+            self.bridge.stop()
+            self.complain(error)
+            return
+        for text in news.spoken:
+            self.voice.speak(text)
         if news.rows:
             self._take_rows(news)
-        if output := self._output:
+        if output := self.desk.output:
             if news.prompt is not None and not output.asking:
                 self._ask(news.prompt)
             elif news.prompt is None and output.asking:
@@ -202,29 +212,29 @@ class Lab(App[None]):
             self.draw()
 
     def _take_rows(self, news: News) -> None:
-        if self._output:
-            self._output.add(news.rows, news.skipped)
+        if self.desk.output:
+            self.desk.output.add(news.rows, news.skipped)
         self._append(sample_series(news.rows))
 
     def _append(self, series: Series) -> None:
-        if chart := self._chart:
+        if chart := self.desk.chart:
             for name, (times, values) in series.items():
                 chart.append(name, times, values)
 
     def _ask(self, prompt: str) -> None:
         if not self.desk.shown("output"):
             self.desk.toggle("output")
-        if self._output:
-            self._output.ask(prompt)
+        if self.desk.output:
+            self.desk.output.ask(prompt)
 
     def _ended(self, ended: Ended) -> None:
         good = ended.end in ("finished", "stopped")
         words = ended.summary or END_WORDS.get(ended.end, ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
-        if self._code:
-            self._code.mark_error(ended.error_line)
-        if self._output and ended.error:
-            self._output.add_error(ended.error)
+        if self.desk.code:
+            self.desk.code.mark_error(ended.error_line)
+        if self.desk.output and ended.error:
+            self.desk.output.add_error(ended.error)
         self.situation_changed()
 
     # The picture
@@ -245,7 +255,7 @@ class Lab(App[None]):
     def _feed_panels(self) -> None:
         if self._feed is None or self.bridge.mat is None:
             return
-        if world := self._world:
+        if world := self.desk.world:
             xs, ys = self._feed.trace_points()
             if xs:
                 world.extend_trace(xs, ys)
@@ -280,13 +290,13 @@ class Lab(App[None]):
 
     def on_desk_added(self, message: Desk.Added) -> None:
         """Tell a panel that has just come what it has missed."""
-        if message.panel == "world" and (world := self._world):
+        if message.panel == "world" and (world := self.desk.world):
             world.show_rays = self.settings.rays
             if self.bridge.mat:
                 world.set_mat(self.bridge.mat.pixels)
             if self.focused is None:
                 world.focus()
-        if message.panel == "code":
+        if message.panel in ("code", "controls"):
             self._introduce_program()
         self.call_after_refresh(self.draw, force=True)
 
@@ -295,29 +305,11 @@ class Lab(App[None]):
         self.call_after_refresh(self.draw, force=True)
 
     def _introduce_program(self) -> None:
-        if code := self._code:
-            program = self.bridge.program
+        program = self.bridge.program
+        if code := self.desk.code:
             code.set_program(program.name if program else "", program.text if program else "")
-
-    def _panel(self, panel: str) -> Any:
-        # Typed by the properties below; a hidden panel still takes what it is fed.
-        return self.desk.panels.get(panel)
-
-    @property
-    def _world(self) -> World | None:
-        return cast("World | None", self._panel("world"))
-
-    @property
-    def _output(self) -> Output | None:
-        return cast("Output | None", self._panel("output"))
-
-    @property
-    def _chart(self) -> Chart | None:
-        return cast("Chart | None", self._panel("chart"))
-
-    @property
-    def _code(self) -> Code | None:
-        return cast("Code | None", self._panel("code"))
+        if controls := self.desk.controls:
+            controls.set_program(program.name if program else "")
 
     # What the user does
 
@@ -329,9 +321,13 @@ class Lab(App[None]):
             return
         action.do(self)
 
+    def on_act(self, message: Act) -> None:
+        """A word in the footer or on a panel was clicked on."""
+        self.action_act(message.action)
+
     def action_leave_field(self) -> None:
         """Leave an input field."""
-        self.set_focus(self._world if self.desk.shown("world") else None)
+        self.set_focus(self.desk.world if self.desk.shown("world") else None)
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """The robot was dragged with the mouse."""
@@ -344,6 +340,8 @@ class Lab(App[None]):
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
         """Show where the robot was at the chart's cursor."""
+        if self.desk.world and self._feed:
+            self.desk.world.set_ghost(self._feed.pose_at(message.time_s))
 
     def on_positioning_applied(self, message: Any) -> None:
         """A pose was typed in."""

@@ -36,6 +36,8 @@ class News:
     """Rows left out before `rows`."""
     ended: protocol.Ended | None = None
     """Set once, in the poll in which the end is learnt."""
+    spoken: tuple[str, ...] = ()
+    """What the program said."""
     prompt: str | None = None
     """The prompt while the program waits in `input()`."""
 
@@ -204,15 +206,21 @@ class Bridge:
     # What comes from the run
 
     def poll(self) -> News:
-        """Take what has arrived; never waits."""
+        """Take what has arrived; never waits.
+
+        Raises:
+            HostError: the child sent rubbish.
+            LogError: its recording is damaged.
+        """
         if self.run is None:
             return News([])
         ended = None
+        spoken: list[str] = []
         for event in self.run.pump():
             match event:
                 case protocol.Ended():
                     self._end = ended = event
-                case _:
-                    pass
+                case protocol.Spoke(text=text):
+                    spoken.append(text)
         rows = self.run.output.new_rows(ROWS_A_POLL)
-        return News(rows, 0, ended, self.run.waiting_for_input if self.in_run else None)
+        return News(rows, 0, ended, tuple(spoken), self.run.waiting_for_input if self.in_run else None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from textual import events
 from textual.containers import Container
@@ -12,6 +12,13 @@ from textual.widget import Widget
 from tuisim.ui.layout import arrange, size_class
 from tuisim.ui.panels import PANELS, Panel
 from tuisim.ui.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from tuisim.ui.panels.chart import Chart
+    from tuisim.ui.panels.code import Code
+    from tuisim.ui.panels.controls import Controls
+    from tuisim.ui.panels.output import Output
+    from tuisim.ui.panels.world import World
 
 
 class Desk(Container):
@@ -36,15 +43,43 @@ class Desk(Container):
         super().__init__(id="desk")
         self.panels: dict[str, Widget] = {}
         """Those that have been shown once, by id."""
-        self._asked: dict[str, bool] = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
+        asked = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
+        self._asked = {panel: asked[panel] for panel in PANELS if panel in asked}
         """What was asked for, the latest last."""
         self._left_out: tuple[str, ...] = ()
+
+    # A hidden panel still takes what it is fed; one never shown is None.
+
+    @property
+    def world(self) -> World | None:
+        """The world, if it has been made."""
+        return cast("World | None", self.panels.get("world"))
+
+    @property
+    def output(self) -> Output | None:
+        """The output, if it has been made."""
+        return cast("Output | None", self.panels.get("output"))
+
+    @property
+    def chart(self) -> Chart | None:
+        """The chart, if it has been made."""
+        return cast("Chart | None", self.panels.get("chart"))
+
+    @property
+    def code(self) -> Code | None:
+        """The code, if it has been made."""
+        return cast("Code | None", self.panels.get("code"))
+
+    @property
+    def controls(self) -> Controls | None:
+        """The simulator controls, if they have been made."""
+        return cast("Controls | None", self.panels.get("controls"))
 
     def shown(self, panel: str) -> bool:
         """Whether a panel is on the screen."""
         return panel in self.panels and self.panels[panel].display
 
-    def visible(self) -> list[Panel]:
+    def on_screen(self) -> list[Panel]:
         """Return the panels on the screen."""
         return [cast(Panel, widget) for widget in self.panels.values() if widget.display]
 
@@ -107,6 +142,6 @@ class Desk(Container):
 
     def show(self, snapshot: Snapshot) -> None:
         """Let every panel on the screen show a moment."""
-        for panel in self.visible():
+        for panel in self.on_screen():
             if cast(Widget, panel).is_attached:
                 panel.show(snapshot)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from tuisim.core.geometry import world_point
+from tuisim.core.geometry import Pose
 from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.datalog.records import OutputRow
 from tuisim.datalog.samples import samples_of
@@ -21,7 +21,7 @@ Series = dict[str, tuple[list[float], list[float]]]
 
 POINTS_A_FEED = 60
 """Most telemetry moments that one call measures; each costs a reading of every sensor."""
-TRACE_POINTS_A_FEED = 400
+TRACE_POINTS_A_FEED = 4000
 
 
 def sample_series(rows: Iterable[OutputRow]) -> Series:
@@ -41,6 +41,15 @@ class Feed:
     run: RunHandle
     _charted: int = field(default=0, init=False)
     _traced: int = field(default=0, init=False)
+    _lifted: bool = field(default=False, init=False)
+    """Whether the pen was up in the last record that was traced."""
+
+    def pose_at(self, time_s: float | None) -> Pose | None:
+        """Return where the robot was at a time of the run, None if that is not recorded."""
+        if time_s is None:
+            return None
+        tick = int(time_s * self.run.spec.profile.tick_hz + 1e-6)
+        return self.run.telemetry.record(tick).pose if 0 <= tick < self.run.telemetry.count else None
 
     def chart_series(self, mat: Mat) -> Series:
         """Return telemetry traces of the ticks since the last call."""
@@ -61,21 +70,23 @@ class Feed:
 
     def trace_points(self) -> tuple[list[float], list[float]]:
         """Return where the pen drew since the last call: x and y in mm; NaN where it was lifted."""
-        count = self.run.telemetry.count
+        import numpy as np
+
+        records = self.run.telemetry.array()[self._traced :]
+        if not len(records):
+            return [], []
+        self._traced += len(records)
+        records = records[_thinned(0, len(records), TRACE_POINTS_A_FEED)]
         pen = self.run.spec.robot.pen
-        xs: list[float] = []
-        ys: list[float] = []
-        for at in _thinned(self._traced, count, TRACE_POINTS_A_FEED):
-            record = self.run.telemetry.record(at)
-            if record.flags & FLAG_PEN_DOWN:
-                x_mm, y_mm = world_point(record.pose, pen.x_mm, pen.y_mm)
-                xs.append(x_mm)
-                ys.append(y_mm)
-            elif xs and xs[-1] == xs[-1]:
-                xs.append(float("nan"))
-                ys.append(float("nan"))
-        self._traced = count
-        return xs, ys
+        turn = np.radians(records["heading_deg"] - 90.0)
+        xs = records["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
+        ys = records["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
+        lifted = (records["flags"] & FLAG_PEN_DOWN) == 0
+        xs[lifted] = ys[lifted] = np.nan
+        # Of a stretch with the pen up one gap is enough.
+        kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
+        self._lifted = bool(lifted[-1])
+        return xs[kept].tolist(), ys[kept].tolist()
 
 
 def _thinned(start: int, end: int, most: int) -> list[int]:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from rich.style import Style
 from rich.text import Text
+from textual import events
 from textual.widget import Widget
 
-from tuisim.ui.actions import ACTIONS, Action, Situation, working
+from tuisim.ui.actions import ACT, ACTIONS, Act, Action, Situation, working
 from tuisim.ui.panels import PANELS
 
 _ALWAYS = ("help", "quit")
-_GAP = 2
 
 
 def fitting(actions: list[Action], width: int) -> list[Action]:
@@ -24,16 +26,18 @@ def fitting(actions: list[Action], width: int) -> list[Action]:
     left = width - sum(_cells(action) for action in always)
     chosen = []
     for action in actions:
-        if action.footer and action not in always:
-            if _cells(action) > left:
-                break
+        if action.footer and action not in always and _cells(action) <= left:
             left -= _cells(action)
             chosen.append(action)
     return chosen + always
 
 
 def _cells(action: Action) -> int:
-    return len(action.key_label) + 1 + len(action.footer) + _GAP
+    return len(_key(action)) + len(action.footer) + 2
+
+
+def _key(action: Action) -> str:
+    return action.footer_key or action.key_label
 
 
 class KeyFooter(Widget):
@@ -41,6 +45,7 @@ class KeyFooter(Widget):
 
     DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
     ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--off"}
 
     def __init__(self) -> None:
         super().__init__(id="footer")
@@ -67,17 +72,21 @@ class KeyFooter(Widget):
         key_style = self.get_component_rich_style("footer--key", partial=True)
         line = Text(no_wrap=True, end="")
         for action in fitting(working(self._situation), width - len(status)):
-            meta = Style(meta={"@click": f"app.act('{action.id}')"})
-            line.append(f" {action.key_label}", key_style + meta)
+            meta = Style(meta={ACT: action.id})
+            line.append(f" {_key(action)}", key_style + meta)
             line.append(f" {action.footer}", self._word_style(action) + meta)
         line.append(" " * max(0, width - len(status) - len(line)))
         line.append(status, self.get_component_rich_style("footer--status", partial=True))
         return line
+
+    def on_click(self, event: events.Click) -> None:
+        """Do what was clicked on."""
+        if name := event.style.meta.get(ACT):
+            event.stop()
+            self.post_message(Act(name))
 
     def _word_style(self, action: Action) -> Style:
         panel = action.id.removeprefix("panel-")
         if panel in PANELS and panel not in self._on:
             return self.get_component_rich_style("footer--off", partial=True)
         return Style()
-
-    COMPONENT_CLASSES = {"footer--key", "footer--status", "footer--off"}

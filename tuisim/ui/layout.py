@@ -55,7 +55,7 @@ def _in_place(panels: Sequence[str], place: str) -> list[str]:
 
 
 def _share(panels: Sequence[str], rows: int) -> list[int]:
-    """Divide `rows` among panels stacked in a column: the least first, then what is good, then the rest to the first."""
+    """Divide `rows` among stacked panels: first the least, then what is good, then the rest to the first."""
     heights = [PANELS[panel].min_rows for panel in panels]
     spare = rows - sum(heights)
     for at, panel in enumerate(panels):

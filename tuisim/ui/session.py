@@ -25,6 +25,8 @@ class AppSettings:
     """Ids of panels hidden whatever the size of the terminal."""
     autorun: bool = False
     """Run the program as soon as the mat is ready."""
+    quiet: bool = False
+    """Never speak aloud."""
     rays: bool = False
     """Draw the ultrasonic rays."""
     speed: float = 1.0

@@ -88,14 +88,10 @@ def toggle(lab: Lab, panel: str) -> None:
 
 
 def _world(lab: Lab) -> World | None:
-    world = lab.desk.panels.get("world")
-    if world is None or not world.display:
-        lab.say(f"The world is hidden: {PANELS['world'].key} shows it")
-        return None
-    from tuisim.ui.panels.world import World
-
-    assert isinstance(world, World)
-    return world
+    if lab.desk.shown("world"):
+        return lab.desk.world
+    lab.say(f"The world is hidden: {PANELS['world'].key} shows it")
+    return None
 
 
 def rays(lab: Lab) -> None:

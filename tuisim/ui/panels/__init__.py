@@ -39,7 +39,7 @@ class PanelInfo:
     title: str
     key: str
     path: str
-    """Module and class, imported when the panel is first shown."""
+    """Module in this package, and class; imported when the panel is first shown."""
     place: str
     sizes: tuple[str, ...]
     """Sizes of terminal at which it is on unless the user says otherwise."""
@@ -52,26 +52,23 @@ class PanelInfo:
     def load(self) -> type[Panel]:
         """Import the panel's class."""
         module, _, name = self.path.partition(":")
-        return cast("type[Panel]", getattr(import_module(module), name))
+        return cast("type[Panel]", getattr(import_module(f"{__name__}.{module}"), name))
 
 
 ALL = (SMALL, MEDIUM, LARGE)
-_HERE = "tuisim.ui.panels"
 
 # In the order in which they keep their place when there is not room for all.
 PANELS: Mapping[str, PanelInfo] = {
     panel.id: panel
     for panel in (
-        PanelInfo("world", "World", "W", f"{_HERE}.world:World", MAIN, ALL, 8, 14),
-        PanelInfo(
-            "instrumentation", "Instrumentation", "i", f"{_HERE}.instrumentation:Instrumentation", SIDE, ALL, 8, 15
-        ),
-        PanelInfo("output", "Output", "O", f"{_HERE}.output:Output", BOTTOM, ALL, 5, 9),
-        PanelInfo("arrays", "Sensor arrays", "A", f"{_HERE}.arrays:Arrays", SIDE, (MEDIUM, LARGE), 8, 13),
-        PanelInfo("code", "Code", "D", f"{_HERE}.code:Code", BOTTOM, (MEDIUM, LARGE), 5, 9),
-        PanelInfo("chart", "Chart", "c", f"{_HERE}.chart:Chart", BOTTOM, (LARGE,), 8, 16, weight=2),
-        PanelInfo("controls", "Simulator controls", "H", f"{_HERE}.controls:Controls", SIDE, (MEDIUM, LARGE), 10, 12),
-        PanelInfo("positioning", "Positioning", "X", f"{_HERE}.positioning:Positioning", SIDE, (LARGE,), 6, 7),
+        PanelInfo("world", "World", "W", "world:World", MAIN, ALL, 8, 14),
+        PanelInfo("instrumentation", "Instrumentation", "i", "instrumentation:Instrumentation", SIDE, ALL, 8, 15),
+        PanelInfo("output", "Output", "O", "output:Output", BOTTOM, ALL, 5, 9, weight=3),
+        PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", SIDE, (MEDIUM, LARGE), 8, 13),
+        PanelInfo("code", "Code", "D", "code:Code", BOTTOM, (MEDIUM, LARGE), 5, 9, weight=4),
+        PanelInfo("chart", "Chart", "c", "chart:Chart", BOTTOM, (LARGE,), 8, 16, weight=5),
+        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", SIDE, (MEDIUM, LARGE), 10, 12),
+        PanelInfo("positioning", "Positioning", "X", "positioning:Positioning", SIDE, (LARGE,), 6, 7),
     )
 }
 """Every panel by id."""

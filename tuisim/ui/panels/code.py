@@ -46,7 +46,7 @@ def plain_lines(text: str) -> list[list[Piece]]:
 
 def coloured_lines(text: str) -> list[list[Piece]]:
     """Return the lines of a program in pieces of one colour."""
-    from pygments.lexers.python import PythonLexer  # type: ignore[import-untyped]
+    from pygments.lexers.python import PythonLexer
 
     lines: list[list[Piece]] = [[]]
     for token, value in PythonLexer(stripnl=False, ensurenl=False).get_tokens(text.rstrip("\n")):

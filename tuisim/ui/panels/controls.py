@@ -6,8 +6,10 @@ from typing import ClassVar
 
 from rich.style import Style
 from rich.text import Text
+from textual import events
 from textual.widget import Widget
 
+from tuisim.ui.actions import ACT, Act
 from tuisim.ui.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot
 from tuisim.ui.verbs import speed_label
 
@@ -46,7 +48,13 @@ class Controls(Widget, can_focus=False):
     def _button(self, text: str, action: str, works: bool) -> Text:
         name = "controls--button" if works else "controls--off"
         style = self.get_component_rich_style(name, partial=True)
-        return Text(f" {text} ", style + Style(meta={"@click": f"app.act('{action}')"}))
+        return Text(f" {text} ", style + Style(meta={ACT: action}))
+
+    def on_click(self, event: events.Click) -> None:
+        """Do what was clicked on."""
+        if name := event.style.meta.get(ACT):
+            event.stop()
+            self.post_message(Act(name))
 
     def _line(self, label: str, *parts: str | Text) -> Text:
         line = Text(f"{label:<{_LABEL_CELLS}}", self.get_component_rich_style("controls--label", partial=True))
@@ -64,22 +72,17 @@ class Controls(Widget, can_focus=False):
             (
                 self._button("R Run", "run", bool(self._program) and not in_run),
                 self._button("S Stop", "stop", in_run),
-                self._button("␣ Go on" if now.state == PAUSED else "␣ Pause", "pause", in_run),
+                self._button("Go on" if now.state == PAUSED else "Pause", "pause", in_run),
             )
         )
         spec = now.spec
-        speed = (
-            " ",
-            self._button("[", "slower", True),
-            f" {speed_label(now.speed):^4} ",
-            self._button("]", "faster", True),
-        )
+        slower, faster = (self._button(key, to, True) for key, to in (("[", "slower"), ("]", "faster")))
         noise = spec.world.noise
         lines = [
             buttons,
             Text(),
             self._line("State", _STATES.get(now.state, now.end or "ended")),
-            self._line("Speed", *speed[1:]),
+            self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
             self._line("Program", self._program or "none: o opens one"),
             self._line("Mat", spec.world.background),
             self._line("Robot", spec.robot.name),

@@ -101,7 +101,7 @@ class Log(ScrollView, can_focus=True):
     def on_resize(self, event: events.Resize) -> None:
         """Wrap anew."""
         # One column stays free for the scroll bar, so that its coming does not move the text.
-        width = max(4, self.size.width)
+        width = max(4, self.size.width - 1)
         at_end = self.scroll_offset.y >= self.max_scroll_y
         if width != self._width:
             self._width = width

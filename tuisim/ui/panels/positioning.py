@@ -28,7 +28,7 @@ def parse_field(field: str, text: str) -> float:
     Raises:
         ValueError: it is none, or out of range; the text says what is allowed.
     """
-    name, unit, limit = _FIELDS[field]
+    name, _, limit = _FIELDS[field]
     try:
         value = float(text.strip().replace(",", "."))
     except ValueError:

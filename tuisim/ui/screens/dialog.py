@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from typing import ClassVar, Generic, TypeVar
 
+from rich.table import Table
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
 
 Result = TypeVar("Result")
+
+
+def name_and_title(name: str, title: str, name_cells: int) -> Table:
+    """Return a line of a list: a name, and a title that wraps beside it."""
+    table = Table.grid(padding=(0, 2), expand=True)
+    table.add_column(width=name_cells, style="bold")
+    table.add_column(ratio=1)
+    table.add_row(name, title)
+    return table
 
 
 class Dialog(ModalScreen[Result], Generic[Result]):

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
-from tuisim.ui.screens.dialog import Dialog
+from tuisim.ui.screens.dialog import Dialog, name_and_title
 
 
 class MatPicker(Dialog[str]):
@@ -33,10 +32,7 @@ class MatPicker(Dialog[str]):
 
         mats = backgrounds()
         wide = max(map(len, mats), default=0)
-        options = [
-            Option(Text.assemble((f"{name:<{wide}}  ", "bold"), (mat.title, "dim")), id=name)
-            for name, mat in mats.items()
-        ]
+        options = [Option(name_and_title(name, mat.title, wide), id=name) for name, mat in mats.items()]
         listed = OptionList(*options)
         if self._current in mats:
             listed.highlighted = list(mats).index(self._current)

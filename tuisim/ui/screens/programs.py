@@ -11,13 +11,13 @@ from textual.app import ComposeResult
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
-from tuisim.ui.screens.dialog import Dialog
+from tuisim.ui.screens.dialog import Dialog, name_and_title
 
 MAX_FILES = 200
 
 
 def _example(name: str, path: Path, title: str, wide: int) -> Option:
-    return Option(Text.assemble((f"{name:<{wide}}  ", "bold"), (title, "dim")), id=str(path))
+    return Option(name_and_title(name, title, wide), id=str(path))
 
 
 class ProgramPicker(Dialog[str]):
