@@ -30,13 +30,14 @@ class ColorReading:
 
     @property
     def red_percent(self) -> float:
-        """`reflected_light_intensity_pc`: 100 · int(red) / 255."""
-        return 100 * int(self.red) / 255
+        """`reflected_light_intensity_pc`: 100 · (int(red) / 255)."""
+        # Divided first: the other order ends in another last digit for 57 of the 256 values.
+        return 100 * (int(self.red) / 255)
 
     @property
     def mean_percent(self) -> float:
-        """`full_reflected_light_intensity`: 100 · the sum of the whole channels / 765."""
-        return 100 * sum(self.rgb) / 765
+        """`full_reflected_light_intensity`: 100 · (the sum of the whole channels / 765)."""
+        return 100 * (sum(self.rgb) / 765)
 
     @property
     def code(self) -> int:

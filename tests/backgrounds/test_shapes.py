@@ -1,0 +1,93 @@
+"""Shapes cover what they should, also between pixels."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapes
+from shapes import BLACK, Box, Shape
+
+INK = 255.0
+"""What one fully covered pixel of black on white takes away from a channel."""
+
+
+def area(shape: Shape, *, smooth: bool = False) -> float:
+    """Pixels that a black shape covers on white."""
+    canvas = shapes.blank()
+    shapes.paint(canvas, BLACK, shape, smooth=smooth)
+    return float((INK - canvas[:, :, 0].astype(np.float64)).sum() / INK)
+
+
+@pytest.mark.parametrize(
+    ("box", "covered"),
+    [
+        pytest.param((10, 20, 13, 22), {(20, 10): 1, (21, 12): 1, (22, 10): 0, (20, 13): 0}, id="whole pixels"),
+        pytest.param((10.25, 20, 12, 21), {(20, 10): 0.75, (20, 11): 1, (20, 9): 0}, id="left edge inside"),
+        pytest.param((10.25, 20.5, 10.5, 20.75), {(20, 10): 0.0625}, id="within one pixel"),
+        pytest.param((-5, -5, 1, 1), {(0, 0): 1, (0, 1): 0}, id="partly off the mat"),
+        pytest.param((2361, 1142, 2400, 1200), {(1142, 2361): 1, (1142, 2360): 0}, id="last pixel"),
+    ],
+)
+def test_rect_blends_by_share(box: Box, covered: dict[tuple[int, int], float]) -> None:
+    canvas = shapes.blank()
+    shapes.rect(canvas, BLACK, box)
+    for (row, column), share in covered.items():
+        assert canvas[row, column, 0] == pytest.approx(INK * (1 - share))
+
+
+def test_rect_off_the_mat_paints_nothing() -> None:
+    canvas = shapes.blank()
+    shapes.rect(canvas, BLACK, (-50, -50, -10, -10))
+    shapes.rect(canvas, BLACK, (3000, 10, 3010, 20))
+    assert canvas.min() == INK
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"),
+    [
+        pytest.param(shapes.disc((500, 500), 40), math.pi * 40**2, id="disc"),
+        pytest.param(shapes.ellipse((500, 500), 60, 30), math.pi * 60 * 30, id="ellipse"),
+        pytest.param(shapes.ring((500, 500), 50, 30), math.pi * (50**2 - 30**2), id="ring"),
+        pytest.param(shapes.rounded_rect((100, 100, 300, 200), 30), 20_000 - (4 - math.pi) * 900, id="rounded_rect"),
+        pytest.param(shapes.polygon([(100, 100), (200, 100), (100, 180)]), 4000, id="triangle"),
+        pytest.param(
+            shapes.polygon(
+                [(0, 0), (60, 0), (60, 60), (0, 60), (0, 0), (20, 20), (40, 20), (40, 40), (20, 40), (20, 20)]
+            ),
+            3200,
+            id="polygon with a hole",
+        ),
+        pytest.param(shapes.stroke([(100, 100), (160, 180)], 10), 1000, id="stroke"),
+        pytest.param(shapes.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000, id="stroke, mitred"),
+        pytest.param(shapes.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"), 4000, id="mitred, other way"),
+        pytest.param(
+            shapes.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25, id="stroke, rounded"
+        ),
+    ],
+)
+@pytest.mark.parametrize("smooth", [False, True], ids=["hard", "smooth"])
+def test_area(shape: Shape, expected: float, smooth: bool) -> None:
+    assert area(shape, smooth=smooth) == pytest.approx(expected, rel=0.003 if smooth else 0.01)
+
+
+def test_hard_shapes_paint_pixels_whose_centre_is_inside() -> None:
+    assert area(shapes.disc((10.5, 10.5), 1.0)) == 5
+    assert area(shapes.disc((10.0, 10.0), 0.7)) == 0
+    assert area(shapes.disc((10.0, 10.0), 0.71)) == 4
+
+
+def test_smooth_edge_has_shades_and_hard_edge_has_none() -> None:
+    hard, smooth = shapes.blank(), shapes.blank()
+    shapes.paint(hard, BLACK, shapes.disc((100, 100), 20))
+    shapes.paint(smooth, BLACK, shapes.disc((100, 100), 20), smooth=True)
+    assert set(np.unique(hard)) == {0, 255}
+    assert len(np.unique(shapes.finished(smooth))) > 10
+
+
+def test_shade_takes_a_colour_for_each_pixel() -> None:
+    canvas = shapes.blank()
+    colors = np.arange(2 * 3 * 3, dtype=float).reshape(2, 3, 3)
+    shapes.shade(canvas, (5, 7, 8, 9), colors)
+    assert np.array_equal(canvas[7:9, 5:8], colors)

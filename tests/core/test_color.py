@@ -1,0 +1,243 @@
+"""Colour sensor on real mats and on small ones made for the purpose."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from collections.abc import Callable, Iterator
+from functools import cache
+from itertools import compress
+
+import pytest
+
+from tuisim import assets, fields
+from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_mask, disc_pixels
+from tuisim.core.geometry import Pose
+from tuisim.core.sensors import color
+from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RobotSpec
+from tuisim.core.state import Instant
+
+LEFT, RIGHT = RobotSpec().color_sensors
+OpenMat = Callable[[str], Field]
+
+
+@pytest.fixture(scope="module")
+def mat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenMat]:
+    """Opens a mat by name, for discs of 10, 20 and 30."""
+    home = tmp_path_factory.mktemp("mats")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TUISIM_HOME", str(home))
+
+        @cache
+        def opened(name: str) -> Field:
+            return fields.open_field(fields.prepare(assets.background(name).image, (10, 20, 30)))
+
+        yield opened
+    # A hundred megabytes a mat.
+    shutil.rmtree(home)
+
+
+def at(x_mm: float, y_mm: float, heading_deg: float = 0.0, *, light: int = 0, seed: int = 0, tick: int = 0) -> Instant:
+    return Instant(tick, Pose(x_mm, y_mm, heading_deg), noise=NoiseSpec(light=light), seed=seed)
+
+
+WHITE_SEEN = (255, 255, 255), 6, "White", 100.0
+GREY_BANDS = {
+    125: WHITE_SEEN,
+    325: ((220, 220, 220), 6, "White", 86.27450980392157),
+    725: ((211, 211, 211), 6, "White", 82.74509803921568),
+    1125: ((128, 128, 128), 6, "White", 50.19607843137255),
+    1525: ((0, 0, 0), 1, "Black", 0.0),
+    925: WHITE_SEEN,
+}
+
+
+@pytest.mark.parametrize("x_mm", GREY_BANDS)
+@pytest.mark.parametrize("sensor", [LEFT, RIGHT], ids=["left", "right"])
+def test_all_properties_on_grey_bands(x_mm: int, sensor: ColorSensorSpec, mat: OpenMat) -> None:
+    rgb, code, name, percent = GREY_BANDS[x_mm]
+    seen = color.reading(sensor, at(x_mm, 500), mat("Grey_bands"))
+    assert (seen.rgb, seen.code, seen.name, seen.red) == (rgb, code, name, rgb[0])
+    assert (seen.red_percent, seen.mean_percent) == (percent, percent)
+
+
+@pytest.mark.parametrize(
+    ("x_mm", "rgb", "code", "name", "red_percent", "mean_percent"),
+    [
+        (100, (255, 255, 255), 6, "White", 100, 100),
+        (300, (255, 0, 0), 5, "Red", 100, 100 / 3),
+        (500, (0, 255, 0), 3, "Green", 0, 100 / 3),
+        (700, (0, 0, 255), 2, "Blue", 0, 100 / 3),
+        (900, (0, 255, 255), 2, "Blue", 0, 200 / 3),
+        (1100, (255, 0, 255), 5, "Red", 100, 200 / 3),
+        (1300, (255, 255, 0), 4, "Yellow", 100, 200 / 3),
+        (1500, (0, 0, 0), 1, "Black", 0, 0),
+    ],
+)
+def test_rainbow_bands(
+    x_mm: int,
+    rgb: tuple[int, int, int],
+    code: int,
+    name: str,
+    red_percent: float,
+    mean_percent: float,
+    mat: OpenMat,
+) -> None:
+    seen = color.reading(LEFT, at(x_mm, 500), mat("Rainbow_bands"))
+    assert (seen.rgb, seen.code, seen.name) == (rgb, code, name)
+    assert (seen.red_percent, seen.mean_percent) == pytest.approx((red_percent, mean_percent))
+
+
+@pytest.mark.parametrize(
+    ("name", "x_mm", "red"),
+    [
+        pytest.param("Grey_bands", 210.999, 255, id="before the band"),
+        pytest.param("Grey_bands", 211, 253.967, id="one column in"),
+        pytest.param("Grey_bands", 212, 252.705, id="two columns in"),
+        pytest.param("Empty_Map", 2317, 255, id="box within the field"),
+        pytest.param("Empty_Map", 2326, 213.2, id="a little off"),
+        pytest.param("Empty_Map", 2334.6, 87.8, id="half off"),
+        pytest.param("Empty_Map", 2343, 0, id="wholly off"),
+        pytest.param("Empty_Map", 1e6, 0, id="far off"),
+        pytest.param("Empty_Map", -1e6, 0, id="far off, other side"),
+    ],
+)
+def test_edges(name: str, x_mm: float, red: float, mat: OpenMat) -> None:
+    seen = color.reading(LEFT, at(x_mm, 500), mat(name))
+    digits = len(str(float(red)).partition(".")[2])
+    assert seen.red == pytest.approx(red, abs=0.5 * 10**-digits)
+
+
+def linear_grey(col: int, row: int) -> int:
+    return max(0, 255 - (row - 100) * 255 // 943) if 100 <= row < 1094 else 255
+
+
+def glow(inner: int, outer: int, col: int, row: int) -> int:
+    mix: float = (math.hypot(col - 1181, row - 571.5) / (math.sqrt(2) * 1181)) ** (1 / 3)
+    return int(inner * (1 - mix) + outer * mix)
+
+
+@pytest.mark.parametrize(
+    ("name", "red_at"),
+    [
+        ("Linear_grey", linear_grey),
+        ("Radial_grey", lambda col, row: glow(255, 0, col, row)),
+        ("Radial_red", lambda col, row: glow(255, 80, col, row)),
+    ],
+)
+@pytest.mark.parametrize("pose", [(1181, 541.5, 90), (200, 50, 90), (300.7, 900.2, 37), (2000, 300, -90)], ids=str)
+@pytest.mark.parametrize("diameter", [10, 20, 30])
+def test_gradients_follow_their_formula(
+    name: str, red_at: Callable[[int, int], int], pose: tuple[float, float, float], diameter: int, mat: OpenMat
+) -> None:
+    sensor = ColorSensorSpec("left", "in2", -60, 30, diameter)
+    instant = at(*pose)
+    left, top = color.box_corner(instant.pose, sensor)
+    beneath = [
+        red_at(left + col, top + row)
+        for row, inside in enumerate(disc_mask(diameter))
+        for col, is_inside in enumerate(inside)
+        if is_inside
+    ]
+    assert color.reading(sensor, instant, mat(name)).red == sum(beneath) / len(beneath)
+
+
+@pytest.mark.parametrize(("diameter", "pixels"), [(10, 69), (20, 305), (30, 697)])
+def test_disc_has_the_known_number_of_pixels(diameter: int, pixels: int) -> None:
+    assert disc_pixels(diameter) == pixels
+
+
+@pytest.mark.parametrize(
+    ("pose", "corner"),
+    [
+        pytest.param(Pose(500, 500, 0), (520, 613), id="facing right"),
+        pytest.param(Pose(500, 500, 90), (470, 603), id="facing up"),
+        pytest.param(Pose(500, 500, 180), (460, 653), id="facing left"),
+        pytest.param(Pose(500, 500, -90), (510, 663), id="facing down"),
+        pytest.param(Pose(-20.5, 500, 0), (0, 613), id="half a pixel off is cut toward zero"),
+        pytest.param(Pose(-21.5, 500, 0), (-1, 613), id="one and a half off"),
+        pytest.param(Pose(500.9, 500, 0), (520, 613), id="fractions are cut"),
+    ],
+)
+def test_box_corner(pose: Pose, corner: tuple[int, int]) -> None:
+    nudged = Pose(pose.x_mm + 1e-9, pose.y_mm - 1e-9, pose.heading_deg)
+    assert color.box_corner(nudged, LEFT) == corner
+
+
+@pytest.mark.parametrize(
+    ("rgb", "code"),
+    [
+        pytest.param((0, 0, 0), 1, id="black"),
+        pytest.param((76, 76, 76), 1, id="grey of value 29"),
+        pytest.param((77, 77, 77), 6, id="grey of value 30"),
+        pytest.param((255, 255, 255), 6, id="white"),
+        pytest.param((100, 81, 81), 6, id="saturation 19 counts as grey"),
+        pytest.param((100, 80, 80), 5, id="saturation 20 has a colour"),
+        pytest.param((60, 59, 59), 1, id="dark, no colour"),
+        pytest.param((240, 119, 0), 5, id="hue 29"),
+        pytest.param((240, 120, 0), 4, id="hue 30"),
+        pytest.param((121, 240, 0), 4, id="hue 89"),
+        pytest.param((120, 240, 0), 3, id="hue 90"),
+        pytest.param((0, 240, 168), 3, id="hue 162"),
+        pytest.param((0, 240, 172), 2, id="hue 163"),
+        pytest.param((168, 0, 240), 2, id="hue 282"),
+        pytest.param((172, 0, 240), 5, id="hue 283"),
+        pytest.param((255, 0, 1), 5, id="hue 359"),
+    ],
+)
+def test_color_code(rgb: tuple[int, int, int], code: int) -> None:
+    assert color.color_code(*rgb) == code
+
+
+def test_reading_does_not_change_what_is_read_next(mat: OpenMat) -> None:
+    instant, field = at(1100, 500), mat("Rainbow_bands")
+    assert [color.reading(LEFT, instant, field) for _ in range(3)] == [color.reading(LEFT, instant, field)] * 3
+
+
+@pytest.mark.parametrize("sensor", [ColorSensorSpec("left", "in2", -20, 30, d) for d in (10, 20, 30)], ids=str)
+@pytest.mark.parametrize("light", [0, 20], ids=["clear", "noisy"])
+def test_pixel_array_is_what_the_reading_is_made_of(sensor: ColorSensorSpec, light: int, mat: OpenMat) -> None:
+    instant, field = at(1010, 500, 33, light=light), mat("Rainbow_bands")
+    array = color.pixel_array(sensor, instant, field)
+    pixels = [tuple(array[at : at + 3]) for at in range(0, len(array), 3)]
+    inside = [is_inside for row in disc_mask(sensor.diameter_mm) for is_inside in row]
+    assert len(pixels) == sensor.diameter_mm**2
+    assert {pixel for pixel, is_inside in zip(pixels, inside, strict=True) if not is_inside} == {OUTSIDE_DISC_RGB}
+    reds = [pixel[0] for pixel, is_inside in zip(pixels, inside, strict=True) if is_inside]
+    assert color.reading(sensor, instant, field).red == sum(reds) / len(reds)
+
+
+def noisy(mat: OpenMat, *, light: int = 20, seed: int = 1, tick: int = 7, sensor: ColorSensorSpec = LEFT) -> bytes:
+    """The pixels of the disc on the mid grey band."""
+    return color.pixel_array(sensor, at(1125, 500, light=light, seed=seed, tick=tick), mat("Grey_bands"))
+
+
+def test_noise_is_the_same_when_read_twice(mat: OpenMat) -> None:
+    assert noisy(mat) == noisy(mat)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        pytest.param({"seed": 2}, id="seed"),
+        pytest.param({"tick": 8}, id="tick"),
+        pytest.param({"sensor": RIGHT}, id="sensor"),
+        pytest.param({"light": 21}, id="level"),
+    ],
+)
+def test_noise_differs_by(other: dict[str, int], mat: OpenMat) -> None:
+    assert noisy(mat) != noisy(mat, **other)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("light", [1, 20, 127, 128])
+def test_noise_stays_within_its_level_and_reaches_it(light: int, mat: OpenMat) -> None:
+    inside = [is_inside for row in disc_mask(20) for is_inside in row for _ in range(3)]
+    seen = [byte for tick in range(20) for byte in compress(noisy(mat, light=light, tick=tick), inside)]
+    assert (min(seen), max(seen)) == (max(0, 128 - light), min(255, 128 + light))
+    assert sum(seen) / len(seen) == pytest.approx(128, abs=0.05 * light)
+
+
+@pytest.mark.parametrize(("x_mm", "low", "high"), [(1525, 0, 20), (125, 235, 255)], ids=["black", "white"])
+def test_noise_is_clamped(x_mm: float, low: int, high: int, mat: OpenMat) -> None:
+    seen = color.reading(LEFT, at(x_mm, 500, light=20), mat("Grey_bands"))
+    assert low < seen.red < high
