@@ -249,7 +249,7 @@ def test_opening_needs_no_heavy_library(home: Path, tmp_path: Path) -> None:
         "from tuisim import fields\n"
         "field = fields.open_field(fields.FieldFiles.from_plain(json.loads(sys.argv[1])))\n"
         "print(field.disc_sums(20, 5, 5)[0])\n"
-        "print(sorted({'numpy', 'PIL', 'platformdirs', 'tomllib'} & set(sys.modules)))\n"
+        "print(sorted({'numpy', 'PIL', 'platformdirs', 'tempfile'} & set(sys.modules)))\n"
     )
     command = [sys.executable, "-c", code, json.dumps(files.to_plain())]
     folder = Path(fields.__file__).parent.parent

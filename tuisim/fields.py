@@ -1,16 +1,14 @@
 """Mats made ready for the sensors: an image becomes raw files that are mapped, not read.
 
 `prepare` does the slow part once for each image and disc diameter and keeps it in the
-cache folder; `open_field` maps what it made. numpy and Pillow are only imported by what
-needs them, so that a child process can open a field without either.
+cache folder; `open_field` maps what it made. What only `prepare` needs is imported there,
+so that a child process opens a field at once.
 """
 
 from __future__ import annotations
 
-import hashlib
 import mmap
 import os
-import tempfile
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -102,6 +100,8 @@ def prepare(image: Path, diameters: Iterable[int]) -> FieldFiles:
         BackgroundError: the image cannot be read, a diameter is impossible, or the cache
             folder cannot be written.
     """
+    import hashlib
+
     wanted = sorted(set(diameters))
     for diameter in wanted:
         if not 1 <= diameter <= MAX_DIAMETER_PX:
@@ -202,6 +202,8 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 def _store(path: Path, array: NDArray[Any]) -> None:
     """Write an array's bytes; another process sees the whole file or none."""
+    import tempfile
+
     handle, part = tempfile.mkstemp(suffix=_PART, dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:
