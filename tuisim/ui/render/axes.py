@@ -1,0 +1,88 @@
+"""Axes: round limits and ticks, and their labels in character cells."""
+
+from __future__ import annotations
+
+import math
+
+_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+_SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
+
+Limits = tuple[float, float]
+
+
+def nice_step(span: float, count: int) -> float:
+    """Return a round distance that divides `span` (above 0) into about `count` parts, at most."""
+    rough = span / max(count, 1)
+    magnitude = 10.0 ** math.floor(math.log10(rough))
+    return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
+
+
+def value_limits(low: float, high: float) -> Limits:
+    """Return round limits around values, so that they seldom change while values come in."""
+    if high - low < 1e-9 * max(abs(low), abs(high), 1.0):
+        low, high = low - 1.0, high + 1.0
+    step = nice_step(high - low, 4)
+    return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
+
+
+def time_limits(end_s: float) -> Limits:
+    """Return limits from 0 to a round time after `end_s`, which grow in steps."""
+    for span_s in _SPANS_S:
+        if end_s <= span_s:
+            return 0.0, span_s
+    step = 60.0
+    while end_s > 5 * step:
+        step *= 2
+    return 0.0, math.ceil(end_s / step) * step
+
+
+def ticks(limits: Limits, count: int) -> list[float]:
+    """Return at most about `count` round positions inside limits."""
+    low, high = limits
+    step = nice_step(high - low, count)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [at * step for at in range(first, last + 1)]
+
+
+def label(value: float, step: float) -> str:
+    """Return a tick's label with no more digits than the distance between ticks needs."""
+    digits = max(0, math.ceil(-math.log10(step) - 1e-9)) if step < 1 else int(step % 1 != 0)
+    text = f"{value:.{digits}f}"
+    return "0" if float(text) == 0 else text
+
+
+def column_of(x: float, limits: Limits, columns: int) -> int:
+    """Return the character column of a value, 0 … columns - 1 for values inside the limits."""
+    low, high = limits
+    return math.floor((x - low) / (high - low) * (columns - 0.5))
+
+
+def at_column(column: int, limits: Limits, columns: int) -> float:
+    """Return the value in the middle of a character column."""
+    low, high = limits
+    return low + (high - low) * min(max((column + 0.25) / (columns - 0.5), 0.0), 1.0)
+
+
+def row_labels(limits: Limits, rows: int) -> dict[int, str]:
+    """Return labels of a vertical axis by row, 0 at the top."""
+    low, high = limits
+    positions = ticks(limits, max(1, min(6, (rows - 1) // 2)))
+    step = positions[1] - positions[0] if len(positions) > 1 else high - low
+    return {math.floor((high - y) / (high - low) * (rows - 0.25)): label(y, step) for y in positions}
+
+
+def time_axis(limits: Limits, columns: int) -> tuple[str, str]:
+    """Return a horizontal axis in seconds: the line with its ticks, and the labels below, each `columns` long."""
+    positions = ticks(limits, max(1, columns // 10))
+    step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
+    line, below = ["─"] * columns, [" "] * columns
+    free_from = 0
+    for at in positions:
+        column = column_of(at, limits, columns)
+        text = label(at, step) + (" s" if at == positions[-1] else "")
+        start = min(max(column - len(text) // 2, 0), columns - len(text))
+        line[column] = "┬"
+        if start >= free_from:
+            below[start : start + len(text)] = text
+            free_from = start + len(text) + 1
+    return "".join(line), "".join(below)
