@@ -7,6 +7,7 @@ no random numbers.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,19 +50,19 @@ def _write_csv(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> Non
 def _read_csv(path: Path) -> pd.DataFrame:
     import pandas as pd
 
-    names = list(pd.read_csv(path, nrows=0, encoding="utf-8").columns)
-    known: dict[Any, Any] = dict.fromkeys((*_TIMEDELTA, *_TEXT), "str") | dict.fromkeys(_WHOLE, "int64")
-    return _typed(
-        pd.read_csv(
-            path,
-            dtype={name: known[name] for name in names if name in known},
-            float_precision="round_trip",
-            # A variable may be called NA; only an empty number is a missing one.
-            keep_default_na=False,
-            na_values={name: [""] for name in names if name not in known},
-            encoding="utf-8",
-        )
-    )
+    # As text first: a variable may be called NA, and the reader's own numbers may be a last bit off.
+    frame = pd.read_csv(path, dtype="str", keep_default_na=False, encoding="utf-8")
+    for name in frame.columns:
+        if name not in (*_TIMEDELTA, *_TEXT):
+            frame[name] = [_number(text) for text in frame[name].tolist()]
+    return _typed(frame)
+
+
+def _number(text: str) -> int | float:
+    """Return a number as it was written: one without a point is whole, nothing is missing."""
+    if not text:
+        return math.nan
+    return int(text) if text.lstrip("-").isdigit() else float(text)
 
 
 def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
