@@ -92,6 +92,16 @@ class Motor:
         """The speed at which the wheel turns, with its sign."""
         return 0.0 if self.mode == STOPPED else self.speed_dps * self.sign
 
+    def ramp_ahead(self, ticks: int, step: float, whole: bool) -> list[float]:
+        """Change the speed as so many ticks do, and return it for each of them."""
+        speed, target, speeds = self.speed_dps, self.target_dps, []
+        for _ in range(ticks):
+            if speed != target:
+                speed = ramped(speed, target, step, whole)
+            speeds.append(speed)
+        self.speed_dps = speed
+        return speeds
+
     def quiet_ticks(self, tick: int, tick_s: float, halved: bool) -> int:
         """Return for how many ticks nothing but the ramp can change this motor.
 

@@ -6,13 +6,15 @@ The stream is SHAKE-128, the same on every machine and Python version.
 from __future__ import annotations
 
 from functools import lru_cache
-from hashlib import shake_128
 
 _BLOCK_TICKS = 256
 
 
 def stream(seed: int, tick: int, channel: str, size: int) -> bytes:
     """Return `size` random bytes that belong to one seed, tick and channel."""
+    # Imported when there is noise: a program without it starts sooner.
+    from hashlib import shake_128
+
     return shake_128(f"{seed}/{tick}/{channel}".encode()).digest(size)
 
 
@@ -34,7 +36,7 @@ def disturb_pixels(pixels: bytes, level: int, seed: int, tick: int, channel: str
 
 @lru_cache(maxsize=8)
 def _wheel_block(seed: int, block: int) -> tuple[float, ...]:
-    raw = shake_128(f"{seed}/{block}/wheels".encode()).digest(_BLOCK_TICKS * 8)
+    raw = stream(seed, block, "wheels", _BLOCK_TICKS * 8)
     return tuple(
         int.from_bytes(raw[at : at + 4], "little") / 2147483647.5 - 1.0 for at in range(0, _BLOCK_TICKS * 8, 4)
     )

@@ -14,12 +14,16 @@ from typing import Protocol
 from tuisim.core import motors
 from tuisim.core.drive import mm_per_degree, turn_rate_dps
 from tuisim.core.geometry import Pose
-from tuisim.core.motors import Motor, ramped
+from tuisim.core.motors import Motor
 from tuisim.core.noise import wheel_noise
-from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.spec import RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Instant
 
 NS_PER_S = 1_000_000_000
+
+FEW_TICKS = 3
+"""Up to so many ticks, setting up a tight loop costs more than it saves."""
+
 _FLOAT32 = Struct("<f")
 
 
@@ -49,8 +53,8 @@ class Simulation:
     """
 
     __slots__ = (
-        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_tick_s", "actions", "changed", "gyro_zero_deg", "heading_deg",
-        "left", "light_noise", "line", "motor_noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
+        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_spacing_mm", "_tick_s", "actions", "changed", "gyro_zero_deg", "heading_deg",
+        "left", "line", "noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -60,12 +64,13 @@ class Simulation:
         self._tick_s = 1.0 / self._hz
         self._mm_per_deg = mm_per_degree(spec.robot)
         self._ramp_step = 5000.0 / spec.robot.weight / self._hz if spec.robot.weight else 0.0
+        self._spacing_mm = spec.robot.wheel_spacing_mm
         self.tick = 0
         start = spec.world.start
         self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
         self.gyro_zero_deg = float32(start.heading_deg)
         self.left, self.right = Motor(), Motor()
-        self.light_noise, self.motor_noise = spec.world.noise.light, spec.world.noise.motor
+        self.noise = spec.world.noise
         self.pen_down = spec.robot.pen.down
         self.line = 0
         """Source line that lets the time pass, for the record."""
@@ -103,7 +108,7 @@ class Simulation:
             right_speed_dps=right,
             turn_rate_dps=turn_rate_dps(left, right, self.spec.robot),
             gyro_zero_deg=self.gyro_zero_deg,
-            noise=NoiseSpec(self.light_noise, self.motor_noise),
+            noise=self.noise,
             seed=self.spec.seed,
         )
 
@@ -146,7 +151,7 @@ class Simulation:
         halved = self.spec.profile.halve_position_moves
         while done < ticks:
             quiet = 0
-            if not self.motor_noise:
+            if not self.noise.motor and ticks - done > FEW_TICKS:
                 quiet = min(
                     ticks - done,
                     self.left.quiet_ticks(self.tick, self._tick_s, halved),
@@ -165,32 +170,44 @@ class Simulation:
     def _tick(self) -> None:
         """One tick in full: the rule that the loops below abbreviate."""
         self.tick += 1
-        profile, step, tick_s = self.spec.profile, self._ramp_step, self._tick_s
-        left, right = self.left, self.right
-        before = (left.mode, right.mode)
-        left_noise = right_noise = 0.0
-        if self.motor_noise:
-            first, second = wheel_noise(self.spec.seed, self.tick)
-            left_noise, right_noise = first * self.motor_noise, second * self.motor_noise
-        left_deg = left.step(self.tick, profile, step, tick_s, left_noise)
-        right_deg = right.step(self.tick, profile, step, tick_s, right_noise)
+        left, right, tick_s, noise = self.left, self.right, self._tick_s, self.noise.motor
+        # A motor that just goes on needs none of the rules of `step`; most ticks are such.
+        if left.mode == motors.FOREVER and left.speed_dps == left.target_dps and not noise:
+            left_deg = left.speed_dps * left.sign * tick_s
+            left.position_deg += left_deg
+        else:
+            left_deg = self._step(left, 0)
+        if right.mode == motors.FOREVER and right.speed_dps == right.target_dps and not noise:
+            right_deg = right.speed_dps * right.sign * tick_s
+            right.position_deg += right_deg
+        else:
+            right_deg = self._step(right, 1)
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         heading = math.radians(self.heading_deg)
         forward = (left_mm + right_mm) / 2
         self.x_mm += forward * math.cos(heading)
         self.y_mm += forward * math.sin(heading)
-        self.heading_deg += math.degrees((right_mm - left_mm) / self.spec.robot.wheel_spacing_mm)
-        if before != (left.mode, right.mode):
-            self.changed = True
+        self.heading_deg += math.degrees((right_mm - left_mm) / self._spacing_mm)
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         self._record()
 
+    def _step(self, motor: Motor, side: int) -> float:
+        """Let one motor do the present tick; 0 is the left one. Returns degrees turned."""
+        noise_dps = 0.0
+        if self.noise.motor:
+            noise_dps = wheel_noise(self.spec.seed, self.tick)[side] * self.noise.motor
+        before = motor.mode
+        turned = motor.step(self.tick, self.spec.profile, self._ramp_step, self._tick_s, noise_dps)
+        if motor.mode != before:
+            self.changed = True
+        return turned
+
     def _record(self) -> None:
-        sink = self._sink
+        sink, left, right = self._sink, self.left, self.right
         at = 64 + 64 * sink.count
         sink.room(1)[at : at + 64] = TICK_RECORD.pack(
             self.tick, self.line, self.x_mm, self.y_mm, self.heading_deg,
-            self.left.position_deg, self.right.position_deg, self._left_dps, self._right_dps,
+            left.position_deg, right.position_deg, self._left_dps, self._right_dps,
             self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF,
         )  # fmt: skip
         sink.publish(sink.count + 1)
@@ -224,46 +241,53 @@ class Simulation:
         return min(most, longest)
 
     def _glide_ramping(self, ticks: int) -> None:
-        left, right, step, tick_s = self.left, self.right, self._ramp_step, self._tick_s
-        whole, halved = self.spec.profile.round_forward_speeds, self.spec.profile.halve_position_moves
-        mm_per_deg, spacing = self._mm_per_deg, self.spec.robot.wheel_spacing_mm
-        left_on, right_on = left.mode != motors.STOPPED, right.mode != motors.STOPPED
-        left_twice = halved and left.mode == motors.POSITION
-        right_twice = halved and right.mode == motors.POSITION
+        left, right, tick_s, mm_per_deg, spacing = self.left, self.right, self._tick_s, self._mm_per_deg, self._spacing_mm
+        left_speeds, left_counts = self._ahead(left, ticks)
+        right_speeds, right_counts = self._ahead(right, ticks)
+        left_sign, right_sign, left_at, right_at = left.sign, right.sign, left.position_deg, right.position_deg
         line, zero, flags, actions = self.line, self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF
         x, y, heading, hz = self.x_mm, self.y_mm, self.heading_deg, self._hz
-        pack, radians, cos, sin, degrees = TICK_RECORD.pack, math.radians, math.cos, math.sin, math.degrees
+        pack, radians, degrees = TICK_RECORD.pack, math.radians, math.degrees
+        turn = radians(heading)
+        cos, sin = math.cos(turn), math.sin(turn)
         sink = self._sink
         buffer, at = sink.room(ticks), 64 + 64 * sink.count
         left_deg = right_deg = 0.0
-        for tick in range(self.tick + 1, self.tick + ticks + 1):
-            if left_on:
-                left.speed_dps = ramped(left.speed_dps, left.target_dps, step, whole)
-                left_deg = left.speed_dps * left.sign * tick_s
-                left.position_deg += 2 * left_deg if left_twice else left_deg
-            else:
-                left.position_deg += left.counts_on_dps * tick_s
-            if right_on:
-                right.speed_dps = ramped(right.speed_dps, right.target_dps, step, whole)
-                right_deg = right.speed_dps * right.sign * tick_s
-                right.position_deg += 2 * right_deg if right_twice else right_deg
-            else:
-                right.position_deg += right.counts_on_dps * tick_s
+        for tick, left_speed, right_speed in zip(
+            range(self.tick + 1, self.tick + ticks + 1), left_speeds, right_speeds, strict=True
+        ):
+            left_deg, right_deg = left_speed * left_sign * tick_s, right_speed * right_sign * tick_s
+            left_at += left_deg if left_counts is None else left_counts * left_deg + left.counts_on_dps * tick_s
+            right_at += right_deg if right_counts is None else right_counts * right_deg + right.counts_on_dps * tick_s
             left_mm, right_mm = left_deg * mm_per_deg, right_deg * mm_per_deg
-            turn = radians(heading)
             forward = (left_mm + right_mm) / 2
-            x += forward * cos(turn)
-            y += forward * sin(turn)
-            heading += degrees((right_mm - left_mm) / spacing)
+            x += forward * cos
+            y += forward * sin
+            if left_mm != right_mm:
+                heading += degrees((right_mm - left_mm) / spacing)
+                turn = radians(heading)
+                cos, sin = math.cos(turn), math.sin(turn)
             buffer[at : at + 64] = pack(
-                tick, line, x, y, heading, left.position_deg, right.position_deg,
-                left_deg * hz, right_deg * hz, zero, flags, actions,
-            )  # fmt: skip
+                tick, line, x, y, heading, left_at, right_at, left_deg * hz, right_deg * hz, zero, flags, actions
+            )
             at += 64
         self.tick += ticks
         self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+        left.position_deg, right.position_deg = left_at, right_at
         self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
         sink.publish(sink.count + ticks)
+
+    def _ahead(self, motor: Motor, ticks: int) -> tuple[list[float], float | None]:
+        """Let a motor's ramp run ahead.
+
+        Returns:
+            Its speed in each tick, and how often the encoder counts each step (None: once).
+        """
+        if motor.mode == motors.STOPPED:
+            return [0.0] * ticks, 0.0
+        profile = self.spec.profile
+        speeds = motor.ramp_ahead(ticks, self._ramp_step, profile.round_forward_speeds)
+        return speeds, 2.0 if profile.halve_position_moves and motor.mode == motors.POSITION else None
 
     def _glide_steady(self, ticks: int) -> None:
         left, right, tick_s, halved = self.left, self.right, self._tick_s, self.spec.profile.halve_position_moves
@@ -276,7 +300,7 @@ class Simulation:
             right_count = 2 * right_deg
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         forward = (left_mm + right_mm) / 2
-        turned = math.degrees((right_mm - left_mm) / self.spec.robot.wheel_spacing_mm)
+        turned = math.degrees((right_mm - left_mm) / self._spacing_mm)
         x, y, heading = self.x_mm, self.y_mm, self.heading_deg
         left_at, right_at = left.position_deg, right.position_deg
         line, zero, flags, actions = self.line, self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF

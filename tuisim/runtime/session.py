@@ -86,10 +86,20 @@ class Session:
     def spend(self, duration_ns: int) -> None:
         """Let time pass."""
         until = self.now + duration_ns
-        if self.slow or until >= self._due:
+        if self.slow or until > self._limit_ns:
             self._pass(until, False)
-        else:
+        elif until < self._due:
             self.now = until
+        else:
+            sim = self.sim
+            sim.line = self.program_line()
+            ticks = sim.ticks_at(until) - sim.tick
+            if ticks > CHUNK_TICKS:
+                self.advance(until, False)
+            else:
+                sim.advance(ticks)
+                self.now = until
+                self._due = sim.due_ns(sim.tick + 1)
 
     def charge(self, cost_ns: int) -> None:
         """Let the cost of a call pass, unless calls are free now."""

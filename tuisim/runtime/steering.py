@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import Message
 from tuisim.runtime import real
 from tuisim.runtime.channel import Channel
@@ -158,7 +159,7 @@ class Steering:
             case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
                 sim.place(Pose(x, y, heading))
             case protocol.SetNoise(light=light, motor=motor):
-                sim.light_noise, sim.motor_noise = light, motor
+                sim.noise = NoiseSpec(light, motor)
             case protocol.SetPen(down=down):
                 sim.pen_down = down
             case protocol.Answer(text=text):

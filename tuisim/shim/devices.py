@@ -9,6 +9,7 @@ from tuisim.shim.session import Session
 
 Reader = Callable[[], object]
 Writer = Callable[[str], None]
+NumberWriter = Callable[[int], None]
 
 
 class SimDevice:
@@ -19,6 +20,7 @@ class SimDevice:
         readers: By attribute, a function that gives its present value.
         writers: By attribute, a function that takes the text written.
         costs: By attribute, its cost in ns where it differs from the common one.
+        number_writers: By attribute, a function that takes the whole number written.
     """
 
     def __init__(
@@ -27,10 +29,14 @@ class SimDevice:
         readers: Mapping[str, Reader],
         writers: Mapping[str, Writer],
         costs: Mapping[str, int] | None = None,
+        number_writers: Mapping[str, NumberWriter] | None = None,
     ) -> None:
         self.session = session
         self.readers = dict(readers)
         self.writers = dict(writers)
+        self._number_writers = dict(number_writers or {})
+        for name, write_number in self._number_writers.items():
+            self.writers[name] = lambda text, write=write_number: write(_whole(text))  # type: ignore[misc]
         self._costs = dict(costs or {})
         self._common_cost = session.sim.spec.profile.attribute_read_ns
 
@@ -43,8 +49,11 @@ class SimDevice:
         reader = self.readers.get(name)
         if reader is None:
             raise OSError(errno.EACCES if name in self.writers else errno.ENOENT, name)
-        if not self.session.free:
-            self.session.charge(self._costs.get(name, self._common_cost))
+        session = self.session
+        if not session.free:
+            cost = self._costs.get(name, self._common_cost)
+            if cost:
+                session.spend(cost)
         return reader()
 
     def write(self, name: str, text: str) -> None:
@@ -57,6 +66,26 @@ class SimDevice:
         if writer is None:
             raise OSError(errno.EACCES if name in self.readers else errno.ENOENT, name)
         writer(text)
+
+
+    def write_number(self, name: str, value: int) -> None:
+        """Set an attribute to a whole number, without the way through text.
+
+        Raises:
+            OSError: as for `write`.
+        """
+        writer = self._number_writers.get(name)
+        if writer is None:
+            self.write(name, str(value))
+        else:
+            writer(value)
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise refuse(text) from None
 
 
 class Brick:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.abc
 import importlib.machinery
 import sys
 import types
@@ -20,7 +19,7 @@ from tuisim.shim.tacho import TachoMotor
 Finish = Callable[[types.ModuleType], None]
 
 
-class FinishingFinder(importlib.abc.MetaPathFinder):
+class FinishingFinder:
     """Lets a function finish a module right after its import.
 
     Args:

@@ -91,11 +91,10 @@ class ColorDevice(LegoSensor):
 
     def __init__(self, session: Session, spec: ColorSensorSpec) -> None:
         profile = session.sim.spec.profile
-        scale = profile.reflected_max / 255
-        read = profile.color_read_ns
+        read = self._read_ns = profile.color_read_ns
 
         def reflected() -> tuple[int]:
-            return (int(int(self.reading().red) * scale),)
+            return (self.reading().rgb[0] * 100 // 255,)
 
         def raw() -> tuple[int, int, int]:
             # The library gives int(raw * 255 / 300): rounding up here returns the whole channel exactly.
@@ -120,14 +119,18 @@ class ColorDevice(LegoSensor):
         at = (sim.tick, sim.actions)
         if at != self._seen_at or self._seen is None:
             self._seen_at = at
-            self._seen = color.reading(self._spec, sim.instant(), self._session.field)
+            if sim.noise.light:
+                self._seen = color.reading(self._spec, sim.instant(), self._session.field)
+            else:
+                self._seen = color.clear_reading(self._spec, sim.pose, self._session.field)
         return self._seen
 
-    def read(self) -> ColorReading:
-        """Return what the sensor sees, after the cost of a reading."""
+    def read(self, mode: str) -> ColorReading:
+        """Switch to a mode and return what the sensor sees, after the cost of a reading."""
+        self.mode = mode
         session = self._session
         if not session.free:
-            session.charge(session.sim.spec.profile.color_read_ns)
+            session.spend(self._read_ns)
         return self.reading()
 
 

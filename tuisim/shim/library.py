@@ -105,7 +105,16 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
             self._raise_friendly_access_error(error, name, value)
         return attribute
 
+    def set_attr_int(self: Any, attribute: Any, name: str, value: Any) -> Any:
+        number = int(value)
+        try:
+            devices[self._path].write_number(name, number)
+        except OSError as error:
+            self._raise_friendly_access_error(error, name, str(number))
+        return attribute
+
     device_class.get_attr_int = get_attr_int
+    device_class.set_attr_int = set_attr_int
     device_class.get_attr_string = get_attribute
     device_class.get_attr_line = get_attribute
     device_class._get_attribute = get_attribute

@@ -1,7 +1,8 @@
 """What the course adds to the library's classes: the `robolab` overlay.
 
-| added to ColorSensor | value |
+| in ColorSensor | value |
 | --- | --- |
+| reflected_light_intensity | int(red), 0 … 255, where the profile says so (the library: 0 … 100) |
 | reflected_light_intensity_pc | 100 · int(red) / 255 |
 | full_reflected_light_intensity | 100 · (int(red) + int(green) + int(blue)) / 765 |
 | red, green, blue | whole channels, 0 … 255 |
@@ -16,6 +17,8 @@ from tuisim.shim.devices import Brick
 from tuisim.shim.lego_sensors import ColorDevice
 from tuisim.shim.library import free_of_charge
 from tuisim.shim.session import Session
+
+WHOLE_CHANNEL = 255
 
 
 def patch_lego_module(
@@ -33,10 +36,15 @@ def patch_lego_module(
     color_sensor = lego.ColorSensor
 
     def channel(index: int) -> property:
-        return property(lambda self: colors[self._path].read().rgb[index])
+        return property(lambda self: colors[self._path].read("RGB-RAW").rgb[index])
 
-    color_sensor.reflected_light_intensity_pc = property(lambda self: colors[self._path].read().red_percent)
-    color_sensor.full_reflected_light_intensity = property(lambda self: colors[self._path].read().mean_percent)
+    def reflected(self: Any) -> int:
+        return int(colors[self._path].read("COL-REFLECT").red)
+
+    if session.sim.spec.profile.reflected_max == WHOLE_CHANNEL:
+        color_sensor.reflected_light_intensity = property(reflected)
+    color_sensor.reflected_light_intensity_pc = property(lambda self: colors[self._path].read("COL-REFLECT").red_percent)
+    color_sensor.full_reflected_light_intensity = property(lambda self: colors[self._path].read("RGB-RAW").mean_percent)
     color_sensor.red, color_sensor.green, color_sensor.blue = channel(0), channel(1), channel(2)
     # The library's constructor reads the angle to remember where it began.
     lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)

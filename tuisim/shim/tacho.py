@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tuisim.core.motors import STOPPED, Motor
 from tuisim.core.profile import MS, ProfileSpec
-from tuisim.shim.devices import SimDevice, refuse
+from tuisim.shim.devices import NumberWriter, SimDevice, refuse
 from tuisim.shim.session import Session
 
 COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")
@@ -13,6 +13,7 @@ POLARITIES = ("normal", "inversed")
 COUNT_PER_ROT = 360
 LARGE_MOTOR_DRIVER = "lego-ev3-l-motor"
 MAX_RAMP_MS = 60_000
+MAX_SET_POINT = 2**31 - 1
 
 
 class TachoMotor:
@@ -29,10 +30,12 @@ class TachoMotor:
         self._motor = motor
         self._profile: ProfileSpec = session.sim.spec.profile
         self._port = port
+        self._numbers: dict[str, int] = {}
+        self._direct = False
         self._set_defaults()
 
     def _set_defaults(self) -> None:
-        self._numbers = {
+        self._numbers |= {
             "speed_sp": 0, "position_sp": 0, "time_sp": 0, "duty_cycle_sp": 0, "ramp_up_sp": 0, "ramp_down_sp": 0,
             "speed_pid/Kp": 1000, "speed_pid/Ki": 60, "speed_pid/Kd": 0,
             "hold_pid/Kp": 80000, "hold_pid/Ki": 0, "hold_pid/Kd": 0,
@@ -62,14 +65,34 @@ class TachoMotor:
             "stop_action": lambda: self._stop_action,
             "polarity": lambda: self._polarity,
         }
-        writers = {name: (lambda text, name=name: self._set_number(name, text)) for name in self._numbers}
-        writers |= {
+        limits = {name: (0, MAX_SET_POINT) for name in self._numbers}
+        max_speed = int(self._profile.max_speed_dps)
+        limits |= {
+            "speed_sp": (-max_speed, max_speed),
+            "duty_cycle_sp": (-100, 100),
+            "position_sp": (-MAX_SET_POINT, MAX_SET_POINT),
+            "ramp_up_sp": (0, MAX_RAMP_MS),
+            "ramp_down_sp": (0, MAX_RAMP_MS),
+        }
+        numbers = {name: self._number_writer(name, *limits[name]) for name in self._numbers}
+        writers = {
             "command": self._command,
-            "position": self._set_position,
             "stop_action": self._set_stop_action,
             "polarity": self._set_polarity,
         }
-        return SimDevice(self._session, readers, writers)
+        return SimDevice(self._session, readers, writers, None, {**numbers, "position": self._set_position})
+
+    def _number_writer(self, name: str, low: int, high: int) -> NumberWriter:
+        numbers = self._numbers
+
+        def write(value: int) -> None:
+            if not low <= value <= high:
+                raise refuse(str(value))
+            numbers[name] = value
+            if self._direct and name == "duty_cycle_sp" and self._motor.mode != STOPPED:
+                self._run_direct()
+
+        return write
 
     @property
     def _sign(self) -> int:
@@ -89,26 +112,8 @@ class TachoMotor:
             return "running ramping"
         return "running"
 
-    def _set_number(self, name: str, text: str) -> None:
-        try:
-            value = int(text)
-        except ValueError:
-            raise refuse(text) from None
-        limit = {"speed_sp": int(self._profile.max_speed_dps), "duty_cycle_sp": 100}.get(name)
-        if limit is not None and abs(value) > limit:
-            raise refuse(text)
-        if name not in ("speed_sp", "duty_cycle_sp", "position_sp") and value < 0:
-            raise refuse(text)
-        if name in ("ramp_up_sp", "ramp_down_sp") and value > MAX_RAMP_MS:
-            raise refuse(text)
-        self._numbers[name] = value
-        if name == "duty_cycle_sp" and self._direct and self._motor.mode != STOPPED:
-            self._run_direct()
-
-    _direct = False
-
-    def _set_position(self, text: str) -> None:
-        self._motor.position_deg = float(int(text) * self._sign)
+    def _set_position(self, value: int) -> None:
+        self._motor.position_deg = float(value * self._sign)
         self._last_goal = None
 
     def _set_stop_action(self, text: str) -> None:

@@ -84,6 +84,13 @@ def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
     return int(x_mm - radius), int(FIELD_HEIGHT_MM - y_mm - radius)
 
 
+def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
+    """Return what a colour sensor sees without noise."""
+    red, green, blue = field.disc_sums(spec.diameter_mm, *box_corner(pose, spec))
+    count = disc_pixels_of(spec.diameter_mm)
+    return ColorReading(red / count, green / count, blue / count)
+
+
 @lru_cache(maxsize=16)
 def _disc_bytes(diameter: int) -> bytes:
     """1 for each byte of a box that belongs to the disc, 0 for the rest."""
@@ -99,13 +106,11 @@ def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
 
 def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
     """Return what a colour sensor sees at an instant, noise included."""
+    if not instant.noise.light:
+        return clear_reading(spec, instant.pose, field)
     count = disc_pixels_of(spec.diameter_mm)
-    if instant.noise.light:
-        box = bytes(map(int.__mul__, _seen_box(spec, instant, field), _disc_bytes(spec.diameter_mm)))
-        sums = (sum(box[0::3]), sum(box[1::3]), sum(box[2::3]))
-    else:
-        sums = field.disc_sums(spec.diameter_mm, *box_corner(instant.pose, spec))
-    return ColorReading(sums[0] / count, sums[1] / count, sums[2] / count)
+    box = bytes(map(int.__mul__, _seen_box(spec, instant, field), _disc_bytes(spec.diameter_mm)))
+    return ColorReading(sum(box[0::3]) / count, sum(box[1::3]) / count, sum(box[2::3]) / count)
 
 
 disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
