@@ -46,7 +46,9 @@ def record(store: RunStore) -> Callable[..., Recorder]:
     def start(spec: RunSpec, **options: object) -> Recorder:
         run = store.new_run(PROGRAM, spec, **options)  # type: ignore[arg-type]
         telemetry = TelemetryWriter(run.folder)
-        return Recorder(store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry))
+        # A map is as good a buffer as a memory view, which type checkers do not know.
+        simulation = Simulation(spec, telemetry)  # type: ignore[arg-type]
+        return Recorder(store, run, spec, telemetry, OutputWriter(run.folder), simulation)
 
     return start
 

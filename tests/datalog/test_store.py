@@ -6,8 +6,6 @@ import json
 import os
 import shutil
 import sqlite3
-import subprocess
-import sys
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
@@ -25,22 +23,6 @@ from tuisim.datalog.store import RunStore, home_folder, load_run
 from tuisim.errors import LogError
 
 FINISHED = RunEnd("finished", 100, 1_000_000_000)
-
-MANY = """
-import sys
-from pathlib import Path
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.datalog.runfile import RunEnd, StoredProgram
-from tuisim.datalog.store import RunStore
-store = RunStore(Path(sys.argv[1]))
-spec = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
-for _ in range(12):
-    run = store.new_run(StoredProgram("p.py", "", "", "none"), spec)
-    store.runs()
-    store.finish(run.id, RunEnd("finished", 1, 1))
-    print(run.number, flush=True)
-"""
 
 
 def test_run_is_stored_whole(record: Callable[..., Recorder], noisy_spec: RunSpec) -> None:
@@ -75,7 +57,7 @@ def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
     assert not list(logged.folder.glob("*.tmp")) + list(logged.folder.glob(".*"))
 
 
-@pytest.mark.parametrize("how", ["id", "start of the id", "number", "last", "folder"])
+@pytest.mark.parametrize("how", ["id", "start of the id", "number", "last", "folder", "folder as text"])
 def test_run_is_found(logged: StoredRun, store: RunStore, how: str) -> None:
     names: dict[str, str | Path] = {
         "id": logged.id,
@@ -83,6 +65,7 @@ def test_run_is_found(logged: StoredRun, store: RunStore, how: str) -> None:
         "number": "1",
         "last": "last",
         "folder": logged.folder,
+        "folder as text": str(logged.folder),
     }
     assert store.load_run(names[how]).id == logged.id
 
@@ -93,7 +76,7 @@ def test_number_goes_before_the_start_of_an_id(store: RunStore, spec: RunSpec) -
     assert store.find("2").number == 2
 
 
-@pytest.mark.parametrize("text", ["", "7", "nothing", "..", "../runs", "lastly"])
+@pytest.mark.parametrize("text", ["", "7", "nothing", "..", "lastly"])
 def test_unknown_run_is_an_error_that_says_what_there_is(logged: StoredRun, store: RunStore, text: str) -> None:
     with pytest.raises(LogError, match=r"no run .*a number from 1 to 1, an id, or last"):
         store.load_run(text)
@@ -187,6 +170,31 @@ def test_end_that_comes_late_counts(record: Callable[..., Recorder], spec: RunSp
     assert store.runs()[0].end == "killed"
 
 
+@pytest.mark.parametrize("listed", ["", INTERRUPTED], ids=["not listed", "listed as interrupted"])
+def test_end_that_never_reached_the_catalogue_counts(logged: StoredRun, store: RunStore, listed: str) -> None:
+    (before,) = store.runs()
+    _change_catalogue(store, f"UPDATE runs SET end = '{listed}', ticks = NULL, samples = NULL")
+    assert store.runs() == [before]
+    assert _change_catalogue(store, "SELECT end, ticks, samples FROM runs") == [("finished", 17, 4)]
+
+
+def _change_catalogue(store: RunStore, sql: str) -> list[object]:
+    with closing(sqlite3.connect(store.home / CATALOGUE_FILE)) as connection, connection:
+        return connection.execute(sql.replace(" end", ' "end"')).fetchall()
+
+
+def test_long_output_is_counted_when_the_run_is_listed(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore
+) -> None:
+    recorder = record(spec)
+    recorder.print("a: 1")
+    recorder.print("x" * (1 << 20))
+    recorder.end()
+    assert _change_catalogue(store, "SELECT samples FROM runs") == [(None,)]
+    assert store.runs()[0].samples == 1
+    assert _change_catalogue(store, "SELECT samples FROM runs") == [(1,)]
+
+
 def test_torn_run_says_what_is_lost(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:
     recorder = record(spec)
     recorder.print("a: 1")
@@ -273,79 +281,6 @@ def test_folder_deleted_or_copied_by_hand_is_noticed(logged: StoredRun, store: R
     gone = store.new_run(PROGRAM, spec)
     shutil.rmtree(gone.folder)
     assert [(info.number, info.id, info.samples) for info in store.runs()] == [(1, logged.id, 4), (3, "copy", 4)]
-
-
-# The catalogue
-
-
-def _cut_in_half(path: Path) -> None:
-    with closing(sqlite3.connect(path)) as connection:
-        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 + 100])
-
-
-def _scribble(path: Path) -> None:
-    with closing(sqlite3.connect(path)) as connection:
-        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-    content = bytearray(path.read_bytes())
-    content[4096:] = b"\xa5" * (len(content) - 4096)
-    path.write_bytes(bytes(content))
-
-
-def _other_version(path: Path) -> None:
-    with closing(sqlite3.connect(path)) as connection:
-        connection.execute("PRAGMA user_version = 77")
-
-
-HARM: dict[str, Callable[[Path], object]] = {
-    "missing": Path.unlink,
-    "empty": lambda path: path.write_bytes(b""),
-    "not a database": lambda path: path.write_bytes(b"rubbish" * 1000),
-    "cut in half": _cut_in_half,
-    "pages overwritten": _scribble,
-    "other version": _other_version,
-}
-
-
-@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
-def test_catalogue_is_made_again_from_the_folders(
-    record: Callable[..., Recorder], spec: RunSpec, store: RunStore, harm: Callable[[Path], object]
-) -> None:
-    for number in range(4):
-        recorder = record(replace(spec, seed=number))
-        recorder.print("a: 1")
-        recorder.end(summary=f"run {number}")
-    store.remove(store.find("2").id)
-    before = store.runs()
-    harm(store.home / CATALOGUE_FILE)
-    assert store.runs() == before
-    assert [info.number for info in before] == [1, 3, 4]
-    assert store.new_run(PROGRAM, spec).number == 5
-
-
-@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
-def test_harm_to_the_catalogue_does_not_stop_a_run(
-    store: RunStore, spec: RunSpec, harm: Callable[[Path], object]
-) -> None:
-    run = store.new_run(PROGRAM, spec)
-    harm(store.home / CATALOGUE_FILE)
-    store.finish(run.id, FINISHED)
-    assert [(info.number, info.end) for info in store.runs()] == [(1, "finished")]
-
-
-def test_seed_may_be_larger_than_the_integers_of_the_catalogue(store: RunStore, spec: RunSpec) -> None:
-    store.new_run(PROGRAM, replace(spec, seed=1 << 80))
-    assert store.runs()[0].seed == 1 << 80
-
-
-def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
-    command = [sys.executable, "-c", MANY, str(tmp_path / "home")]
-    children = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
-    numbers = [int(line) for child in children for line in child.communicate()[0].split()]
-    assert [child.returncode for child in children] == [0, 0]
-    assert sorted(numbers) == list(range(1, 25))
-    infos = RunStore(tmp_path / "home").runs()
-    assert [(info.number, info.end) for info in infos] == [(number, "finished") for number in range(1, 25)]
 
 
 # Noise

@@ -229,14 +229,14 @@ class RunStore:
         raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
 
     def load_run(self, run: str | Path) -> StoredRun:
-        """Return a run by its folder (a path) or by anything that `find` knows.
+        """Return a run by its folder (a path, or a text with a slash in it) or by anything that `find` knows.
 
         Raises:
             LogError: there is no such run, or it is damaged.
         """
-        if isinstance(run, Path):
-            return read_run(run)
-        if run not in ("", ".", "..") and "/" not in run and self.folder(run).is_dir():
+        if isinstance(run, Path) or os.sep in run:
+            return read_run(Path(run))
+        if run.strip(".") and self.folder(run).is_dir():
             return read_run(self.folder(run))
         info = self.find(run)
         return replace(read_run(self.folder(info.id)), number=info.number)
@@ -285,23 +285,31 @@ class RunStore:
         return replace(info, end=end.end, ticks=end.tick, time_s=end.time_ns / _NS_PER_S, summary=end.summary)
 
     def _completed(self, info: RunInfo) -> RunInfo:
-        """Fill in what the catalogue does not know yet, and remember it if it can no longer change."""
-        if info.end and info.samples is not None:
+        """Fill in what the catalogue does not know yet, and remember what can no longer change."""
+        if info.end not in ("", INTERRUPTED) and info.samples is not None:
             return info
         folder = self.folder(info.id)
-        state = info.end or state_without_end(folder)
+        known = info
+        if info.end in ("", INTERRUPTED):
+            # The run file is written first: it knows of an end that did not get as far as the catalogue.
+            stored = self._info_in(folder)
+            state = state_without_end(folder)
+            if stored is not None and stored.end:
+                known = replace(stored, number=info.number)
+            elif info.end and state == INTERRUPTED:
+                return info
+            else:
+                known = replace(info, end=state)
         try:
-            samples = _count_samples(OutputView(folder))
-            known = replace(info, end=state, samples=samples)
-            if not info.end:
+            known = replace(known, samples=_count_samples(OutputView(folder)))
+            if known.end in (RUNNING, INTERRUPTED):
                 known = _with_last_record(known, folder)
         except LogError as error:
-            return replace(info, end=state, summary=info.summary or str(error))
-        if info.end:
-            self._catalogue.update(info.id, samples=samples)
-        elif state == INTERRUPTED and is_held(folder) is False:
-            # Its process is gone for good. The end, should the host still bring it, replaces this.
-            self._catalogue.update(info.id, end=state, samples=samples, ticks=known.ticks, time_s=known.time_s)
+            return replace(known, summary=known.summary or str(error))
+        # Without a lock the process may still be on its way.
+        if known.end not in (RUNNING, INTERRUPTED) or (known.end == INTERRUPTED and is_held(folder) is False):
+            values = {name: getattr(known, name) for name in ("end", "ticks", "time_s", "samples", "summary")}
+            self._catalogue.update(info.id, **values)
         return known
 
 
