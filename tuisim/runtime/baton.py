@@ -79,13 +79,19 @@ class Baton:
         Returns:
             Whether another thread (or a motor) ended the wait before its time.
         """
-        me, session = self.current, self._session
+        me = self.current
         self._order += 1
         me.order, me.wake_ns, me.woken, me.on_change = self._order, until, False, on_change
         if until != FOREVER:
             heapq.heappush(self._timed, (until, me.order, me))
         if on_change:
             self._on_change.append(me)
+        self._sleep(me)
+        return me.woken
+
+    def _sleep(self, me: Task) -> None:
+        """Run again when it is this thread's turn."""
+        session = self._session
         me.free, session.free = session.free, 0
         self._hand_over(me)
         session.free = me.free
@@ -94,7 +100,14 @@ class Baton:
             raise pending
         if session.slow & STOPPING:
             self._leave_if_stopping(me)
-        return me.woken
+
+    def give_way(self) -> None:
+        """Let every thread that is ready run first, without time passing."""
+        me = self.current
+        self._order += 1
+        me.order = self._order
+        self.wake(me)
+        self._sleep(me)
 
     def wake(self, task: Task) -> None:
         """End another thread's wait; it runs when its turn comes."""

@@ -25,6 +25,8 @@ def patch_threads(baton: Baton) -> None:
 
     def start_new_thread(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any = None) -> int:
         task = baton.spawn(lambda: _run_bare(function, args, kwargs or {}), daemon=True)
+        # The library spins until its new thread has begun: let it begin.
+        baton.give_way()
         return id(task)
 
     low.allocate_lock = low.allocate = LockType
