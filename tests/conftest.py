@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -31,3 +35,26 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def root() -> Path:
     """The folder that holds the package, the mats and the programs."""
     return ROOT
+
+
+Command = Callable[..., "subprocess.CompletedProcess[str]"]
+"""`tuisim(*words)`: runs the real command in an own folder; `environment` adds variables."""
+
+
+@pytest.fixture
+def tuisim(tmp_path: Path) -> Command:
+    """The real `tuisim` command, run in `tmp_path` with nothing on its stdin."""
+
+    def run(*words: object, **environment: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "tuisim", *map(str, words)],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
+    return run

@@ -31,6 +31,13 @@ EXIT_BROKEN_PIPE = 141
 """What a shell shows for a program that SIGPIPE ended."""
 
 
+class _HelpFormatter(RawDescriptionHelpFormatter):
+    """Help in two columns, one line a switch where there is room."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, max_help_position=36)
+
+
 def _parser(command: str) -> SwitchParser:
     """The parser of one command; that of `open` also introduces the others."""
     if command == "open":
@@ -42,7 +49,7 @@ def _parser(command: str) -> SwitchParser:
             epilog=f"commands (each has its own --help):\n{listing}\n\n"
             "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, holds switches too;\n"
             "those given here win.",
-            formatter_class=RawDescriptionHelpFormatter,
+            formatter_class=_HelpFormatter,
             allow_abbrev=False,
         )
         parser.add_argument("program", nargs="?", metavar="PROGRAM", help="a Python file, or an example's name")
@@ -50,7 +57,9 @@ def _parser(command: str) -> SwitchParser:
         parser.add_switches()
         return parser
     what = f"{COMMANDS[command].capitalize()}."
-    parser = SwitchParser(prog=f"tuisim {command}", description=what, allow_abbrev=False)
+    parser = SwitchParser(
+        prog=f"tuisim {command}", description=what, formatter_class=_HelpFormatter, allow_abbrev=False
+    )
     import_module(f"tuisim.commands.{command}").add_arguments(parser)
     return parser
 
@@ -74,6 +83,7 @@ def _open(arguments: Namespace) -> int:
             panels_on=frozenset(settings.panels_on),
             panels_off=frozenset(settings.panels_off),
             autorun=settings.autorun,
+            quiet=settings.quiet,
             rays=settings.rays,
             speed=1.0 if settings.speed is None else settings.speed,
             fps=settings.fps,

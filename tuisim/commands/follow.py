@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from typing import TextIO
 
-from tuisim.commands.outcome import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED
+from tuisim.commands.outcome import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, EXIT_LIMIT
 from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow
 from tuisim.host import RunHandle
 from tuisim.protocol import Answer, Ended
@@ -21,11 +21,13 @@ class Follower:
     Args:
         handle: The run.
         out: Where its printed lines go; error text and speech go to stderr.
+        time_limit_s: Simulated time after which it is stopped, also if it is paced and knows no limit itself.
     """
 
-    def __init__(self, handle: RunHandle, out: TextIO) -> None:
+    def __init__(self, handle: RunHandle, out: TextIO, time_limit_s: float) -> None:
         self._handle = handle
         self._out = out
+        self._last_tick = time_limit_s * handle.spec.profile.tick_hz
         self._cut = 0
 
     def to_the_end(self) -> tuple[Ended, int]:
@@ -53,6 +55,9 @@ class Follower:
         if self._handle.waiting_for_input is not None:
             # Nobody is there to answer: the end of the input, as for a program whose stdin is empty.
             self._handle.send(Answer(None))
+        if not (ended or self._cut) and self._handle.telemetry.count > self._last_tick + 1:
+            self._handle.stop()
+            self._cut = EXIT_LIMIT
         return ended
 
     def _pass_on(self, rows: Iterable[OutputRow]) -> None:

@@ -27,6 +27,7 @@ def add_arguments(parser: SwitchParser) -> None:
         "Run programs without the app. What a program prints goes to stdout, the rest to stderr. "
         "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit; the worst of several."
     )
+    parser.usage = "tuisim run PROGRAM… [switches] [--export FILE]… [--telemetry FILE] [--json] …"
     parser.add_argument("programs", nargs="+", metavar="PROGRAM", help="a Python file, or an example's name")
     add = parser.add_argument_group("data and limits").add_argument
     add("--export", action="append", default=[], metavar="FILE",
@@ -90,7 +91,8 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int,
     )
     handle = start_run(one.program, one.spec, options, store)
     try:
-        ended, cut = Follower(handle, sys.stderr if arguments.json else sys.stdout).to_the_end()
+        follower = Follower(handle, sys.stderr if arguments.json else sys.stdout, arguments.timeout)
+        ended, cut = follower.to_the_end()
     finally:
         handle.close()
     return cut or outcome.exit_code_of(ended), handle.run_id

@@ -1,0 +1,81 @@
+"""Bad input to the real command: one clear line, exit code 2, nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import Command
+
+# Words of the command line, and what the line on stderr must say.
+BAD = {
+    "missing program": ("run nope.py", "nope.py: there is no such program"),
+    "misspelt program": ("run porg.py", "did you mean prog.py?"),
+    "second program missing": ("run prog.py nope.py", "nope.py: there is no such program"),
+    "no program": ("run", "PROGRAM"),
+    "directory as program": ("run .", "is a directory, not a program"),
+    "binary as program": ("run binary.py", "is not Python text"),
+    "notebook as program": ("run book.ipynb", "is a notebook"),
+    "wrong magic": ("run magic.py", "magic.py, line 1: -x: must be a number"),
+    "unknown mat": ("run prog.py -b Grey_band", "no such mat 'Grey_band' (did you mean Grey_bands?"),
+    "unknown robot": ("run prog.py -r Smal_Robot", "no such robot 'Smal_Robot' (did you mean Small_Robot"),
+    "unknown obstacles": ("run prog.py -o Posts", "no such obstacles 'Posts'"),
+    "unknown profile": ("run prog.py --profile robolap", "no such profile 'robolap' (did you mean robolab?)"),
+    "x is no number": ("run prog.py -x abc", "-x: must be a number from -10000 to 10000, got 'abc'"),
+    "noise too large": ("run prog.py -N 999", "-N: must be a whole number from 0 to 128, got '999'"),
+    "motor noise too large": ("run prog.py -M 501", "-M: must be a whole number from 0 to 500"),
+    "speed": ("run prog.py --speed fast", "--speed: no such speed 'fast' (max, or"),
+    "timeout": ("run prog.py --timeout 0", "--timeout: must be a number from 0.001"),
+    "solid": ("run prog.py --solid", "--solid: obstacles cannot be made solid yet"),
+    "unknown switch": ("run prog.py --frob", "--frob (see `tuisim run --help`)"),
+    "export without a format": ("run prog.py --export rows", ".csv"),
+    "export of no format": ("run prog.py --export rows.doc", ".csv"),
+    "export into no folder": ("run prog.py --export no/rows.csv", "no/rows.csv"),
+    "export onto a folder": ("run prog.py --export folder.csv", "folder.csv"),
+    "second export wrong": ("run prog.py --export rows.csv --export rows.doc", ".csv"),
+    "telemetry onto a folder": ("run prog.py --telemetry folder.csv", "folder.csv"),
+    "telemetry of two": ("run prog.py prog.py --telemetry t.csv", "--telemetry: takes one program (got 2)"),
+    "app without a terminal": ("", "the app needs a terminal"),
+    "program without a terminal": ("prog.py -b Loop", "the app needs a terminal"),
+    "open without a terminal": ("open prog.py", "the app needs a terminal"),
+    "missing program in the app": ("nope.py", "nope.py: there is no such program"),
+    "wrong switch in the app": ("-x abc", "-x: must be a number"),
+    "frames": ("prog.py --fps 0", "--fps: must be a whole number from 1 to 60"),
+    "colours": ("prog.py --colors 17", "--colors: no such value '17' (one of auto, truecolor, 256, 16, none)"),
+    "unknown run": ("runs show 99999", "99999"),
+    "which run": ("runs show", "show: which run?"),
+    "unknown action": ("runs shwo 1", "no such action 'shwo' (did you mean show?)"),
+    "export needs a file": ("runs export 1", "needs a run and a file"),
+    "too many words": ("profiles robolab", "robolab"),
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "prog.py").write_text("print('Number: 1')\n")
+    (tmp_path / "magic.py").write_text("# %%sim_magic -x abc\n")
+    (tmp_path / "binary.py").write_bytes(b"\xff\xfe\x00\x01")
+    (tmp_path / "book.ipynb").write_text("{}")
+    (tmp_path / "folder.csv").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize(("words", "said"), BAD.values(), ids=BAD)
+def test_bad_input(words: str, said: str, folder: Path, home: Path, tuisim: Command) -> None:
+    before = sorted(folder.rglob("*"))
+    done = tuisim(*words.split())
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("tuisim: ")
+    assert said in line
+    assert (done.returncode, done.stdout) == (2, "")
+    # No run was begun, and no file, whole or half, was written.
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_home_that_cannot_be_used(folder: Path, tuisim: Command) -> None:
+    (folder / "occupied").write_text("a file")
+    done = tuisim("run", "prog.py", TUISIM_HOME=str(folder / "occupied"))
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("tuisim: ")
+    assert "occupied" in line
+    assert (done.returncode, done.stdout) == (2, "")

@@ -1,0 +1,106 @@
+"""Every example program runs, and does what its title says."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from conftest import ROOT, Command
+
+from tuisim.assets import programs
+from tuisim.programfile import read_program
+
+EXAMPLES = {
+    "follow_line.py": {"lines": 1, "samples": 0},
+    "log_greys.py": {"background": "Grey_bands"},
+    "name_colour.py": {"background": "Rainbow_bands", "x_mm": 300.0, "y_mm": 500.0, "lines": 2},
+    "read_once.py": {"background": "Grey_bands", "x_mm": 325.0, "lines": 6},
+    "square.py": {"background": "Empty_Map", "lines": 4},
+    "until_black.py": {"background": "Grey_bands", "samples": 530},
+}
+"""What is known of each run beside that it finishes."""
+
+
+def test_every_example_is_in_the_table() -> None:
+    assert sorted(EXAMPLES) == [program.name for program in programs()]
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_introduces_itself(name: str) -> None:
+    path = ROOT / "programs" / name
+    title = next(program.title for program in programs() if program.name == name)
+    assert title.endswith(".")
+    assert len(title) < 80
+    # The magic line tells the world, so that the example runs as it is.
+    assert read_program(path).switches["background"]
+    assert path.read_text(encoding="utf-8").isascii()
+
+
+@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_finishes(name: str, profile: str, tuisim: Command) -> None:
+    done = tuisim("run", name, "--json", "--profile", profile, "--timeout", 100)
+    facts: dict[str, Any] = json.loads(done.stdout)
+    assert (done.returncode, facts["state"], facts["profile"]) == (0, "finished", profile)
+    assert facts.items() >= EXAMPLES[name].items()
+
+
+@pytest.mark.parametrize(
+    "words", [[], ["-N", 20, "-M", 50], ["-N", 20, "-M", 50, "--seed", 3]], ids=["calm", "noise", "seed"]
+)
+def test_line_follower_arrives_at_the_red_bar(words: list[object], tuisim: Command) -> None:
+    done = tuisim("run", "follow_line", "--json", "--timeout", 100, *words)
+    facts = json.loads(done.stdout)
+    assert facts["x_mm"] == pytest.approx(1855, abs=10)
+    assert facts["y_mm"] == pytest.approx(582, abs=5)
+
+
+def test_square_comes_back_to_where_it_began(tuisim: Command) -> None:
+    facts = json.loads(tuisim("run", "square", "--json").stdout)
+    assert facts["x_mm"] == pytest.approx(100, abs=3)
+    assert facts["y_mm"] == pytest.approx(800, abs=3)
+    assert facts["heading_deg"] == pytest.approx(-360, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("x_mm", "name", "code"),
+    [
+        (100, "White", 6),
+        (300, "Red", 5),
+        (500, "Green", 3),
+        (700, "Blue", 2),
+        (900, "Blue", 2),
+        (1100, "Red", 5),
+        (1300, "Yellow", 4),
+        (1500, "Black", 1),
+    ],
+    ids=lambda value: str(value),
+)
+def test_colour_is_named_and_said(x_mm: int, name: str, code: int, tuisim: Command) -> None:
+    done = tuisim("run", "name_colour", "-x", x_mm)
+    assert done.stdout == f"This is code {code}\nI see {name}\n"
+    assert f"says: I see {name}\n" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("x_mm", "value"), [(125, 255), (325, 220), (725, 211), (1125, 128), (1525, 0)], ids=lambda value: str(value)
+)
+def test_all_properties_of_a_grey(x_mm: int, value: int, tuisim: Command) -> None:
+    code, name = (6, "White") if value else (1, "Black")
+    assert tuisim("run", "read_once", "-x", x_mm).stdout.splitlines() == [
+        f"reflected_light_intensity: {value}",
+        f"reflected_light_intensity_pc: {value / 255 * 100}",
+        f"full_reflected_light_intensity: {value * 3 / 765 * 100}",
+        f"rgb: {(value, value, value)}",
+        f"color: {code}",
+        f"color_name: {name}",
+    ]
+
+
+def test_log_of_the_greys_has_the_plateaus_in_driving_order(tuisim: Command) -> None:
+    printed = tuisim("run", "log_greys").stdout.splitlines()
+    values = [float(line.removeprefix("Colour: ")) for line in printed]
+    bands = [value for value, after in zip(values, [*values[1:], None], strict=True) if value == after or after is None]
+    plateaus = [value for value, before in zip(bands, [None, *bands], strict=False) if value != before]
+    assert plateaus == [100, 86.27450980392157, 100, 82.74509803921568, 100, 50.19607843137255, 100, 0]
