@@ -233,8 +233,9 @@ class Lab(App[None]):
         self.notify(words, severity="information" if good else "error", markup=False)
         if self.desk.code:
             self.desk.code.mark_error(ended.error_line)
-        if self.desk.output and ended.error:
-            self.desk.output.add_error(ended.error)
+        if self.desk.output:
+            # A traceback is among the rows already.
+            self.desk.output.note(f"— {words}, {ended.time_ns / 1e9:.2f} s —")
         self.situation_changed()
 
     # The picture

@@ -75,8 +75,12 @@ def _strip_rows(strip: Sequence[str], width: int) -> list[list[str]]:
     return [list(strip[row::count]) for row in range(count)]
 
 
+def _row_least(row: Sequence[str]) -> int:
+    return max(PANELS[panel].min_rows for panel in row)
+
+
 def _strip_least(rows: list[list[str]]) -> int:
-    return sum(max(PANELS[panel].min_rows for panel in row) for row in rows)
+    return sum(map(_row_least, rows))
 
 
 def _fits(panels: Sequence[str], width: int, height: int) -> bool:
@@ -96,9 +100,14 @@ def _main_rows(width: int, height: int, strip_least: int) -> int:
 
 
 def _place_strip(boxes: dict[str, Box], rows: list[list[str]], top: int, width: int, height: int) -> None:
+    # Rows of panels share the height as panels in a column do, but for the rest, which goes to all.
+    least = [_row_least(row) for row in rows]
+    good = [max(PANELS[panel].good_rows for panel in row) for row in rows]
+    spare = height - sum(least)
     for at, row in enumerate(rows):
-        below = len(rows) - at
-        rows_high = height // below
+        extra = spare * good[at] // sum(good[at:])
+        spare -= extra
+        rows_high = least[at] + extra
         x = 0
         shares = sum(PANELS[panel].weight for panel in row)
         for panel in row:
@@ -107,7 +116,6 @@ def _place_strip(boxes: dict[str, Box], rows: list[list[str]], top: int, width: 
             x += across
             shares -= PANELS[panel].weight
         top += rows_high
-        height -= rows_high
 
 
 def arrange(panels: Sequence[str], width: int, height: int) -> Arrangement:

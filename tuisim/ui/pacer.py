@@ -15,7 +15,7 @@ TIMEOUT_S = 1.0
 """After this long an answer is given up."""
 MAX_MISSED = 3
 """After so many lost answers in a row the terminal is taken not to answer at all."""
-MAX_ON_THE_WAY = 4
+MAX_ON_THE_WAY = 3
 
 
 class Pacer:
@@ -63,4 +63,4 @@ class Pacer:
         if self._sent_at:
             took_s = self._clock() - self._sent_at.popleft()
             # Falls at once, rises slowly: a backlog must not pass for a long way.
-            self._round_trip_s = min(took_s, self._round_trip_s + 0.002)
+            self._round_trip_s = min(took_s, self._round_trip_s + 0.004)

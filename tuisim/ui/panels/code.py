@@ -107,7 +107,7 @@ class Code(ScrollView, can_focus=True):
         self._lit = self._error = 0
         self._lines = plain_lines(text) if text else []
         self._wrap()
-        self.scroll_to(y=0, animate=False, immediate=True)
+        self.scroll_to(y=0, animate=False, force=True)
         if text:
             # The lexer is imported once the plain text is on the screen.
             self.set_timer(0.1, self._colour)
@@ -175,7 +175,7 @@ class Code(ScrollView, can_focus=True):
         rows = self._rows_of(line)
         height = self.scrollable_content_region.height
         if rows and not (self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height):
-            self.scroll_to(y=max(0, rows.start - height // 3), animate=False, immediate=True)
+            self.scroll_to(y=max(0, rows.start - height // 3), animate=False, force=True)
 
     def render_line(self, y: int) -> Strip:
         """Return one row of the screen."""

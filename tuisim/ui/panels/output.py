@@ -26,10 +26,11 @@ KEPT_LINES = 2000
 MAX_LINE_CHARS = 2000
 """What of one line is shown."""
 
-_PREFIX = {SPEECH: "says: ", INPUT: "> "}
-_COLORS = {STDOUT: "", STDERR: "log--error", SPEECH: "log--speech", INPUT: "log--answer"}
 _NOTE = 0
 """Stream of a line of the panel's own."""
+
+_PREFIX = {SPEECH: "says: ", INPUT: "> "}
+_COLORS = {STDOUT: "", STDERR: "log--error", SPEECH: "log--speech", INPUT: "log--answer", _NOTE: "log--note"}
 
 
 def plain(text: str) -> str:
@@ -62,24 +63,31 @@ class Log(ScrollView, can_focus=True):
         self._count = 0
         self._lines: list[tuple[str, int]] = []
         self._width = 0
+        self._following = True
+        """Whether the newest line is kept in view: until the user scrolls up."""
+
+    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
+        """Follow the newest line again once the user has scrolled down to it."""
+        super().watch_scroll_y(old_value, new_value)
+        self._following = round(new_value) >= self.max_scroll_y
 
     def clear(self) -> None:
         """Forget every line."""
         self._rows.clear()
         self._lines.clear()
         self._count = 0
-        self._follow(True)
+        self._following = True
+        self._follow()
 
     def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
         """Append rows; `skipped` ones before them are only counted."""
-        at_end = self.scroll_offset.y >= self.max_scroll_y
         self._count += len(rows) + skipped
         newest = rows[-KEPT_LINES:]
         self._rows.extend(newest)
         if self._width:
             self._wrap(newest)
             del self._lines[: max(0, len(self._lines) - KEPT_LINES)]
-        self._follow(at_end)
+        self._follow()
 
     @property
     def _hidden(self) -> int:
@@ -90,25 +98,24 @@ class Log(ScrollView, can_focus=True):
         for row in rows:
             self._lines.extend((line, row.stream) for line in shown_lines(row, self._width))
 
-    def _follow(self, at_end: bool) -> None:
+    def _follow(self) -> None:
         # A first line says what is not shown.
         height = len(self._lines) + (1 if self._hidden else 0)
         self.virtual_size = Size(self.scrollable_content_region.width, height)
-        if at_end:
-            self.scroll_to(y=max(0, height - self.scrollable_content_region.height), animate=False, immediate=True)
+        if self._following:
+            self.scroll_to(y=self.max_scroll_y, animate=False, force=True)
         self.refresh()
 
     def on_resize(self, event: events.Resize) -> None:
         """Wrap anew."""
         # One column stays free for the scroll bar, so that its coming does not move the text.
         width = max(4, self.size.width - 1)
-        at_end = self.scroll_offset.y >= self.max_scroll_y
         if width != self._width:
             self._width = width
             self._lines.clear()
             self._wrap(self._rows)
             del self._lines[: max(0, len(self._lines) - KEPT_LINES)]
-        self._follow(at_end)
+        self._follow()
 
     def render_line(self, y: int) -> Strip:
         """Return one row of the screen."""
@@ -178,9 +185,9 @@ class Output(Vertical):
         """Append rows; `skipped` ones before them are only counted."""
         self._log.add(rows, skipped)
 
-    def add_error(self, text: str) -> None:
-        """Append an error text of several lines in red."""
-        self._log.add([OutputRow(line, 0, 0, 0, STDERR) for line in text.rstrip("\n").split("\n")])
+    def note(self, text: str) -> None:
+        """Append a line that is not the program's."""
+        self._log.add([OutputRow(text, 0, 0, 0, _NOTE)])
 
     def ask(self, prompt: str) -> None:
         """Show the field for an answer, with the program's prompt before it."""

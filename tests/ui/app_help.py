@@ -1,0 +1,71 @@
+"""What the tests of the app share: settings, and waiting for something to come about."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from textual.pilot import Pilot
+
+from tuisim.config import build_run_spec
+from tuisim.host import Program
+from tuisim.switches import Settings
+from tuisim.ui.app import Lab
+from tuisim.ui.session import AppSettings
+
+PATIENCE_S = 20.0
+
+LOGS = """\
+sensor_val = colorLeft.reflected_light_intensity_pc
+print('Colour: ' + str(sensor_val))
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+import time
+while sensor_val > 0:
+    sensor_val = colorLeft.reflected_light_intensity_pc
+    print('Colour: ' + str(sensor_val))
+    time.sleep(0.1)
+tank_drive.off()
+"""
+ENDLESS = "tank_drive.on(SpeedPercent(10), SpeedPercent(10))\nwhile True:\n    pass\n"
+
+
+def program(text: str) -> Program:
+    return Program(name="prog.py", text=text, prelude="preloaded", path=str(Path("prog.py").absolute()))
+
+
+def settings(text: str | None = None, background: str = "Grey_bands", **more: Any) -> AppSettings:
+    spec = build_run_spec(Settings(background=background))
+    return AppSettings(spec=spec, program=program(text) if text else None, background=background, **more)
+
+
+async def until(pilot: Pilot[Any], condition: Callable[[], bool]) -> None:
+    """Let the app go on until something is so."""
+    give_up = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < give_up, "it did not come about"
+        await pilot.pause(0.01)
+
+
+def lab(pilot: Pilot[Any]) -> Lab:
+    app = pilot.app
+    assert isinstance(app, Lab)
+    return app
+
+
+async def ready(pilot: Pilot[Any]) -> Lab:
+    """Wait until the mat lies there."""
+    app = lab(pilot)
+    await until(pilot, lambda: app.bridge.mat is not None)
+    await pilot.pause()
+    return app
+
+
+def notices(app: Lab) -> list[str]:
+    return [str(notice.message) for notice in app._notifications]
+
+
+def screen_text(app: Lab) -> str:
+    """What is on the screen, as lines of text."""
+    return "\n".join("".join(s.text for s in strip) for strip in app.screen._compositor.render_strips())
