@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from conftest import ROOT, Command
 
 import tuisim as package
+from tests.conftest import ROOT, Command
 from tuisim.cli import COMMANDS
 
 FIVE = "for number in range(5):\n    print('Number: ' + str(number))\n"

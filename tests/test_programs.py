@@ -6,8 +6,8 @@ import json
 from typing import Any
 
 import pytest
-from conftest import ROOT, Command
 
+from tests.conftest import ROOT, Command
 from tuisim.assets import programs
 from tuisim.programfile import read_program
 
