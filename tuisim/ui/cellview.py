@@ -94,7 +94,10 @@ class PixelView(Widget):
 
     def _blank(self) -> Strip:
         # A strip without a style would break Textual's filter for terminals without colours.
-        return Strip.blank(self.size.width, self.rich_style)
+        strip = Strip.blank(self.size.width, self.rich_style)
+        for line_filter in self.app.get_line_filters():
+            strip = strip.apply_filter(line_filter, self.background_colors[1])
+        return strip
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return the rows of a region, without Textual's cache, which would rebuild whole rows."""
@@ -133,21 +136,21 @@ class LinesView(Widget):
 
     def render_line(self, y: int) -> Strip:
         """Return one row."""
-        base = self.rich_style
         if y >= len(self._text_strips):
-            return TextStrip([Segment(" " * self.size.width, base)], self.size.width)
+            return self._made([])
         strip = self._text_strips[y]
         if strip is None or strip.cell_length != self.size.width:
-            strip = self._text_strips[y] = self._made(self._lines[y], base)
+            strip = self._text_strips[y] = self._made(self._lines[y])
         return strip
 
-    def _made(self, line: Sequence[Run], base: Style) -> Strip:
-        segments = [Segment(text, base + style) for text, style in line if text]
+    def _made(self, line: Sequence[Run]) -> Strip:
+        base = self.rich_style
+        whole = Strip([Segment(text, base + style) for text, style in line if text])
+        segments = list(whole.adjust_cell_length(self.size.width, base))
         # What bypasses Textual's cache of styles has to apply its filters itself.
         for line_filter in self.app.get_line_filters():
             segments = line_filter.apply(segments, self.background_colors[1])
-        whole = Strip(segments).adjust_cell_length(self.size.width, base)
-        return TextStrip(list(whole), self.size.width)
+        return TextStrip(segments, self.size.width)
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return the rows of a region, without Textual's cache, which would rebuild whole rows."""

@@ -10,14 +10,15 @@ from textual.widget import Widget
 
 from tuisim.core.sensors.color import pixel_array
 from tuisim.ui.cellview import LinesView, PixelView, Run
-from tuisim.ui.render.disc import FULL_PX, DiscLayout, draw_discs, lay_out
+from tuisim.ui.render.disc import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
+from tuisim.ui.render.palette import PALETTE_16
 from tuisim.ui.snapshot import Snapshot
 from tuisim.ui.throttle import Throttle
 
 _PERIOD_S = 0.25
 """Every pixel of both discs may change at once: more often would fill a slow link."""
 
-_LABEL = Style(color="#9fb0c3")
+_LABEL = Style(color="#a8a8a8")
 
 
 class Arrays(Widget):
@@ -70,7 +71,9 @@ class Arrays(Widget):
         sensors = now.spec.robot.color_sensors
         layout = lay_out(len(sensors), self._discs.size.width, 2 * self._discs.size.height)
         boxes = [pixel_array(sensor, now.instant, now.field) for sensor in sensors]
-        self._discs.set_picture(draw_discs(layout, boxes, self._discs.ground_rgb))
+        mode = self._discs.color_mode
+        corner_rgb = CORNER_16_RGB if mode.depth == PALETTE_16 and not mode.grey else CORNER_RGB
+        self._discs.set_picture(draw_discs(layout, boxes, self._discs.ground_rgb, corner_rgb))
         self._label_discs(layout, [sensor.name for sensor in sensors])
 
     def _label_discs(self, layout: DiscLayout, names: list[str]) -> None:

@@ -101,6 +101,8 @@ class Chart(Widget, can_focus=True):
         if not self.display or not self._text.size or not self._dirty:
             return
         self._dirty = False
+        if self._state.selected is None and (first := next(iter(self._traces), None)):
+            self._state = replace(self._state, selected=first.name)
         state = replace(self._state, grey=bool(self.app.no_color))
         if not self.has_focus:
             state = replace(state, selected=None)
@@ -117,8 +119,6 @@ class Chart(Widget, can_focus=True):
 
     def on_focus(self) -> None:
         """Show which tick box the keys work on."""
-        if self._state.selected is None and (first := next(iter(self._traces), None)):
-            self._state = replace(self._state, selected=first.name)
         self._draw_now()
 
     def on_blur(self) -> None:

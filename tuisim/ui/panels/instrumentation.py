@@ -18,9 +18,9 @@ from tuisim.ui.throttle import Throttle
 _PERIOD_S = 0.1
 """Figures that change faster cannot be read."""
 
-_LABEL = Style(color="#9fb0c3")
+_LABEL = Style(color="#a8a8a8")
 _VALUE = Style(color="#ffffff", bold=True)
-_UNIT = Style(color="#9fb0c3")
+_UNIT = Style(color="#a8a8a8")
 _COLUMN = 12
 """Width of the labels where there is room."""
 
@@ -131,6 +131,7 @@ def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Lin
         width,
         (_label(name), _unit("red "), _value(red), _unit(" %  mean "), _value(mean), _unit(" %")),
         (_label(name, 8), _unit("red"), _value(f"{red}"), _unit(" mean"), _value(f"{mean}")),
+        (_label(name, 8), _value(red), _unit(" mean"), _value(mean)),
         (_label(name[:1] + name[-1:], 3), _value(red), _unit(" mean"), _value(mean)),
     )
     channels = [f"{channel}" for channel in seen.rgb]

@@ -16,7 +16,7 @@ from tuisim.ui.render.traces import Trace, Traces
 
 Run: TypeAlias = tuple[str, Style]
 
-_AXIS = Style(color="#9fb0c3")
+_AXIS = Style(color="#a8a8a8")
 _PLAIN = Style(color="#d8dee6")
 _CURSOR = Style(color="#ffffff", bgcolor="#44505e")
 _STRONG = Style(color="#ffffff", bold=True)

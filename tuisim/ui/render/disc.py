@@ -16,6 +16,9 @@ FULL_PX = 20
 CORNER_RGB = (58, 70, 88)
 """Outside the disc: neither black nor white nor a colour of a mat, so that its shape shows on any of them."""
 
+CORNER_16_RGB = (0, 0, 135)
+"""The same where there are 16 colours: their greys are too few to spare one."""
+
 
 @dataclass(frozen=True, slots=True)
 class DiscLayout:
@@ -55,13 +58,16 @@ def lay_out(count: int, width_px: int, height_px: int) -> DiscLayout:
     return DiscLayout(width_px, height_px, side, tuple(corners), beside)
 
 
-def draw_discs(layout: DiscLayout, boxes: Sequence[bytes], ground_rgb: tuple[int, int, int]) -> Pixels:
+def draw_discs(
+    layout: DiscLayout, boxes: Sequence[bytes], ground_rgb: tuple[int, int, int], corner_rgb: tuple[int, int, int]
+) -> Pixels:
     """Return the picture of some discs.
 
     Args:
         layout: Where they are.
         boxes: For each the pixels of its box: d × d, three bytes a pixel, row-major.
-        ground_rgb: Colour around the discs.
+        ground_rgb: Colour of what is free.
+        corner_rgb: Colour of the corners of the boxes.
 
     Returns:
         Shape (layout.height_px, layout.width_px, 3).
@@ -69,20 +75,17 @@ def draw_discs(layout: DiscLayout, boxes: Sequence[bytes], ground_rgb: tuple[int
     picture = np.empty((layout.height_px, layout.width_px, 3), np.uint8)
     picture[:] = ground_rgb
     for (col, row), box in zip(layout.corners, boxes, strict=False):
-        disc = _scaled(box, layout.side_px)
+        disc = _scaled(box, layout.side_px, corner_rgb)
         at = (layout.side_px - len(disc)) // 2
-        # An odd start row would put the halves of two rows into one cell and blur nothing but the bytes.
-        at -= at % 2
-        rows, cols = picture[row + at : row + at + len(disc), col + at : col + at + len(disc)].shape[:2]
-        picture[row + at : row + at + rows, col + at : col + at + cols] = disc[:rows, :cols]
+        picture[row + at : row + at + len(disc), col + at : col + at + len(disc)] = disc
     return picture
 
 
-def _scaled(box: bytes, side_px: int) -> Pixels:
+def _scaled(box: bytes, side_px: int, corner_rgb: tuple[int, int, int]) -> Pixels:
     """Return a disc of at most `side_px`, area-averaged if it has to be made smaller."""
     diameter = round((len(box) / 3) ** 0.5)
     pixels = np.frombuffer(box, np.uint8).reshape(diameter, diameter, 3).copy()
-    pixels[~np.array(disc_mask(diameter))] = CORNER_RGB
+    pixels[~np.array(disc_mask(diameter))] = corner_rgb
     if diameter <= side_px:
         return pixels
     edges = np.arange(side_px + 1) * diameter // side_px

@@ -15,7 +15,7 @@ from tuisim.ui.render.viewport import Viewport
 FloatArray = npt.NDArray[np.float64]
 
 OBSTACLE_RGB = (175, 95, 0)
-OBSTACLE_EDGE_RGB = (95, 0, 0)
+OBSTACLE_EDGE_RGB = (135, 0, 0)
 RAY_RGB = (0, 175, 175)
 _RAY_OPACITY = 0.55
 

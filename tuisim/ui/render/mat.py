@@ -47,9 +47,11 @@ def _edges(start_mm: float, mm_per_px: float, count: int, size_mm: int) -> tuple
     if not len(inside):
         return slice(0, 0), np.empty(0, np.intp)
     first, last = int(inside[0]), int(inside[-1]) + 1
-    edges = np.rint(start_mm + np.arange(first, last + 1) * mm_per_px).astype(np.intp)
+    edges = np.floor(start_mm + np.arange(first, last + 1) * mm_per_px + 0.5).astype(np.intp)
     edges = np.clip(edges, 0, size_mm)
+    # Where a picture pixel is smaller than one of the mat, it shows the one that begins there.
     edges[:-1] = np.minimum(edges[:-1], size_mm - 1)
+    edges[-1] = max(edges[-1], edges[-2] + 1)
     return slice(first, last), edges
 
 

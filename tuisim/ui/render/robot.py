@@ -36,7 +36,7 @@ class RobotColors:
 
 
 COLORED = RobotColors()
-GREY = RobotColors(body=(68, 68, 68), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255))
+GREY = RobotColors(body=(48, 48, 48), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255))
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
 """For a robot that is shown where it was."""

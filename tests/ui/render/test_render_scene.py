@@ -1,0 +1,124 @@
+"""The world's picture: robot, trace, rays, obstacles, ghost."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import Obstacle, PenSpec, RobotSpec
+from tuisim.ui.render.mat import Pixels
+from tuisim.ui.render.robot import COLORED, draw_robot, shape_of
+from tuisim.ui.render.scene import ScenePainter, SceneState, pen_rgb
+from tuisim.ui.render.viewport import Viewport, whole_field
+
+MAT = np.full((1143, 2362, 3), 255, np.uint8)
+VIEW = whole_field(160, 78)
+ROBOT = RobotSpec()
+HERE = Pose(1000.0, 500.0, 0.0)
+
+
+def painter() -> ScenePainter:
+    return ScenePainter(MAT, (9, 9, 9))
+
+
+def at(picture: Pixels, x_mm: float, y_mm: float, view: Viewport = VIEW) -> tuple[int, ...]:
+    col, row = view.to_px(x_mm, y_mm)
+    return tuple(picture[int(row), int(col)].tolist())
+
+
+@pytest.mark.parametrize("width", [38, 76, 160, 400])
+@pytest.mark.parametrize("heading", [0, 45, 90, 180, -120])
+def test_the_marker_shows_the_heading(width: int, heading: int) -> None:
+    view = whole_field(width, width)
+    picture = np.full((view.height_px, view.width_px, 3), 255, np.uint8)
+
+    draw_robot(picture, view, Pose(1181, 571, heading), shape_of(ROBOT), COLORED)
+
+    yellow = (picture[..., 2] < 120) & (picture[..., 0] > 130)
+    blue = (picture[..., 0] < 130) & (picture[..., 2] > 150)
+    ahead = np.array([np.cos(np.radians(heading)), -np.sin(np.radians(heading))])
+    centre = [np.argwhere(part).mean(axis=0)[::-1] for part in (yellow, blue)]
+    assert yellow.sum() >= 3
+    assert (centre[0] - centre[1]) @ ahead > 0
+
+
+def test_a_robot_off_the_picture_is_left_out() -> None:
+    picture = np.zeros((20, 40, 3), np.uint8)
+
+    draw_robot(picture, whole_field(40, 20), Pose(9000, -9000, 0), shape_of(ROBOT), COLORED)
+
+    assert not picture.any()
+
+
+def test_the_trace_is_drawn_and_goes_on() -> None:
+    made = painter()
+    scene = SceneState(ROBOT, Pose(2000, 1000, 0))
+    made.extend_trace(np.array([200.0, 300.0]), np.array([300.0, 300.0]))
+    made.paint(VIEW, scene)
+    made.extend_trace(np.array([400.0]), np.array([300.0]))
+
+    picture = made.paint(VIEW, scene)
+
+    assert [at(picture, x, 300) for x in (205, 250, 350, 395)] == [pen_rgb("red")] * 4
+    assert at(picture, 450, 300) == (255, 255, 255)
+
+
+def test_a_lifted_pen_leaves_a_gap() -> None:
+    made = painter()
+    made.extend_trace(np.array([200.0, np.nan, 400.0, 500.0]), np.array([300.0, np.nan, 300.0, 300.0]))
+
+    picture = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
+
+    assert at(picture, 300, 300) == (255, 255, 255)
+    assert at(picture, 450, 300) == pen_rgb("red")
+
+
+def test_a_cleared_trace_is_gone_and_a_new_colour_repaints_it() -> None:
+    made = painter()
+    made.extend_trace(np.array([200.0, 300.0]), np.array([300.0, 300.0]))
+    red = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
+    green_pen = replace(ROBOT, pen=PenSpec(color="green"))
+    green = made.paint(VIEW, SceneState(green_pen, Pose(2000, 1000, 0)))
+    made.clear_trace()
+    gone = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
+
+    assert [at(picture, 250, 300) for picture in (red, green, gone)] == [
+        pen_rgb("red"),
+        pen_rgb("green"),
+        (255, 255, 255),
+    ]
+
+
+def test_rays_end_at_their_length_and_at_the_field() -> None:
+    scene = SceneState(ROBOT, HERE, rays=((0.0, 600.0), (90.0, 5000.0)))
+
+    picture = painter().paint(VIEW, scene)
+
+    assert at(picture, 1500, 500) != (255, 255, 255)
+    assert at(picture, 1700, 500) == (255, 255, 255)
+    assert {tuple(pixel) for pixel in picture[0].tolist()} <= {(9, 9, 9), (255, 255, 255), at(picture, 1020, 1130)}
+
+
+@pytest.mark.parametrize("width_mm", [200.0, 1.0], ids=["a box", "thinner than a pixel"])
+def test_obstacles_are_drawn(width_mm: float) -> None:
+    scene = SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=(Obstacle(300, 200, width_mm, 300),))
+
+    assert at(painter().paint(VIEW, scene), 301, 350) != (255, 255, 255)
+
+
+def test_the_ghost_is_drawn_below_the_robot() -> None:
+    alone = painter().paint(VIEW, SceneState(ROBOT, HERE))
+    both = painter().paint(VIEW, SceneState(ROBOT, HERE, ghost=replace(HERE, x_mm=500.0)))
+
+    assert at(both, 500, 500) != (255, 255, 255)
+    assert at(both, 1000, 500) == at(alone, 1000, 500)
+
+
+@pytest.mark.parametrize(
+    ("name", "rgb"), [("orange", (255, 135, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (215, 0, 0))]
+)
+def test_pen_colours(name: str, rgb: tuple[int, int, int]) -> None:
+    assert pen_rgb(name) == rgb
