@@ -28,7 +28,7 @@ def tuisim_in(installed: Path, folder: Path, *words: str) -> subprocess.Complete
     return subprocess.run(
         [sys.executable, "-P", "-m", "tuisim", *words],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(installed)},
+        env={**os.environ, "PYTHONPATH": str(installed), "PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         text=True,
         check=False,
