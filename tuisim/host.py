@@ -64,16 +64,18 @@ class RunOptions:
     """How a run is carried out; nothing here changes what it logs, limits and answers apart."""
 
     live: bool = False
-    """Paced against the wall clock and without limits; otherwise as fast as possible."""
+    """Paced against the wall clock, can be paused and takes user actions; otherwise as fast as possible."""
     speed: float = 1.0
     """1.0 is real time, 0 as fast as possible."""
     start_paused: bool = False
     time_limit_s: float = 600.0
-    """Simulated; headless only."""
+    """Simulated time after which the run is ended; 0 is no limit."""
     stall_limit_s: float = 60.0
-    """CPU seconds in one instant of simulated time; headless only."""
+    """CPU seconds in one instant of simulated time after which the run is ended; 0 is no limit."""
     answers: tuple[str, ...] = ()
-    """Scripted answers to input(); headless only."""
+    """Scripted answers to input()."""
+    asks_user: bool = False
+    """Whether input() asks the user when there are no scripted answers left; otherwise that is the end of the input."""
 
 
 class _Envelope(msgspec.Struct):
@@ -106,7 +108,9 @@ def decode_event(line: bytes) -> Message:
 class RunHandle:
     """One run: its child process, pipes and recording. Made by `start_run`."""
 
-    def __init__(self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunStore) -> None:
+    def __init__(
+        self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunStore
+    ) -> None:
         self.program, self.spec, self.field = program, spec, field
         self._options, self._store = options, store
         run = store.new_run(program, spec, field.to_plain(), asdict(options), options.live)
@@ -131,15 +135,16 @@ class RunHandle:
         lifeline_read, self._lifeline_fd = os.pipe()
         inherited = (command_read, event_write, lifeline_read)
         try:
-            self._process = subprocess.Popen(
-                [sys.executable, "-s", "-P", "-m", "tuisim.runtime", str(self.folder), *map(str, inherited)],
-                pass_fds=inherited,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=(self.folder / "child.log").open("wb"),
-                env=_child_environment(),
-                start_new_session=True,
-            )
+            with (self.folder / "child.log").open("wb") as log:
+                self._process = subprocess.Popen(
+                    [sys.executable, "-s", "-P", "-m", "tuisim.runtime", str(self.folder), *map(str, inherited)],
+                    pass_fds=inherited,
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=log,
+                    env=_child_environment(),
+                    start_new_session=True,
+                )
         finally:
             for fd in inherited:
                 os.close(fd)
@@ -275,7 +280,7 @@ class RunHandle:
         if command.kind == "answer":
             self.waiting_for_input = None
         try:
-            os.write(self._command_fd, command.line())
+            os.write(self._command_fd, command.encode())
         except (BrokenPipeError, BlockingIOError):
             # The child is gone, or so stuck that its pipe is full: pump() finds out.
             return
@@ -313,7 +318,7 @@ class RunHandle:
             elif now - self._asked_at > ASK_AGAIN_S:
                 self._asked_at = now
                 self._signal(signal.SIGUSR1)
-        elif not self._options.live and self._options.stall_limit_s:
+        elif self._options.stall_limit_s and not self.paused:
             tick = self.telemetry.count
             if tick != self._progress[0]:
                 self._progress = (tick, now)

@@ -21,7 +21,7 @@ class Message:
 
     kind: ClassVar[str]
 
-    def line(self) -> bytes:
+    def encode(self) -> bytes:
         """Return the message as one JSON line."""
         return json.dumps({"kind": self.kind, **asdict(self)}, separators=(",", ":")).encode() + b"\n"
 
@@ -102,8 +102,7 @@ class Answer(Message):
 
 
 COMMANDS: dict[str, type[Message]] = {
-    command.kind: command
-    for command in (Stop, Pause, Resume, StepTicks, SetSpeed, SetPose, SetNoise, SetPen, Answer)
+    command.kind: command for command in (Stop, Pause, Resume, StepTicks, SetSpeed, SetPose, SetNoise, SetPen, Answer)
 }
 ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, Answer)
 """The commands that are user actions."""

@@ -41,7 +41,7 @@ def ramped(speed: float, target: float, step: float, whole: bool) -> float:
 class Motor:
     """One motor with its encoder."""
 
-    __slots__ = ("blocked", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "speed_dps", "target_dps")
+    __slots__ = ("counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "speed_dps", "target_dps")
 
     def __init__(self) -> None:
         self.mode = STOPPED
@@ -55,7 +55,6 @@ class Motor:
         self.end_tick = 0
         self.counts_on_dps = 0.0
         """How fast the encoder goes on counting though the wheel stands (halved position moves)."""
-        self.blocked = False
 
     def run(self, speed_dps: float) -> None:
         """Run until told otherwise."""

@@ -32,12 +32,19 @@ def float32(value: float) -> float:
     return float(_FLOAT32.unpack(_FLOAT32.pack(value))[0])
 
 
+class Buffer(Protocol):
+    """Bytes that can be set by slices: a mapped file, or a bytearray."""
+
+    def __setitem__(self, at: slice, data: bytes, /) -> None:
+        """Store bytes."""
+
+
 class TickSink(Protocol):
     """Where tick records go."""
 
     count: int
 
-    def room(self, records: int) -> memoryview:
+    def room(self, records: int) -> Buffer:
         """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k."""
 
     def publish(self, count: int) -> None:
@@ -53,8 +60,9 @@ class Simulation:
     """
 
     __slots__ = (
-        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_spacing_mm", "_tick_s", "actions", "changed", "gyro_zero_deg", "heading_deg",
-        "left", "line", "noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
+        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_spacing_mm", "_tick_s",
+        "actions", "changed", "gyro_zero_deg", "heading_deg", "left", "line", "noise", "pen_down", "right", "spec",
+        "tick", "x_mm", "y_mm",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -241,7 +249,8 @@ class Simulation:
         return min(most, longest)
 
     def _glide_ramping(self, ticks: int) -> None:
-        left, right, tick_s, mm_per_deg, spacing = self.left, self.right, self._tick_s, self._mm_per_deg, self._spacing_mm
+        left, right, tick_s = self.left, self.right, self._tick_s
+        mm_per_deg, spacing = self._mm_per_deg, self._spacing_mm
         left_speeds, left_counts = self._ahead(left, ticks)
         right_speeds, right_counts = self._ahead(right, ticks)
         left_sign, right_sign, left_at, right_at = left.sign, right.sign, left.position_deg, right.position_deg

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tuisim.runtime import real  # isort: skip - must come first: it keeps the real clock
 
-import fcntl
 import os
 import sys
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import NoReturn
 
 from tuisim import protocol
 from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.datalog.lock import hold
 from tuisim.datalog.records import OutputWriter, TelemetryWriter
 from tuisim.fields import open_field
 from tuisim.runtime.channel import Channel
@@ -33,8 +33,7 @@ def main(arguments: list[str]) -> NoReturn:
     folder = Path(arguments[0])
     command_fd, event_fd, lifeline_fd = map(int, arguments[1:4])
     die_with_host(lifeline_fd)
-    lock_fd = os.open(folder / "lock", os.O_RDWR | os.O_CREAT, 0o644)
-    fcntl.flock(lock_fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    hold(folder)
     Child(folder, read_config(folder), Channel(command_fd, event_fd)).run()
 
 
@@ -53,13 +52,9 @@ class Child:
         self._sim = Simulation(config.spec, self._telemetry)
         self._output = Output(OutputWriter(folder))
         steering = Steering(channel, folder, config.live, config.speed, config.start_paused)
-        limits = Limits()
-        if not config.live:
-            limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
+        limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
         file = config.path or config.name
-        self._session = Session(
-            self._sim, open_field(config.field), self._output, channel, steering, limits, file
-        )
+        self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)
         session = self._session
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write

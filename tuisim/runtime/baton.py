@@ -242,8 +242,7 @@ class SimulatedLock:
         try:
             # A release hands the lock over: it is never free in between.
             given = baton.wait(FOREVER if timeout == -1 else baton._session.now + round(timeout * 1e9))
-        except BaseException:
-            # Whatever ended the wait, a lock must not be handed to somebody who is gone.
+        except BaseException:  # a lock must not be handed to somebody who is gone, whatever ended the wait
             if me in self._waiting:
                 self._waiting.remove(me)
             raise

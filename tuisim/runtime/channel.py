@@ -23,7 +23,7 @@ class Channel:
 
     def send(self, event: Message) -> None:
         """Send an event; a host that is gone is no error here."""
-        data = event.line()
+        data = event.encode()
         try:
             while data:
                 data = data[os.write(self._event_fd, data) :]

@@ -95,7 +95,8 @@ def finish_random(session: Session, module: types.ModuleType) -> None:
 
 def finish_selectors(session: Session, module: types.ModuleType) -> None:
     """Let event loops wait in simulated time."""
-    real_selector = module.DefaultSelector
+    selectors: Any = module
+    real_selector = selectors.DefaultSelector
 
     class SimulatedSelector(real_selector):  # type: ignore[misc,valid-type]
         """Looks at the real files without waiting, and waits on the simulated clock."""
@@ -113,7 +114,7 @@ def finish_selectors(session: Session, module: types.ModuleType) -> None:
                 ready = super().select(0)
             return ready
 
-    module.DefaultSelector = SimulatedSelector
+    selectors.DefaultSelector = SimulatedSelector
 
 
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:

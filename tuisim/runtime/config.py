@@ -26,6 +26,7 @@ class RunConfig:
     time_limit_s: float
     stall_limit_s: float
     answers: tuple[str, ...]
+    asks_user: bool
 
 
 def read_config(folder: Path) -> RunConfig:
@@ -49,4 +50,5 @@ def read_config(folder: Path) -> RunConfig:
         time_limit_s=options["time_limit_s"],
         stall_limit_s=options["stall_limit_s"],
         answers=tuple(options["answers"]),
+        asks_user=options["asks_user"],
     )

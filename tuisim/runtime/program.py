@@ -20,7 +20,7 @@ from tuisim.runtime.halt import Deadlock, StopProgram
 from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program
 from tuisim.runtime.output import LineStream, Output
 from tuisim.runtime.report import report_error
-from tuisim.runtime.session import LIVE, Session
+from tuisim.runtime.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,7 @@ class ProgramRunner:
             self._prepare()
             self._execute()
             self._baton.join_all()
-        except BaseException as error:
-            # Whatever a program lets escape is an outcome, not an error of ours.
+        except BaseException as error:  # whatever a program lets escape is an outcome, not an error of ours
             return self._outcome_of(error)
         finally:
             self.stdout.finish()
@@ -148,8 +147,11 @@ class ProgramRunner:
         session = self._session
         self.stdout.write(str(prompt))
         asked = self.stdout.take_part()
-        if not session.slow & LIVE:
-            answer = self._answers.pop(0) if self._answers else None
+        answer: str | None
+        if self._answers:
+            answer = self._answers.pop(0)
+        elif not self._config.asks_user:
+            answer = None
         else:
             session.channel.send(InputWanted(asked))
             tick_ns = NS_PER_S // session.sim.spec.profile.tick_hz

@@ -8,14 +8,15 @@ any mode that needs more (live pacing, threads, a command, stopping) sets a bit 
 from __future__ import annotations
 
 import sys
+import types
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from tuisim.core.field import Field
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S, Simulation
-from tuisim.protocol import Spoke
 from tuisim.datalog.records import SPEECH
+from tuisim.protocol import Spoke
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.halt import StopProgram
 from tuisim.runtime.output import Output
@@ -225,10 +226,10 @@ class Session:
 
     def program_line(self) -> int:
         """Return the line of the program that is being carried out, 0 if none is."""
-        frame = sys._getframe(1)
+        frame: types.FrameType | None = sys._getframe(1)
         file = self.program_file
         while frame is not None:
             if frame.f_code.co_filename == file:
                 return frame.f_lineno
-            frame = frame.f_back  # type: ignore[assignment]
+            frame = frame.f_back
         return 0

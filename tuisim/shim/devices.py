@@ -67,7 +67,6 @@ class SimDevice:
             raise OSError(errno.EACCES if name in self.readers else errno.ENOENT, name)
         writer(text)
 
-
     def write_number(self, name: str, value: int) -> None:
         """Set an attribute to a whole number, without the way through text.
 

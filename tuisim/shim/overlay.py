@@ -21,9 +21,7 @@ from tuisim.shim.session import Session
 WHOLE_CHANNEL = 255
 
 
-def patch_lego_module(
-    session: Session, module: types.ModuleType, brick: Brick, colors: dict[str, ColorDevice]
-) -> None:
+def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, colors: dict[str, ColorDevice]) -> None:
     """Add the course's properties to `ev3dev2.sensor.lego`.
 
     Args:
@@ -43,8 +41,15 @@ def patch_lego_module(
 
     if session.sim.spec.profile.reflected_max == WHOLE_CHANNEL:
         color_sensor.reflected_light_intensity = property(reflected)
-    color_sensor.reflected_light_intensity_pc = property(lambda self: colors[self._path].read("COL-REFLECT").red_percent)
-    color_sensor.full_reflected_light_intensity = property(lambda self: colors[self._path].read("RGB-RAW").mean_percent)
+
+    def red_percent(self: Any) -> float:
+        return colors[self._path].read("COL-REFLECT").red_percent
+
+    def mean_percent(self: Any) -> float:
+        return colors[self._path].read("RGB-RAW").mean_percent
+
+    color_sensor.reflected_light_intensity_pc = property(red_percent)
+    color_sensor.full_reflected_light_intensity = property(mean_percent)
     color_sensor.red, color_sensor.green, color_sensor.blue = channel(0), channel(1), channel(2)
     # The library's constructor reads the angle to remember where it began.
     lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from tuisim.core.motors import STOPPED, Motor
 from tuisim.core.profile import MS, ProfileSpec
-from tuisim.shim.devices import NumberWriter, SimDevice, refuse
+from tuisim.shim.devices import NumberWriter, Reader, SimDevice, refuse
 from tuisim.shim.session import Session
 
 COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")
@@ -14,6 +16,10 @@ COUNT_PER_ROT = 360
 LARGE_MOTOR_DRIVER = "lego-ev3-l-motor"
 MAX_RAMP_MS = 60_000
 MAX_SET_POINT = 2**31 - 1
+
+
+def _same(value: object) -> object:
+    return value
 
 
 class TachoMotor:
@@ -55,8 +61,8 @@ class TachoMotor:
             "count_per_rot": COUNT_PER_ROT,
             "max_speed": int(self._profile.max_speed_dps),
         }
-        readers = {name: (lambda value=value: value) for name, value in fixed.items()}
-        readers |= {name: (lambda name=name: self._numbers[name]) for name in self._numbers}
+        readers: dict[str, Reader] = {name: partial(_same, value) for name, value in fixed.items()}
+        readers |= {name: partial(self._numbers.__getitem__, name) for name in self._numbers}
         readers |= {
             "position": lambda: round(self._motor.position_deg) * self._sign,
             "speed": self._speed,
@@ -65,7 +71,7 @@ class TachoMotor:
             "stop_action": lambda: self._stop_action,
             "polarity": lambda: self._polarity,
         }
-        limits = {name: (0, MAX_SET_POINT) for name in self._numbers}
+        limits = dict.fromkeys(self._numbers, (0, MAX_SET_POINT))
         max_speed = int(self._profile.max_speed_dps)
         limits |= {
             "speed_sp": (-max_speed, max_speed),

@@ -140,7 +140,8 @@ class Bridge:
             return
         self.close()
         self._end, self._moved = None, True
-        self.run = start_run(self.program, self.spec, RunOptions(live=True, speed=self.speed))
+        options = RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)
+        self.run = start_run(self.program, self.spec, options)
         self._moved = False
 
     def stop(self) -> None:

@@ -1,0 +1,121 @@
+"""However a program ends, it is told with the program's own lines, and nothing printed is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.runtime.conftest import Done
+
+Run = Callable[..., Done]
+
+ENDS = {
+    "nothing to do": ("pass", "finished", 0),
+    "exit status": ("import sys\nprint('A: 1')\nsys.exit(3)", "finished", 3),
+    "exit text": ("import sys\nprint('A: 1', end='')\nsys.exit('bye')", "finished", 1),
+    "process exit": ("import os\nprint('A: 1')\nos._exit(3)", "finished", 3),
+    "undefined name": ("print('A: 1')\nprint(sensor_val)", "raised", 1),
+    "not Python": ("x = = 3", "raised", 1),
+    "null byte": ("print('A: 1')\0", "raised", 1),
+    "endless recursion": ("print('A: 1')\ndef f(): f()\nf()", "raised", 1),
+    "2 GiB at once": ("print('A: 1')\nx = [0] * (2 * 1024**3 // 8)", "raised", 1),
+    "memory bit by bit": ("print('A: 1')\nx = []\nwhile True: x.append(bytearray(10_000_000))", "raised", 1),
+    "other process": ("print('A: 1')\nimport os\nos.system('ls')", "raised", 1),
+    "subprocess": ("print('A: 1')\nimport subprocess\nsubprocess.run(['ls'])", "raised", 1),
+    "deadlock": ("import threading\nprint('A: 1')\na = threading.Lock()\na.acquire()\na.acquire()", "deadlock", 1),
+    "spin": ("while True: pass", "time_limit", 0),
+    "spin on a reading": ("while True: colorLeft.color", "time_limit", 0),
+    "spin on a motor": ("tank_drive.on(10, 10)\nwhile tank_drive.is_running: pass", "time_limit", 0),
+    "spin on the clock": ("import time\nwhile time.time() > 0: pass", "time_limit", 0),
+    "spin on commands": ("while True: tank_drive.on(50, 50)", "time_limit", 0),
+    "swallows everything": ("while True:\n    try: x = 1\n    except: pass", "time_limit", 0),
+    "endless cleaning up": ("try:\n    while True: pass\nfinally:\n    while True: pass", "time_limit", 0),
+}
+
+
+@pytest.mark.parametrize(("text", "end", "exit_code"), ENDS.values(), ids=ENDS)
+def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None:
+    done = run(text, time_limit_s=5.0)
+    assert (done.ended.end, done.ended.exit_code) == (end, exit_code)
+    if ("A: 1" in text and end != "raised") or text.startswith("print('A: 1')\n"):
+        assert done.lines == ["A: 1"]
+    assert not any("tuisim" in line for line in done.errors)
+
+
+def test_error_shows_the_programs_lines_only(run: Run) -> None:
+    done = run("import time\n\ndef look():\n    return sensor_val\n\nprint('A: 1')\nlook()\n")
+    assert done.errors == [
+        "Traceback (most recent call last):",
+        '  File "program.py", line 7, in <module>',
+        "    look()",
+        '  File "program.py", line 4, in look',
+        "    return sensor_val",
+        "           ^^^^^^^^^^",
+        "NameError: name 'sensor_val' is not defined",
+    ]
+    assert done.ended.error_line == 4
+    assert done.ended.summary == "NameError: name 'sensor_val' is not defined (line 4)"
+
+
+LIBRARY_ERRORS = {
+    "speed": ("tank_drive.on(150, 0)", "SpeedInvalid"),
+    "steering": ("tank_turn.on(101, 10)", "AssertionError"),
+    "empty port": ("from ev3dev2.motor import LargeMotor\nLargeMotor('outA')", "DeviceNotFound"),
+    "seconds": ("tank_drive.on_for_seconds(10, 10, -1)", "ValueError"),
+    "set point": ("tank_drive.left_motor.speed_sp = 2000", "out of range. Max speed: +/-1050"),
+    "stop action": ("tank_drive.left_motor.stop_action = 'fly'", "ValueError"),
+    "sensor mode": ("colorLeft.mode = 'X'", "ValueError"),
+    "write-only": ("tank_drive.left_motor.command", "write-only"),
+    "unknown attribute": ("tank_drive.left_motor.run_forever(foo=1)", "AttributeError"),
+    "refused part": ("from ev3dev2.button import Button\nButton()", "NotSimulated: ev3dev2.button.Button"),
+}
+
+
+@pytest.mark.parametrize(("text", "words"), LIBRARY_ERRORS.values(), ids=LIBRARY_ERRORS)
+def test_misuse_raises_the_librarys_own_error(run: Run, text: str, words: str) -> None:
+    done = run(text)
+    assert done.ended.end == "raised"
+    assert words in done.errors[-1]
+    assert done.ended.error_line == text.count("\n") + 1
+
+
+def test_stall_in_python_code_names_the_line(run: Run) -> None:
+    text = "import re\nprint('A: 1')\nre.match(r'(a+)+$', 'a' * 40 + 'b')"
+    done = run(text, stall_limit_s=1.0)
+    assert done.ended.end == "stalled"
+    assert "line 3" in done.ended.summary
+    assert done.lines == ["A: 1"]
+
+
+def test_stall_in_a_c_call_is_killed_and_names_the_line(run: Run) -> None:
+    done = run("print('A: 1')\nsum(range(10**12))", stall_limit_s=0.3)
+    assert done.ended.end == "stalled"
+    assert "line 2" in done.ended.summary
+    assert done.lines == ["A: 1"]
+
+
+def test_a_million_lines_are_all_kept(run: Run) -> None:
+    done = run("for i in range(1_000_000): print('A:', i)", time_limit_s=60.0)
+    assert done.ended.end == "finished"
+    assert len(done.lines) == 1_000_000
+    assert done.lines[-1] == "A: 999999"
+
+
+def test_too_much_output_ends_the_run(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    done = run("x = 'y' * 10_000_000\nwhile True: print(x)")
+    assert done.ended.end == "output_limit"
+    assert "256 MiB" in done.ended.summary
+
+
+def test_answers_to_input(run: Run) -> None:
+    done = run("name = input('Name? ')\nprint('hello ' + name)\ninput()", answers=("Ada",))
+    assert done.lines == ["hello Ada"]
+    assert "EOFError" in done.errors[-1]
+    assert [row.text for row in done.run.output.all_rows() if row.stream == 4] == ["Name? Ada", ""]
+
+
+def test_speech_is_shown(run: Run) -> None:
+    done = run('say("it\'s black", wait=True)\nprint(get_clock() > 0.5)')
+    assert done.lines == ["it's black", "True"]
+    assert [row.text for row in done.run.output.all_rows() if row.stream == 3] == ["it\u2019s black"]

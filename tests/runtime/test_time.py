@@ -1,0 +1,124 @@
+"""Simulated time in everything a program can tell the time with, and threads on the baton."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.runtime.conftest import Done
+
+Run = Callable[..., Done]
+
+PROGRAMS = {
+    "sleep": ("import time\ntime.sleep(1.5)\nprint(round(time.monotonic(), 3))", ["1.5"]),
+    "reading before its value": ("colorLeft.color\nprint(get_clock())", ["0.02"]),
+    "clock loop": (
+        "import time\nt = time.time()\nwhile time.time() < t + 1: pass\nprint(round(time.time() - t, 2))",
+        ["1.0"],
+    ),
+    "date": ("import datetime\nprint(datetime.datetime.now().year, datetime.date.today())", ["2020 2020-01-01"]),
+    "random": ("import random\nprint(random.random())", ["0.8444218515250481"]),
+    "queue": (
+        "import queue, threading, time\nq = queue.Queue()\n"
+        "def work():\n    for i in range(3):\n        time.sleep(0.3)\n        q.put(i)\n"
+        "threading.Thread(target=work).start()\nfor i in range(3): print(q.get(), round(time.monotonic(), 1))\n"
+        "try: q.get(timeout=1)\nexcept queue.Empty: print('empty', round(time.monotonic(), 1))",
+        ["0 0.3", "1 0.6", "2 0.9", "empty 1.9"],
+    ),
+    "pool": (
+        "from concurrent.futures import ThreadPoolExecutor\nimport time\n"
+        "def f(x):\n    time.sleep(x / 10)\n    return x\n"
+        "with ThreadPoolExecutor(3) as pool: print(list(pool.map(f, range(6))))\nprint(round(time.monotonic(), 1))",
+        ["[0, 1, 2, 3, 4, 5]", "0.7"],
+    ),
+    "asyncio": (
+        "import asyncio, time\nasync def f(n):\n    for i in range(2):\n        await asyncio.sleep(0.1 * n)\n"
+        "        print(n, i)\nasync def main(): await asyncio.gather(f(1), f(3))\nasyncio.run(main())\n"
+        "print(round(time.monotonic(), 1))",
+        ["1 0", "1 1", "3 0", "3 1", "0.6"],
+    ),
+    "event": (
+        "import threading, time\ne = threading.Event()\nthreading.Timer(0.5, e.set).start()\n"
+        "print(e.wait(2), round(time.monotonic(), 1), e.wait(0.1))",
+        ["True 0.5 True"],
+    ),
+    "condition and barrier": (
+        "import threading, time\nb = threading.Barrier(3)\n"
+        "def f(n):\n    time.sleep(n / 10)\n    b.wait()\n    print(n, round(time.monotonic(), 1))\n"
+        "ts = [threading.Thread(target=f, args=(n,)) for n in range(3)]\n"
+        "for t in ts: t.start()\nfor t in ts: t.join()\nprint(any(t.is_alive() for t in ts))",
+        None,
+    ),
+    "spinning threads": (
+        "import threading\nflag = []\ndef f():\n    while not flag: pass\n    print('seen')\n"
+        "t = threading.Thread(target=f)\nt.start()\nfor i in range(2000): pass\nflag.append(1)\nt.join()\nprint('end')",
+        ["seen", "end"],
+    ),
+    "non-daemon thread outlives main": (
+        "import threading, time\ndef f():\n    time.sleep(1)\n    print('late')\n"
+        "threading.Thread(target=f).start()\nprint('early')",
+        ["early", "late"],
+    ),
+    "error in a thread": (
+        "import threading\nt = threading.Thread(target=lambda: 1 / 0)\nt.start()\nt.join()\nprint('main goes on')",
+        ["main goes on"],
+    ),
+    "library's odometry thread": (
+        "from ev3dev2.motor import MoveDifferential\nfrom ev3dev2.wheel import EV3Tire\n"
+        "m = MoveDifferential(OUTPUT_B, OUTPUT_C, EV3Tire, 180)\nm.odometry_start()\nm.on_for_distance(30, 300)\n"
+        "m.odometry_stop()\nprint(round(m.y_pos_mm))",
+        ["300"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
+def test_time_and_threads(run: Run, text: str, lines: list[str] | None) -> None:
+    first = run(text)
+    assert first.ended.end == "finished", first.errors
+    if lines is not None:
+        assert first.lines == lines
+    assert run(text).recording == first.recording
+
+
+STEERS_AND_LOGS = """
+import threading, time, random
+def steer():
+    while not done:
+        tank_drive.on(random.randint(10, 60), random.randint(10, 60))
+        time.sleep(0.13)
+done = []
+thread = threading.Thread(target=steer)
+thread.start()
+for i in range(40):
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+    time.sleep(0.05)
+done.append(True)
+thread.join()
+tank_drive.on_for_rotations(50, 50, 0.5)
+"""
+
+
+@pytest.mark.parametrize("noise", [(0, 0), (20, 50)], ids=["quiet", "noisy"])
+def test_live_and_headless_runs_record_the_same_bits(run: Run, noise: tuple[int, int]) -> None:
+    headless = run(STEERS_AND_LOGS, noise=noise)
+    assert headless.ended.end == "finished"
+    fast = run(STEERS_AND_LOGS, noise=noise, live=True, speed=0.0)
+    paced = run(STEERS_AND_LOGS, noise=noise, live=True, speed=20.0)
+    assert fast.recording == headless.recording
+    assert paced.recording == headless.recording
+
+
+def test_seeds_differ(run: Run) -> None:
+    assert run(STEERS_AND_LOGS, seed=1).lines != run(STEERS_AND_LOGS, seed=2).lines
+
+
+def test_lines_of_the_program_are_recorded(run: Run) -> None:
+    done = run("import time\n\nprint('A: 1')\ntime.sleep(0.1)\nprint('A: 2')\n")
+    rows = done.run.output.all_rows()
+    assert [(row.text, row.line, row.time_ns, row.tick) for row in rows] == [
+        ("A: 1", 3, 0, 0),
+        ("A: 2", 5, 100_000_000, 10),
+    ]
+    assert [done.run.telemetry.record(tick).line for tick in range(11)] == [0] + [4] * 10
