@@ -28,7 +28,7 @@ def tuisim_in(installed: Path, folder: Path, *words: str) -> subprocess.Complete
     return subprocess.run(
         [sys.executable, "-P", "-m", "tuisim", *words],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(installed), "PYTHONDONTWRITEBYTECODE": "1"},
+        env={**os.environ, "PYTHONPATH": str(installed)},
         capture_output=True,
         text=True,
         check=False,
@@ -48,4 +48,5 @@ def test_wheel_holds_every_mat_program_and_style(installed: Path) -> None:
         assert wanted == {path.name for path in (installed / "tuisim" / "_assets" / folder).glob(pattern)}
     wanted = {str(path.relative_to(ROOT)) for path in (ROOT / "tuisim").rglob("*.tcss")}
     assert wanted == {str(path.relative_to(installed)) for path in (installed / "tuisim").rglob("*.tcss")}
-    assert not list(installed.rglob("__pycache__"))
+    (wheel,) = installed.parent.glob("*.whl")
+    assert not [name for name in zipfile.ZipFile(wheel).namelist() if "__pycache__" in name]
