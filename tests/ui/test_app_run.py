@@ -84,7 +84,7 @@ async def test_pause_one_tick_go_on_and_stop() -> None:
 async def test_the_robot_can_be_placed_during_a_run() -> None:
     async with Lab(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.bridge.in_run)
         app.bridge.place(Pose(1000, 700, 90))
         await until(pilot, lambda: app.bridge.pose.y_mm >= 700)
         await pilot.press("S")
@@ -103,7 +103,7 @@ async def test_an_error_is_shown_with_its_line() -> None:
         text = screen_text(app)
         assert "✗ 2" in text
         assert text.count("Traceback") == 1
-        assert any("NameError" in notice for notice in notices(app))
+        await until(pilot, lambda: any("NameError" in notice for notice in notices(app)))
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from textual.geometry import Region, Size
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tuisim.ui.panels.output import plain
+from tuisim.ui.panels.log import plain
 from tuisim.ui.snapshot import ENDED, IDLE, RUNNING, Snapshot
 
 LIT_GAP_S = 0.1

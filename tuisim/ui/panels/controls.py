@@ -57,9 +57,10 @@ class Controls(Widget, can_focus=False):
             self.post_message(Act(name))
 
     def _line(self, label: str, *parts: str | Text) -> Text:
-        line = Text(f"{label:<{_LABEL_CELLS}}", self.get_component_rich_style("controls--label", partial=True))
+        line = Text()
+        line.append(f"{label:<{_LABEL_CELLS}}", self.get_component_rich_style("controls--label", partial=True))
         for part in parts:
-            line.append(part, "not bold") if isinstance(part, str) else line.append_text(part)
+            line.append(part)
         return line
 
     def render(self) -> Text:
