@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from panel_help import PanelApp, moment, screen_text, small_field
 
+from tests.ui.panel_help import PanelApp, moment, screen_text, small_field
 from tuisim.core.geometry import Pose
 from tuisim.ui.cellview import PixelView
 from tuisim.ui.panels.arrays import Arrays

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from panel_help import PanelApp, moment, screen_text
 
+from tests.ui.panel_help import PanelApp, moment, screen_text
 from tuisim.ui.panels.chart import Chart
 from tuisim.ui.render.chart import ChartPainter
 

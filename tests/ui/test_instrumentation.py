@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from panel_help import SPEC, PanelApp, moment, screen_text
 
+from tests.ui.panel_help import SPEC, PanelApp, moment, screen_text
 from tuisim.core.geometry import Pose
 from tuisim.ui.panels.instrumentation import Instrumentation, lines
 from tuisim.ui.snapshot import ENDED, Snapshot

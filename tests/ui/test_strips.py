@@ -23,12 +23,10 @@ WIDTH, ROWS = 60, 12
 
 @pytest.fixture(autouse=True)
 def textual_own_way() -> Iterator[None]:
-    """Leave Textual as it was."""
-    before = ChopsUpdate.render_segments
+    """Begin and end with what Textual does by itself."""
     use_exact_crops(False)
     yield
     use_exact_crops(False)
-    ChopsUpdate.render_segments = before  # type: ignore[method-assign]
 
 
 def console(system: Any = "truecolor") -> Console:

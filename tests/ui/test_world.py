@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from panel_help import PanelApp, moment, white_mat
 from textual import events
 
+from tests.ui.panel_help import PanelApp, moment, white_mat
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.ui.panels.world import TURN_STEP_DEG, World, WorldView

@@ -63,6 +63,19 @@ def test_labels(value: float, step: float, text: str) -> None:
     assert axes.label(value, step) == text
 
 
+@pytest.mark.parametrize(
+    ("limits", "rows", "labels"),
+    [
+        pytest.param((40.0, 100.0), 4, {0: "100", 3: "40"}, id="few rows"),
+        pytest.param((0.0, 100.0), 1, {0: "100"}, id="one row"),
+        pytest.param((0.0, 100.0), 12, {0: "100", 2: "80", 4: "60", 7: "40", 9: "20", 11: "0"}, id="many rows"),
+        pytest.param((-1.0, 1.0), 4, {0: "1.0", 3: "-1.0"}, id="fractions"),
+    ],
+)
+def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, str]) -> None:
+    assert axes.row_labels(limits, rows) == labels
+
+
 def test_reduction_keeps_extremes_and_order() -> None:
     times = np.linspace(0, 60, 100_000)
     values = np.sin(times)

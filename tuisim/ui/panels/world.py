@@ -26,7 +26,7 @@ from tuisim.ui.strips import use_exact_crops
 TURN_STEP_DEG = 5.0
 """How far one notch of the mouse wheel turns the robot."""
 
-_RAY_LAG_PX = 0.75
+_RAY_LAG_PX = 1.0
 """Rays are cast anew once the robot has moved so far or turned them so far at their ends:
 they change far more cells than the robot does, and this little cannot be seen."""
 

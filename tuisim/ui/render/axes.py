@@ -66,7 +66,11 @@ def at_column(column: int, limits: Limits, columns: int) -> float:
 def row_labels(limits: Limits, rows: int) -> dict[int, str]:
     """Return labels of a vertical axis by row, 0 at the top."""
     low, high = limits
-    positions = ticks(limits, max(1, min(6, (rows - 1) // 2)))
+    if rows < 7:
+        # Limits are round: the two ends say more than one tick somewhere between them.
+        step = nice_step(high - low, 4)
+        return {rows - 1: label(low, step), 0: label(high, step)}
+    positions = ticks(limits, min(6, (rows - 1) // 2))
     step = positions[1] - positions[0] if len(positions) > 1 else high - low
     return {math.floor((high - y) / (high - low) * (rows - 0.25)): label(y, step) for y in positions}
 
