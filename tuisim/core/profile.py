@@ -53,6 +53,8 @@ class ProfileSpec:
     """Motor noise works on speeds of 0 or more only, also on a wheel that stands."""
     ultrasonic_period_ticks: int = 1
     """The ultrasonic sensor measures every so many ticks."""
+    solid: bool = False
+    """Obstacles and walls stop the robot, unless the world says otherwise."""
     plain_state: bool = False
     """A motor's `state` is a string, '' or 'running', and `time_sp` is in seconds."""
 

@@ -21,6 +21,9 @@ FIELD_WIDTH_MM = 2362
 FIELD_HEIGHT_MM = 1143
 """Height of the field."""
 
+MAX_OBSTACLE_MM = 10_000.0
+"""Farthest coordinate and largest size of an obstacle."""
+
 MAX_LIGHT_NOISE = 128
 MAX_MOTOR_NOISE = 500
 
@@ -31,11 +34,24 @@ ROBOT_WEIGHTS: Mapping[str, float] = {"weightless": 0.0, "light": 3.0, "medium":
 """Names for `RobotSpec.weight`: a motor gains 5000 / weight degrees per second each second."""
 
 
-def _require(value: float, low: float, high: float, key: str) -> None:
-    if not (isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)):
-        raise RobotError(f"must be a number, got {value!r}", key=key)
+STRATEGIES = ("mean", "gaussian", "centre")
+"""How a colour sensor weighs the pixels of its disc: all alike, by a bell curve, or the middle threefold."""
+
+BACKGROUND_FITS = ("stretch", "fit", "centre")
+"""How an own image becomes a mat: filling the field, as large as fits, or pixel for pixel in the middle."""
+
+
+def _require(value: float, low: float, high: float, key: str, *, whole: bool = False) -> None:
+    number = isinstance(value, int) or (isinstance(value, float) and not whole and math.isfinite(value))
+    if not number or isinstance(value, bool):
+        raise RobotError(f"must be a {'whole ' if whole else ''}number, got {value!r}", key=key)
     if not low <= value <= high:
         raise RobotError(f"must be from {low:g} to {high:g}, got {value!r}", key=key)
+
+
+def _require_port(port: str, ports: tuple[str, ...], key: str) -> None:
+    if port not in ports:
+        raise RobotError(f"no such port {port!r}", f"one of {', '.join(ports)}", key=key)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +64,19 @@ class ColorSensorSpec:
     x_mm: float
     y_mm: float
     diameter_mm: int = 20
+    strategy: str = "mean"
+    """How the pixels of the disc count, one of `STRATEGIES`."""
 
     def __post_init__(self) -> None:
         _require(self.x_mm, -500, 500, f"{self.name}.x_mm")
         _require(self.y_mm, -500, 500, f"{self.name}.y_mm")
-        _require(self.diameter_mm, 1, 100, f"{self.name}.diameter_mm")
+        # A disc of 1 pixel has no pixel strictly inside it.
+        _require(self.diameter_mm, 2, 100, f"{self.name}.diameter_mm", whole=True)
+        _require_port(self.port, INPUT_PORTS, f"{self.name}.port")
+        if self.strategy not in STRATEGIES:
+            raise RobotError(
+                f"no such strategy {self.strategy!r}", f"one of {', '.join(STRATEGIES)}", key=f"{self.name}.strategy"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,12 +91,16 @@ class UltrasonicSpec:
     max_range_mm: float = 2550.0
     """Reported when no echo returns (EV3 sensor data sheet)."""
     ray_angles_deg: tuple[float, ...] = (-21.0, -14.0, -7.0, 0.0, 7.0, 14.0, 21.0)
+    noise_mm: float = 0.0
+    """Uniform ±noise_mm on every distance."""
 
     def __post_init__(self) -> None:
         _require(self.x_mm, -500, 500, f"{self.name}.x_mm")
         _require(self.y_mm, -500, 500, f"{self.name}.y_mm")
         _require(self.angle_deg, -360, 360, f"{self.name}.angle_deg")
         _require(self.max_range_mm, 1, 10_000, f"{self.name}.max_range_mm")
+        _require(self.noise_mm, 0, 1000, f"{self.name}.noise_mm")
+        _require_port(self.port, INPUT_PORTS, f"{self.name}.port")
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +110,9 @@ class GyroSpec:
     name: str = "gyro"
     port: str = "in4"
 
+    def __post_init__(self) -> None:
+        _require_port(self.port, INPUT_PORTS, f"{self.name}.port")
+
 
 @dataclass(frozen=True, slots=True)
 class PenSpec:
@@ -90,8 +121,14 @@ class PenSpec:
     x_mm: float = 0.0
     y_mm: float = 0.0
     color: str = "red"
+    """Any CSS colour name, or #rrggbb."""
     width_mm: float = 6.0
     down: bool = False
+
+    def __post_init__(self) -> None:
+        _require(self.x_mm, -500, 500, "pen.x_mm")
+        _require(self.y_mm, -500, 500, "pen.y_mm")
+        _require(self.width_mm, 0.1, 200, "pen.width_mm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,8 +160,20 @@ class RobotSpec:
         _require(self.back_mm, -1000, 0, "back_mm")
         _require(self.weight, 0, 1000, "weight")
         for key in ("left_port", "right_port"):
-            if getattr(self, key) not in OUTPUT_PORTS:
-                raise RobotError(f"no such port {getattr(self, key)!r}", f"one of {', '.join(OUTPUT_PORTS)}", key=key)
+            _require_port(getattr(self, key), OUTPUT_PORTS, key)
+        if self.left_port == self.right_port:
+            raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
+        used: set[str] = set()
+        for sensor in (*self.color_sensors, self.ultrasonic, self.gyro):
+            if sensor is not None and sensor.port in used:
+                raise RobotError(
+                    f"two sensors are on {sensor.port}", "give each its own port", key=f"{sensor.name}.port"
+                )
+            if sensor is not None:
+                used.add(sensor.port)
+        names = [sensor.name for sensor in self.color_sensors]
+        if len(set(names)) < len(names):
+            raise RobotError("two colour sensors have the same name", "give each its own", key="color_sensors")
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,8 +187,11 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         for key in ("x_mm", "y_mm", "width_mm", "height_mm"):
-            if not math.isfinite(getattr(self, key)):
-                raise ObstacleError(f"must be a number, got {getattr(self, key)!r}", key=key)
+            value = getattr(self, key)
+            if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value):
+                raise ObstacleError(f"must be a number, got {value!r}", key=key)
+            if abs(value) > MAX_OBSTACLE_MM:
+                raise ObstacleError(f"must be at most {MAX_OBSTACLE_MM:g}, got {value!r}", key=key)
         for key in ("width_mm", "height_mm"):
             if getattr(self, key) <= 0:
                 raise ObstacleError(f"must be above 0, got {getattr(self, key)!r}", key=key)
@@ -168,7 +220,13 @@ class WorldSpec:
     background: str = "Empty_Map"
     obstacles: tuple[Obstacle, ...] = ()
     walls: bool = True
-    """Whether the four edges of the field echo."""
+    """Whether the field has walls on its four edges: they echo, and stop the robot where things are solid."""
+    solid: bool = False
+    """Whether obstacles and walls stop the robot."""
+    background_fit: str = "stretch"
+    """For an own image, one of `BACKGROUND_FITS`."""
+    pen_marks: bool = False
+    """Whether the pen marks the mat that the sensors see."""
     start: Pose = Pose(100.0, 800.0, 0.0)
     noise: NoiseSpec = field(default_factory=NoiseSpec)
 
