@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace, RawDescriptionHelpFormatter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 
 from tuisim import __version__
@@ -75,22 +76,34 @@ def _open(arguments: Namespace) -> int:
     from tuisim.ui.session import AppSettings
 
     settings = prepared.settings
-    run_app(
-        AppSettings(
-            spec=prepared.spec,
-            program=prepared.program,
-            background=prepared.spec.world.background,
-            panels_on=frozenset(settings.panels_on),
-            panels_off=frozenset(settings.panels_off),
-            autorun=settings.autorun,
-            quiet=settings.quiet,
-            rays=settings.rays,
-            speed=1.0 if settings.speed is None else settings.speed,
-            fps=settings.fps,
-            colors=settings.colors,
-        )
+    app_settings = AppSettings(
+        spec=prepared.spec,
+        program=prepared.program,
+        background=prepared.spec.world.background,
+        panels_on=frozenset(settings.panels_on),
+        panels_off=frozenset(settings.panels_off),
+        autorun=settings.autorun,
+        quiet=settings.quiet,
+        rays=settings.rays,
+        speed=1.0 if settings.speed is None else settings.speed,
+        fps=settings.fps,
+        colors=settings.colors,
     )
+    with _drawing_on_stdout():
+        run_app(app_settings)
     return 0
+
+
+@contextmanager
+def _drawing_on_stdout() -> Iterator[None]:
+    """Let stderr be the terminal of stdout for a while: Textual draws there, also if it was sent to a file."""
+    stderr = os.dup(2)
+    os.dup2(1, 2)
+    try:
+        yield
+    finally:
+        os.dup2(stderr, 2)
+        os.close(stderr)
 
 
 def _dispatch(words: Sequence[str]) -> int:
