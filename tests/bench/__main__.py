@@ -1,0 +1,60 @@
+"""`python -m tests.bench [NAME…] [--quick] [--json]`: measure, and print one table."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
+from tests.bench.frames import chart, frames
+from tests.bench.running import EMPTY, begin
+from tests.bench.speed import LOADS, speeds
+from tests.bench.starts import first_line, first_paint, help_text
+from tests.bench.stops import stop_latency
+from tuisim.host import RunOptions
+
+BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
+    "speed": speeds,
+    "first-line": first_line,
+    "help": help_text,
+    "first-paint": first_paint,
+    "stop": stop_latency,
+    "frames": frames,
+    "chart": chart,
+}
+"""Every bench by name."""
+
+
+def warm_up() -> None:
+    """Prepare the mats and compile the modules once: what is measured is any start but the very first."""
+    for mat in {load.mat for load in LOADS.values()}:
+        begin(EMPTY, mat, options=RunOptions()).wait()
+
+
+def main(words: Sequence[str]) -> int:
+    """Measure what was asked for and print it; a missed goal is a figure, not an error."""
+    parser = argparse.ArgumentParser(prog="python -m tests.bench", description="What running and showing costs.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of {', '.join(BENCHES)}; otherwise all")
+    parser.add_argument("--quick", action="store_true", help="measure less often")
+    parser.add_argument("--json", action="store_true", help="print a JSON list instead of the table")
+    arguments = parser.parse_args(words)
+    if unknown := [name for name in arguments.names if name not in BENCHES]:
+        parser.error(f"no such bench: {', '.join(unknown)}; one of {', '.join(BENCHES)}")
+    found: list[Figure] = []
+    with tempfile.TemporaryDirectory() as home:
+        # A home of its own: the runs are thrown away, and the user's catalogue stays as it is.
+        os.environ["TUISIM_HOME"] = home
+        warm_up()
+        for name in arguments.names or BENCHES:
+            for figure in BENCHES[name](QUICK if arguments.quick else THOROUGH):
+                print(f"{name}: {figure.name} {figure.value:.3f} {figure.unit}", file=sys.stderr, flush=True)
+                found.append(figure)
+    print(as_json(found) if arguments.json else as_table(found))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

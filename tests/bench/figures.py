@@ -1,0 +1,73 @@
+"""Figures and their goals, as a table and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How much is measured."""
+
+    repeats: int
+    """Runs of which the median counts."""
+    stops: int
+    """Stops of each kind."""
+    watch_s: float
+    """How long the app is watched while the robot drives."""
+
+
+THOROUGH = Effort(repeats=7, stops=10, watch_s=6.0)
+QUICK = Effort(repeats=3, stops=5, watch_s=5.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One line of the table."""
+
+    name: str
+    value: float
+    unit: str
+    least: float | None = None
+    """The goal, where more is better."""
+    most: float | None = None
+    """The goal, where less is better."""
+
+    @property
+    def goal(self) -> str:
+        """The goal in words, empty for a figure that is only told."""
+        if self.least is not None:
+            return f">= {self.least:,g}"
+        return "" if self.most is None else f"<= {self.most:,g}"
+
+    @property
+    def verdict(self) -> str:
+        """`met`, `missed`, or empty where there is no goal."""
+        if self.least is not None:
+            return "met" if self.value >= self.least else "missed"
+        if self.most is not None:
+            return "met" if self.value <= self.most else "missed"
+        return ""
+
+
+def as_table(figures: Sequence[Figure]) -> str:
+    """Return the figures as lines of aligned columns."""
+    rows = [("name", "figure", "", "goal", "")]
+    rows += [(figure.name, _rounded(figure.value), figure.unit, figure.goal, figure.verdict) for figure in figures]
+    name, value, unit, goal = (max(len(row[column]) for row in rows) for column in range(4))
+    lines = [f"{r[0]:<{name}}  {r[1]:>{value}} {r[2]:<{unit}}  {r[3]:<{goal}}  {r[4]}".rstrip() for r in rows]
+    return "\n".join(lines)
+
+
+def as_json(figures: Iterable[Figure]) -> str:
+    """Return the figures as a JSON list of objects."""
+    return json.dumps([{**asdict(figure), "verdict": figure.verdict} for figure in figures], indent=1)
+
+
+def _rounded(value: float) -> str:
+    """Return a number with three figures that count."""
+    if abs(value) >= 100:
+        return f"{value:,.0f}"
+    return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}"

@@ -1,0 +1,61 @@
+"""What it costs until something happens: the help, a program's first line, the app's first paint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from statistics import median
+
+from tests.bench.figures import Effort, Figure
+from tests.bench.processes import command_cpu_s, cpu_s, wait_until_stopped
+from tests.bench.running import begin
+from tests.bench.terminal import Terminal
+from tuisim.host import RunOptions
+from tuisim.protocol import Started
+
+STOPS_ITSELF = "import os, signal; os.kill(os.getpid(), signal.SIGSTOP)\n"
+"""A program that stands still in its first line, so that the CPU used until then can be read at leisure."""
+HALF_BLOCK = "▀".encode()
+
+
+def first_line(effort: Effort) -> Iterator[Figure]:
+    """Yield the CPU of a program's process until the program's own first line, prelude included."""
+    for prelude, goal in (("preloaded", 0.060), ("none", None)):
+        value = median(_first_line_cpu_s(prelude) for _ in range(effort.repeats))
+        yield Figure(f"to the first line, prelude {prelude}", value * 1e3, "ms CPU", most=goal and goal * 1e3)
+    bare = median(command_cpu_s("-c", "pass") for _ in range(effort.repeats))
+    yield Figure("bare Python, for comparison", bare * 1e3, "ms CPU")
+
+
+def _first_line_cpu_s(prelude: str) -> float:
+    handle = begin(STOPS_ITSELF, prelude=prelude, options=RunOptions())
+    try:
+        while True:
+            handle.wait_for_event(1.0)
+            for event in handle.pump():
+                if isinstance(event, Started):
+                    wait_until_stopped(event.pid)
+                    return cpu_s(event.pid)
+                raise AssertionError(f"the program did not stop itself: {event}")
+    finally:
+        handle.close()
+
+
+def help_text(effort: Effort) -> Iterator[Figure]:
+    """Yield the CPU of `tuisim --help`."""
+    value = median(command_cpu_s("-m", "tuisim", "--help") for _ in range(effort.repeats))
+    yield Figure("tuisim --help", value * 1e3, "ms CPU", most=150)
+
+
+def first_paint(effort: Effort) -> Iterator[Figure]:
+    """Yield the CPU of the app until its panels, and until the mat in the world, are on the screen."""
+    both = [_first_paint_cpu_s() for _ in range(effort.repeats)]
+    yield Figure("first paint, panels", median(panels for panels, _ in both) * 1e3, "ms CPU")
+    yield Figure("first paint, world", median(world for _, world in both) * 1e3, "ms CPU", most=600)
+
+
+def _first_paint_cpu_s() -> tuple[float, float]:
+    with Terminal(["-b", "Grey_bands"]) as terminal:
+        terminal.read_until(lambda: b"World" in terminal.seen)
+        panels = cpu_s(terminal.pid)
+        terminal.read_until(lambda: HALF_BLOCK in terminal.seen)
+        return panels, cpu_s(terminal.pid)
