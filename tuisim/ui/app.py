@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual import events
+from textual import constants, events
 from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.command import Provider
@@ -16,7 +16,7 @@ from textual.widget import Widget
 from tuisim.errors import TuisimError
 from tuisim.protocol import Ended
 from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
-from tuisim.ui.bridge import Bridge, News
+from tuisim.ui.bridge import ROWS_A_POLL, Bridge, News
 from tuisim.ui.desk import Desk
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
@@ -24,7 +24,7 @@ from tuisim.ui.pacer import Pacer
 from tuisim.ui.session import AppSettings
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.speech import Voice
-from tuisim.ui.verbs import speed_label
+from tuisim.ui.verbs import end_label, speed_label
 
 if TYPE_CHECKING:
     from tuisim.core.spec import RunSpec
@@ -36,14 +36,6 @@ if TYPE_CHECKING:
 AFTER_FIRST_PAINT_S = 0.05
 """The screen is painted more than once at the start; what is large is sent after that."""
 _CURSOR_QUERY = "\x1b[6n"
-END_WORDS = {
-    "finished": "finished",
-    "raised": "error",
-    "stopped": "stopped",
-    "time_limit": "time limit",
-    "output_limit": "output limit",
-}
-"""How a run's end is written; other ends as they are."""
 
 
 def _palette() -> type[Provider]:
@@ -79,6 +71,8 @@ class Lab(App[None]):
         self._feed: Feed | None = None
         self._drawn: object = None
         self._run_when_ready = settings.autorun
+        self._last_words = ""
+        """How the run ended, for the output panel once it has shown every row."""
 
     # Life
 
@@ -181,6 +175,7 @@ class Lab(App[None]):
             return
         assert self.bridge.run is not None
         self._feed = Feed(self.bridge.run)
+        self._last_words = ""
         if self.desk.output:
             self.desk.output.clear()
         if self.desk.chart:
@@ -192,11 +187,16 @@ class Lab(App[None]):
     def _beat(self) -> None:
         """Take what the run has written, and show a frame if the terminal has shown the last one."""
         try:
-            news = self.bridge.poll()
+            self._take(self.bridge.poll())
+            if self.pacer.ready():
+                self.draw()
         except TuisimError as error:
-            self.bridge.stop()
+            # What cannot be read now cannot be read at the next beat either.
+            self.bridge.close()
             self.complain(error)
-            return
+            self.situation_changed()
+
+    def _take(self, news: News) -> None:
         for text in news.spoken:
             self.voice.speak(text)
         if news.rows:
@@ -208,8 +208,9 @@ class Lab(App[None]):
                 output.stop_asking()
         if news.ended:
             self._ended(news.ended)
-        if self.pacer.ready():
-            self.draw()
+        if self._last_words and len(news.rows) < ROWS_A_POLL and self.desk.output:
+            self.desk.output.note(self._last_words)
+            self._last_words = ""
 
     def _take_rows(self, news: News) -> None:
         if self.desk.output:
@@ -229,13 +230,13 @@ class Lab(App[None]):
 
     def _ended(self, ended: Ended) -> None:
         good = ended.end in ("finished", "stopped")
-        words = ended.summary or END_WORDS.get(ended.end, ended.end)
+        words = ended.summary or end_label(ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
         if self.desk.code:
             self.desk.code.mark_error(ended.error_line)
-        if self.desk.output:
-            # A traceback is among the rows already.
-            self.desk.output.note(f"— {words}, {ended.time_ns / 1e9:.2f} s —")
+        # What was wrong is among the rows already, as a traceback.
+        known = ended.end in ("finished", "raised")
+        self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
         self.situation_changed()
 
     # The picture
@@ -277,7 +278,7 @@ class Lab(App[None]):
         self._show_footer(self.bridge.snapshot())
 
     def _show_footer(self, snapshot: Snapshot) -> None:
-        status = END_WORDS.get(snapshot.end, snapshot.end) if snapshot.state == ENDED else snapshot.state
+        status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
         if snapshot.state in IN_RUN or snapshot.speed != 1:
             status += f" {speed_label(snapshot.speed)}"
         shown = frozenset(panel for panel in self.desk.panels if self.desk.shown(panel))
@@ -362,9 +363,17 @@ class Lab(App[None]):
         self.notify(str(error), severity="error", timeout=8, markup=False)
 
 
+def _choose_colors(colors: str) -> None:
+    """Fix the colours that the terminal is sent; `auto` leaves the choice to Textual."""
+    system = {"truecolor": "truecolor", "256": "256", "16": "standard"}.get(colors)
+    if system:
+        # Textual looks at the environment when it is imported, and that was before the settings were known.
+        constants.COLOR_SYSTEM = system  # type: ignore[misc]
+    if colors == "none":
+        os.environ["NO_COLOR"] = "1"
+
+
 def run_app(settings: AppSettings) -> None:
     """Run the app in this terminal until the user quits."""
-    system = {"truecolor": "truecolor", "256": "256", "16": "standard"}.get(settings.colors)
-    if system:
-        os.environ["TEXTUAL_COLOR_SYSTEM"] = system
+    _choose_colors(settings.colors)
     Lab(settings).run()

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tuisim.ui.mat import Mat
     from tuisim.ui.session import AppSettings
 
-ROWS_A_POLL = 2000
+ROWS_A_POLL = 4000
 """Most output rows that one poll takes, so that a flood of prints leaves the app fluid."""
 
 

@@ -16,9 +16,17 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 """What `[` and `]` step through; 0 is as fast as possible."""
 
 
+_END_LABELS = {"raised": "error", "time_limit": "time limit", "output_limit": "output limit"}
+
+
 def speed_label(speed: float) -> str:
     """Return a speed as people write it: ¼×, 2×, max."""
     return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
+
+
+def end_label(end: str) -> str:
+    """Return how a run ended in words."""
+    return _END_LABELS.get(end, end)
 
 
 def run(lab: Lab) -> None:

@@ -68,7 +68,7 @@ PANELS: Mapping[str, PanelInfo] = {
         PanelInfo("code", "Code", "D", "code:Code", BOTTOM, (MEDIUM, LARGE), 5, 9, weight=4),
         PanelInfo("chart", "Chart", "c", "chart:Chart", BOTTOM, (LARGE,), 8, 16, weight=5),
         PanelInfo("controls", "Simulator controls", "H", "controls:Controls", SIDE, (MEDIUM, LARGE), 10, 12),
-        PanelInfo("positioning", "Positioning", "X", "positioning:Positioning", SIDE, (LARGE,), 6, 7),
+        PanelInfo("positioning", "Positioning", "X", "positioning:Positioning", SIDE, (LARGE,), 7, 7),
     )
 }
 """Every panel by id."""

@@ -11,7 +11,7 @@ from textual.widget import Widget
 
 from tuisim.ui.actions import ACT, Act
 from tuisim.ui.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot
-from tuisim.ui.verbs import speed_label
+from tuisim.ui.verbs import end_label, speed_label
 
 _STATES = {IDLE: "ready", STARTING: "starting", RUNNING: "running", PAUSED: "paused", WAITING: "waits for input"}
 _LABEL_CELLS = 9
@@ -82,7 +82,7 @@ class Controls(Widget, can_focus=False):
         lines = [
             buttons,
             Text(),
-            self._line("State", _STATES.get(now.state, now.end or "ended")),
+            self._line("State", _STATES.get(now.state, end_label(now.end))),
             self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
             self._line("Program", self._program or "none: o opens one"),
             self._line("Mat", spec.world.background),

@@ -43,9 +43,15 @@ def shown_lines(row: OutputRow, width: int) -> list[str]:
     if len(text) > MAX_LINE_CHARS:
         text = f"{text[:MAX_LINE_CHARS]} … ({len(text) - MAX_LINE_CHARS} more characters)"
     text = _PREFIX.get(row.stream, "") + plain(text)
-    if len(text) <= width and text.isascii():
-        return [text]
-    return chop_cells(text, max(width, 2)) or [""]
+    if not text.isascii():
+        return chop_cells(text, max(width, 2)) or [""]
+    lines = []
+    while len(text) > width:
+        # A break at a blank reads better, unless it leaves half of the row empty.
+        cut = text.rfind(" ", width // 2, width) + 1 or width
+        lines.append(text[:cut])
+        text = text[cut:]
+    return [*lines, text]
 
 
 class Log(Widget, can_focus=True):

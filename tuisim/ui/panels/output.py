@@ -72,7 +72,7 @@ class Output(Vertical):
         """Show the field for an answer, with the program's prompt before it."""
         self.asking = True
         words = plain(prompt).strip() or "The program waits for input"
-        answer = Answer(placeholder="Enter answers, ctrl+d ends the input", compact=True)
+        answer = Answer(placeholder="Enter sends, ctrl+d ends", compact=True)
         self.mount(Static(words, classes="prompt", markup=False), answer)
         answer.focus()
 

@@ -95,10 +95,10 @@ class Positioning(Vertical):
                 entry.add_class("wrong")
                 entry.focus()
                 message.update(str(error))
-                message.add_class("wrong")
+                self.set_class(True, "-wrong")
                 return
         for field in _FIELDS:
             self._shown[field] = self.query_one(f"#{field}", Input).value
         message.update(_USE)
-        message.remove_class("wrong")
+        self.set_class(False, "-wrong")
         self.post_message(self.Applied(Pose(values["x"], values["y"], values["angle"])))

@@ -42,7 +42,7 @@ def key_table() -> Table:
     table.add_column(justify="right", style="bold")
     table.add_column()
     for group, actions in groups.items():
-        table.add_row("", Text(group, "underline"))
+        table.add_row("", Text(group, "bold #5fafff"))
         for key, title in _nudge_rows(actions):
             table.add_row(key, title)
         table.add_row()
