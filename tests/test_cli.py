@@ -14,7 +14,7 @@ import pytest
 
 import tuisim as package
 from tests.conftest import ROOT, Command
-from tuisim.cli import COMMANDS
+from tuisim.cli import COMMANDS, run_command
 
 FIVE = "for number in range(5):\n    print('Number: ' + str(number))\n"
 DRIVES = """\
@@ -169,6 +169,17 @@ def test_version(tuisim: Command) -> None:
     assert tuisim("--version").stdout == f"tuisim {package.__version__}\n"
 
 
+def test_our_own_mistake_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def fail(words: object) -> int:
+        raise ValueError("first line\nsecond line")
+
+    monkeypatch.setattr("tuisim.cli._dispatch", fail)
+    monkeypatch.delenv("TUISIM_DEBUG", raising=False)
+    assert run_command([]) == 70
+    said = "tuisim: a mistake in tuisim itself: ValueError: first line second line (TUISIM_DEBUG=1 shows where)\n"
+    assert capsys.readouterr().err == said
+
+
 def start(folder: Path, *words: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "tuisim", *words],
@@ -181,14 +192,15 @@ def start(folder: Path, *words: str) -> subprocess.Popen[str]:
     )
 
 
-def test_interrupt_stops_the_run_and_keeps_its_rows(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"])
+def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code: int, tmp_path: Path) -> None:
     (tmp_path / "prog.py").write_text(FIVE + "while True:\n    pass\n")
     running = start(tmp_path, "run", "prog.py", "--speed", "1", "--export", "rows.csv")
     assert running.stdout is not None
     running.stdout.readline()
-    running.send_signal(signal.SIGINT)
+    running.send_signal(number)
     _, errors = running.communicate(timeout=60)
-    assert running.returncode == 130, errors
+    assert running.returncode == code, errors
     assert "stopped" in errors
     assert "Traceback" not in errors
     assert len(pd.read_csv(tmp_path / "rows.csv")) == 5

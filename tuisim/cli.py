@@ -26,10 +26,9 @@ COMMANDS: Mapping[str, str] = {
 }
 """Every command and what it does."""
 
-EXIT_BAD_INPUT = 2
-EXIT_INTERRUPTED = 130
-EXIT_BROKEN_PIPE = 141
-"""What a shell shows for a program that SIGPIPE ended."""
+EXIT_OUR_MISTAKE = 70
+EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
+"""What a shell shows for a program that SIGINT or SIGPIPE has ended."""
 
 
 class _HelpFormatter(RawDescriptionHelpFormatter):
@@ -142,3 +141,10 @@ def run_command(words: Sequence[str]) -> int:
         return EXIT_BROKEN_PIPE
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
+    # A mistake of ours is no news to the user beyond one line; whoever mends it asks for more.
+    except Exception as error:
+        if os.environ.get("TUISIM_DEBUG"):
+            raise
+        text = " ".join(f"{type(error).__name__}: {error}".split("\n"))
+        print(f"tuisim: a mistake in tuisim itself: {text} (TUISIM_DEBUG=1 shows where)", file=sys.stderr)
+        return EXIT_OUR_MISTAKE

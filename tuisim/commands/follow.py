@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import signal
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from types import FrameType
 from typing import TextIO
 
-from tuisim.commands.outcome import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, EXIT_LIMIT
+from tuisim.commands.outcome import EXIT_BROKEN_PIPE, EXIT_LIMIT
 from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow
 from tuisim.host import RunHandle
 from tuisim.protocol import Answer, Ended
@@ -34,42 +37,60 @@ class Follower:
         """Wait until the run has ended.
 
         Returns:
-            How it ended, and the exit code that an interruption or a closed stdout asks for, else 0.
-        """
-        while True:
-            try:
-                if ended := self._turn():
-                    return ended, self._cut
-            except KeyboardInterrupt:
-                # The second ctrl-C does not wait for the program's own clearing up.
-                (self._handle.kill if self._cut else self._handle.stop)()
-                self._cut = EXIT_INTERRUPTED
-            except BrokenPipeError:
-                self._handle.stop()
-                self._cut = EXIT_BROKEN_PIPE
+            How it ended, and the exit code that an interruption, a closed stdout or the time limit asks for, else 0.
 
-    def _turn(self) -> Ended | None:
-        ended = self._handle.wait(POLL_S)
-        if self._cut != EXIT_BROKEN_PIPE:
-            self._pass_on(self._handle.output.new_rows())
+        Raises:
+            KeyboardInterrupt: a second signal came; the run has been killed.
+        """
+        with self._signals():
+            while True:
+                ended = self._handle.wait(POLL_S)
+                self._pass_on(self._handle.output.new_rows())
+                if ended:
+                    return ended, self._cut
+                self._attend()
+
+    @contextmanager
+    def _signals(self) -> Iterator[None]:
+        """Let ctrl-C and SIGTERM stop the run, and not strike in the middle of reading its messages."""
+        before = {number: signal.signal(number, self._interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        if self._cut:
+            self._handle.kill()
+            raise KeyboardInterrupt
+        # As a shell shows a program that the signal has ended.
+        self._stop(128 + number)
+
+    def _stop(self, exit_code: int) -> None:
+        self._cut = exit_code
+        self._handle.stop()
+
+    def _attend(self) -> None:
         if self._handle.waiting_for_input is not None:
             # Nobody is there to answer: the end of the input, as for a program whose stdin is empty.
             self._handle.send(Answer(None))
-        if not (ended or self._cut) and self._handle.telemetry.count > self._last_tick + 1:
-            self._handle.stop()
-            self._cut = EXIT_LIMIT
-        return ended
+        if not self._cut and self._handle.telemetry.count > self._last_tick + 1:
+            self._stop(EXIT_LIMIT)
 
     def _pass_on(self, rows: Iterable[OutputRow]) -> None:
+        if self._cut == EXIT_BROKEN_PIPE:
+            return
         out: list[str] = []
         for row in rows:
-            match row.stream:
-                case stream if stream == STDOUT:
-                    out.append(row.text + "\n")
-                case stream if stream == STDERR:
-                    sys.stderr.write(row.text + "\n")
-                case stream if stream == SPEECH:
-                    sys.stderr.write(f"says: {row.text}\n")
-        if out:
+            if row.stream == STDOUT:
+                out.append(row.text + "\n")
+            elif row.stream == STDERR:
+                sys.stderr.write(row.text + "\n")
+            elif row.stream == SPEECH:
+                sys.stderr.write(f"says: {row.text}\n")
+        try:
             self._out.write("".join(out))
             self._out.flush()
+        except BrokenPipeError:
+            self._stop(EXIT_BROKEN_PIPE)

@@ -11,7 +11,11 @@ from tuisim.datalog.runfile import RunEnd, StoredRun
 from tuisim.datalog.samples import parse_sample
 from tuisim.protocol import Ended
 
-EXIT_RAISED, EXIT_LIMIT, EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 1, 3, 130, 141
+EXIT_RAISED, EXIT_LIMIT = 1, 3
+EXIT_BROKEN_PIPE = 141
+"""What a shell shows for a program that SIGPIPE has ended."""
+SIGNALLED = 128
+"""Exit codes above it mean that somebody wants no more, and so no further program either."""
 LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit"})
 """The ends of a run that a limit brought about."""
 
@@ -29,7 +33,10 @@ def describe(run: StoredRun) -> dict[str, Any]:
     """Return a stored run as plain data: what it was, how it ended, where the robot is, what it logged."""
     last = run.telemetry.last()
     end = run.end
-    printed = [row.text for row in run.output.all_rows() if row.stream == STDOUT]
+    lines = samples = 0
+    for row in run.output.rows():
+        lines += row.stream == STDOUT
+        samples += row.stream == STDOUT and parse_sample(row.text) is not None
     return {
         "run": run.number,
         "id": run.id,
@@ -46,8 +53,8 @@ def describe(run: StoredRun) -> dict[str, Any]:
         "x_mm": last.x_mm if last else run.spec.world.start.x_mm,
         "y_mm": last.y_mm if last else run.spec.world.start.y_mm,
         "heading_deg": last.heading_deg if last else run.spec.world.start.heading_deg,
-        "lines": len(printed),
-        "samples": sum(parse_sample(text) is not None for text in printed),
+        "lines": lines,
+        "samples": samples,
         "summary": end.summary if end else "",
         "error": end.error if end else "",
         "error_line": end.error_line if end else 0,
@@ -70,7 +77,7 @@ def last_state(facts: dict[str, Any]) -> str:
 def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
     """Print how a run ended: the program's own traceback and the last state on stderr, or JSON on stdout."""
     facts = describe(run)
-    if facts["error"] and not any(row.stream == STDERR for row in run.output.all_rows()):
+    if facts["error"] and not any(row.stream == STDERR for row in run.output.rows()):
         print(facts["error"].rstrip("\n"), file=sys.stderr)
     if as_json:
         print(json.dumps({**facts, "exit_code": exit_code}), flush=True)

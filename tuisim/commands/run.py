@@ -74,7 +74,7 @@ def _run_all(prepared: Sequence[Prepared], arguments: Namespace, store: RunStore
         done.append(store.load_run(run_id))
         outcome.report(done[-1], exit_code, as_json=arguments.json)
         code = max(code, exit_code)
-        if exit_code in (outcome.EXIT_INTERRUPTED, outcome.EXIT_BROKEN_PIPE):
+        if exit_code > outcome.SIGNALLED:
             break
     return code, done
 
