@@ -25,10 +25,10 @@ LINE = """\
 while True:
     left = colorLeft.reflected_light_intensity
     right = colorRight.reflected_light_intensity
-    turn = (left - right) / 255 * 20
-    tank_drive.on(SpeedPercent(20 + turn), SpeedPercent(20 - turn))
+    turn = (left + right) / 255 - 1
+    tank_drive.on(SpeedPercent(20 + 20 * turn), SpeedPercent(20 - 20 * turn))
 """
-"""Between two sensors, nothing in the loop but reading and steering."""
+"""With the edge of a broad line between the sensors, nothing in the loop but reading and steering."""
 
 MOVES = """\
 while True:

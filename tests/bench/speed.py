@@ -27,7 +27,7 @@ class Load:
 
 LOADS: Mapping[str, Load] = {
     "log": Load(LOG, "Grey_bands", 10_000),
-    "line follower": Load(LINE, "Loop", 3_000),
+    "line follower": Load(LINE, "Two_shapes", 3_000),
     "moves": Load(MOVES, "Grey_bands", 10_000),
 }
 
