@@ -5,30 +5,11 @@ from dataclasses import replace
 
 import pytest
 
+from tests.core.memory_sink import MemorySink
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import NBEV3DEVSIM, ROBOLAB, ProfileSpec
 from tuisim.core.simulation import NS_PER_S, Simulation
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
-
-
-class MemorySink:
-    """Tick records in memory, with the header space of the file."""
-
-    def __init__(self) -> None:
-        self.count = 0
-        self.buffer = bytearray(64 * 4096)
-
-    def room(self, records: int) -> bytearray:
-        need = 64 * (1 + self.count + records)
-        if need > len(self.buffer):
-            self.buffer += bytes(need)
-        return self.buffer
-
-    def publish(self, count: int) -> None:
-        self.count = count
-
-    def records(self) -> bytes:
-        return bytes(self.buffer[64 : 64 + 64 * self.count])
 
 
 def simulation(profile: ProfileSpec, motor_noise: int = 0, weight: float = 6.0) -> Simulation:

@@ -7,6 +7,8 @@ second.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from tuisim.core.profile import ProfileSpec
 
 STOPPED, FOREVER, TIMED, POSITION = range(4)
@@ -14,6 +16,20 @@ STOPPED, FOREVER, TIMED, POSITION = range(4)
 
 ENDLESS = 1 << 60
 """More ticks than any run has."""
+
+
+STANDS_STILL_DEG = 1e-3
+"""A wheel that turns less in a tick stands still."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotorState:
+    """A motor before a tick."""
+
+    mode: int
+    sign: float
+    target_dps: float
+    position_deg: float
 
 
 def ramped(speed: float, target: float, step: float, whole: bool) -> float:
@@ -41,7 +57,10 @@ def ramped(speed: float, target: float, step: float, whole: bool) -> float:
 class Motor:
     """One motor with its encoder."""
 
-    __slots__ = ("counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "speed_dps", "target_dps")
+    __slots__ = (
+        "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "speed_dps",
+        "target_dps",
+    )  # fmt: skip
 
     def __init__(self) -> None:
         self.mode = STOPPED
@@ -53,6 +72,8 @@ class Motor:
         """-1 while a move goes backwards at a speed given without sign."""
         self.goal_deg = 0.0
         self.end_tick = 0
+        self.blocked_ticks = 0
+        """For how many ticks something solid has kept the wheel from turning."""
         self.counts_on_dps = 0.0
         """How fast the encoder goes on counting though the wheel stands (halved position moves)."""
 
@@ -76,15 +97,38 @@ class Motor:
             self.speed_dps = -self.speed_dps
         self.mode, self.target_dps, self.sign = mode, speed_dps, sign
         self.counts_on_dps = 0.0
+        self.blocked_ticks = 0
 
     def stop(self, profile: ProfileSpec) -> None:
         """Stand still now."""
         self.mode = STOPPED
         self.target_dps = 0.0
         self.counts_on_dps = 0.0
+        self.blocked_ticks = 0
         if not profile.keep_speed_when_stopped:
             self.speed_dps = 0.0
             self.sign = 1.0
+
+    def state(self) -> MotorState:
+        """Return what `hold_back` needs to undo a tick."""
+        return MotorState(self.mode, self.sign, self.target_dps, self.position_deg)
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Undo the rest of a tick in which something solid stopped the wheel.
+
+        Args:
+            before: The state before the tick.
+            turned_deg: What the tick turned the wheel.
+            part: The part of it that was possible, below 1.
+        """
+        if before.mode == STOPPED or turned_deg == 0.0:
+            return
+        if before.mode == POSITION and self.mode == STOPPED:
+            # It did not get to its goal after all.
+            self.mode, self.sign, self.target_dps = before.mode, before.sign, before.target_dps
+        self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
+        self.speed_dps *= part
+        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDS_STILL_DEG else 0
 
     @property
     def moving_dps(self) -> float:

@@ -14,12 +14,16 @@ from typing import Protocol
 from tuisim.core import motors
 from tuisim.core.drive import mm_per_degree, turn_rate_dps
 from tuisim.core.geometry import Pose
-from tuisim.core.motors import Motor
+from tuisim.core.motors import Motor, MotorState
 from tuisim.core.noise import wheel_noise
+from tuisim.core.solid import Solids
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Instant
 
 NS_PER_S = 1_000_000_000
+
+STALL_NS = 100_000_000
+"""A running motor that stands still for longer is stalled (EV3 motor driver)."""
 
 FEW_TICKS = 3
 """Up to so many ticks, setting up a tight loop costs more than it saves."""
@@ -60,7 +64,7 @@ class Simulation:
     """
 
     __slots__ = (
-        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_spacing_mm", "_tick_s",
+        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_solids", "_spacing_mm", "_tick_s",
         "actions", "changed", "gyro_zero_deg", "heading_deg", "left", "line", "noise", "pen_down", "right", "spec",
         "tick", "x_mm", "y_mm",
     )  # fmt: skip
@@ -73,6 +77,7 @@ class Simulation:
         self._mm_per_deg = mm_per_degree(spec.robot)
         self._ramp_step = 5000.0 / spec.robot.weight / self._hz if spec.robot.weight else 0.0
         self._spacing_mm = spec.robot.wheel_spacing_mm
+        self._solids = Solids(spec.world, spec.robot) if spec.world.solid else None
         self.tick = 0
         start = spec.world.start
         self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
@@ -164,6 +169,7 @@ class Simulation:
                     ticks - done,
                     self.left.quiet_ticks(self.tick, self._tick_s, halved),
                     self.right.quiet_ticks(self.tick, self._tick_s, halved),
+                    self._clear_ticks(),
                 )
             if quiet > 0:
                 self._glide(quiet)
@@ -179,6 +185,8 @@ class Simulation:
         """One tick in full: the rule that the loops below abbreviate."""
         self.tick += 1
         left, right, tick_s, noise = self.left, self.right, self._tick_s, self.noise.motor
+        solids = self._solids
+        before = (left.state(), right.state()) if solids is not None else None
         # A motor that just goes on needs none of the rules of `step`; most ticks are such.
         if left.mode == motors.FOREVER and left.speed_dps == left.target_dps and not noise:
             left_deg = left.speed_dps * left.sign * tick_s
@@ -190,6 +198,8 @@ class Simulation:
             right.position_deg += right_deg
         else:
             right_deg = self._step(right, 1)
+        if before is not None:
+            left_deg, right_deg = self._obstructed(before, left_deg, right_deg)
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         heading = math.radians(self.heading_deg)
         forward = (left_mm + right_mm) / 2
@@ -198,6 +208,36 @@ class Simulation:
         self.heading_deg += math.degrees((right_mm - left_mm) / self._spacing_mm)
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         self._record()
+
+    def _clear_ticks(self) -> int:
+        """For how many ticks nothing solid can be met, however the robot moves."""
+        if self._solids is None:
+            return motors.ENDLESS
+        farthest_mm = self.spec.profile.max_speed_dps * self._tick_s * self._mm_per_deg
+        return int(self._solids.clearance_mm(self.x_mm, self.y_mm) / farthest_mm)
+
+    def _obstructed(
+        self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
+    ) -> tuple[float, float]:
+        """Take back what something solid does not allow of a tick; returns the degrees that are left."""
+        left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
+        if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
+            return left_deg, right_deg
+        turn_deg = math.degrees((right_mm - left_mm) / self._spacing_mm)
+        part = self._solids.free_part(self.x_mm, self.y_mm, self.heading_deg, (left_mm + right_mm) / 2, turn_deg)
+        if part == 1.0:
+            self.left.blocked_ticks = self.right.blocked_ticks = 0
+            return left_deg, right_deg
+        for motor, state, turned_deg in zip((self.left, self.right), before, (left_deg, right_deg), strict=True):
+            motor.hold_back(state, turned_deg, part)
+            if motor.blocked_ticks == self.stall_ticks:
+                self.changed = True
+        return left_deg * part, right_deg * part
+
+    @property
+    def stall_ticks(self) -> int:
+        """A motor that has been kept from turning for so many ticks is stalled."""
+        return STALL_NS * self._hz // NS_PER_S + 1
 
     def _step(self, motor: Motor, side: int) -> float:
         """Let one motor do the present tick; 0 is the left one. Returns degrees turned."""

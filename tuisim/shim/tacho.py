@@ -114,9 +114,11 @@ class TachoMotor:
         motor = self._motor
         if motor.mode == STOPPED:
             return "holding" if self._holding and not self._profile.plain_state else ""
-        if motor.speed_dps != motor.target_dps and not self._profile.plain_state:
-            return "running ramping"
-        return "running"
+        if self._profile.plain_state:
+            return "running"
+        if motor.blocked_ticks >= self._session.sim.stall_ticks:
+            return "running overloaded stalled"
+        return "running ramping" if motor.speed_dps != motor.target_dps else "running"
 
     def _set_position(self, value: int) -> None:
         self._motor.position_deg = float(value * self._sign)
