@@ -58,8 +58,8 @@ class Motor:
     """One motor with its encoder."""
 
     __slots__ = (
-        "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "speed_dps",
-        "target_dps",
+        "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "slowest_ramp_dps2",
+        "speed_dps", "target_dps",
     )  # fmt: skip
 
     def __init__(self) -> None:
@@ -72,6 +72,8 @@ class Motor:
         """-1 while a move goes backwards at a speed given without sign."""
         self.goal_deg = 0.0
         self.end_tick = 0
+        self.slowest_ramp_dps2 = 0.0
+        """Change of speed a second that the program asked for; 0 leaves it to the motor's weight."""
         self.blocked_ticks = 0
         """For how many ticks something solid has kept the wheel from turning."""
         self.counts_on_dps = 0.0
@@ -96,6 +98,7 @@ class Motor:
             # The wheel keeps turning the way it turns: only the way it is written down changes.
             self.speed_dps = -self.speed_dps
         self.mode, self.target_dps, self.sign = mode, speed_dps, sign
+        self.slowest_ramp_dps2 = 0.0
         self.counts_on_dps = 0.0
         self.blocked_ticks = 0
 
@@ -135,6 +138,18 @@ class Motor:
         """The speed at which the wheel turns, with its sign."""
         return 0.0 if self.mode == STOPPED else self.speed_dps * self.sign
 
+    def ramp_step(self, weight_step: float, tick_s: float) -> float:
+        """Return by how much the speed can change in a tick; 0 is at once.
+
+        Args:
+            weight_step: What the motor's weight allows, 0 for a weightless one.
+            tick_s: Length of a tick in seconds.
+        """
+        if not self.slowest_ramp_dps2:
+            return weight_step
+        asked = self.slowest_ramp_dps2 * tick_s
+        return min(weight_step, asked) if weight_step else asked
+
     def ramp_ahead(self, ticks: int, step: float, whole: bool) -> list[float]:
         """Change the speed as so many ticks do, and return it for each of them."""
         speed, target, speeds = self.speed_dps, self.target_dps, []
@@ -169,7 +184,7 @@ class Motor:
         Args:
             tick: The tick that is being done.
             profile: The rules.
-            ramp_step: Change of speed in a tick.
+            ramp_step: Change of speed in a tick that the weight allows.
             tick_s: Length of a tick in seconds.
             noise_dps: Added to the speed; 0 for none.
 
@@ -182,7 +197,8 @@ class Motor:
         if self.mode == TIMED and (tick > self.end_tick or (tick == self.end_tick and profile.timed_stop_skips_tick)):
             self.stop(profile)
             return 0.0
-        self.speed_dps = ramped(self.speed_dps, self.target_dps, ramp_step, profile.round_forward_speeds)
+        step = self.ramp_step(ramp_step, tick_s)
+        self.speed_dps = ramped(self.speed_dps, self.target_dps, step, profile.round_forward_speeds)
         speed = self._disturbed(profile, noise_dps) if noise_dps else self.speed_dps
         turned = speed * self.sign * tick_s
         if self.mode == POSITION:

@@ -45,6 +45,8 @@ class ProfileSpec:
     """A timed move does not move in the tick at which its time is up."""
     direction_from_set_point: bool = False
     """A move to an absolute position goes the way of the set point's sign, not of the difference."""
+    motor_ramps: bool = True
+    """The ramp set points of a motor slow its changes of speed down."""
     chain_relative_moves: bool = True
     """A relative move that follows another counts from the other's target, not from the position."""
     pair_tail_ns: int = 0
@@ -76,6 +78,7 @@ NBEV3DEVSIM = ProfileSpec(
     keep_speed_when_stopped=True,
     timed_stop_skips_tick=True,
     direction_from_set_point=True,
+    motor_ramps=False,
     chain_relative_moves=False,
     pair_tail_ns=110 * MS,
     forward_noise_only=True,
@@ -83,5 +86,15 @@ NBEV3DEVSIM = ProfileSpec(
     plain_state=True,
 )
 
-PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM)}
+EV3 = ProfileSpec(
+    name="ev3",
+    title="what the real brick does",
+    tick_hz=100,
+    color_code_read_ns=10 * MS,
+    gyro_read_ns=10 * MS,
+    reflected_max=100,
+    solid=True,
+)
+
+PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3)}
 """Every profile by name."""

@@ -279,13 +279,11 @@ class Simulation:
 
     def _ramping_ticks(self, most: int) -> int:
         """How many ticks until both motors have reached their speed, at most `most`."""
-        if not self._ramp_step:
-            jump = any(motor.mode and motor.speed_dps != motor.target_dps for motor in (self.left, self.right))
-            return min(most, int(jump))
         longest = 0
         for motor in (self.left, self.right):
             if motor.mode and motor.speed_dps != motor.target_dps:
-                longest = max(longest, math.ceil(abs(motor.target_dps - motor.speed_dps) / self._ramp_step))
+                step = motor.ramp_step(self._ramp_step, self._tick_s)
+                longest = max(longest, math.ceil(abs(motor.target_dps - motor.speed_dps) / step) if step else 1)
         return min(most, longest)
 
     def _glide_ramping(self, ticks: int) -> None:
@@ -335,7 +333,8 @@ class Simulation:
         if motor.mode == motors.STOPPED:
             return [0.0] * ticks, 0.0
         profile = self.spec.profile
-        speeds = motor.ramp_ahead(ticks, self._ramp_step, profile.round_forward_speeds)
+        step = motor.ramp_step(self._ramp_step, self._tick_s)
+        speeds = motor.ramp_ahead(ticks, step, profile.round_forward_speeds)
         return speeds, 2.0 if profile.halve_position_moves and motor.mode == motors.POSITION else None
 
     def _glide_steady(self, ticks: int) -> None:

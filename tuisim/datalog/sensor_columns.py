@@ -43,7 +43,7 @@ def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[Action], fie
     found: dict[str, Array] = {}
     slow = []
     for kind, sensor in sensors:
-        if kind is SENSORS["color"] and not lit:
+        if kind is SENSORS["color"] and not lit and sensor.strategy == "mean":
             found.update(quiet_color_columns(records, sensor, field))
         else:
             slow.append((kind, sensor))

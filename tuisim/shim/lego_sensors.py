@@ -144,7 +144,7 @@ def ultrasonic_sensor(session: Session, spec: UltrasonicSpec) -> LegoSensor:
         nonlocal last
         ping = sim.tick // period
         if last[:2] != (ping, sim.actions):
-            last = (ping, sim.actions, ultrasonic.distance_mm(sim.pose, spec, sim.spec.world))
+            last = (ping, sim.actions, ultrasonic.reading_mm(spec, sim.instant(), sim.spec.world))
         return last[2]
 
     def inches() -> tuple[int]:

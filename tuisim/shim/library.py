@@ -154,8 +154,34 @@ def patch_motor_module(session: Session, module: types.ModuleType) -> None:
 
         motor.MotorSet._block = block_with_tail
     if profile.plain_state:
-        state = motor.Motor.state.fget
-        motor.Motor.state = property(lambda self: " ".join(state(self)))
+        _speak_plainly(motor)
+
+
+def _speak_plainly(motor: Any) -> None:
+    """Give `state` as a string and take `time_sp` in seconds, as the old simulator did."""
+    state, time_sp = motor.Motor.state.fget, motor.Motor.time_sp
+    inside_library = 0
+
+    def in_ms(function: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(function)
+        def wrapper(*args: Any, **kwargs: Any) -> Any:
+            nonlocal inside_library
+            inside_library += 1
+            try:
+                return function(*args, **kwargs)
+            finally:
+                inside_library -= 1
+
+        return wrapper
+
+    def set_time(self: Any, value: float) -> None:
+        time_sp.fset(self, value if inside_library else value * 1000)
+
+    motor.Motor.state = property(lambda self: " ".join(state(self)))
+    motor.Motor.time_sp = property(lambda self: time_sp.fget(self) / 1000, set_time)
+    # The library itself goes on to count in ms.
+    motor.Motor.on_for_seconds = in_ms(motor.Motor.on_for_seconds)
+    motor.MoveTank.on_for_seconds = in_ms(motor.MoveTank.on_for_seconds)
 
 
 def patch_sensor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:

@@ -160,6 +160,7 @@ class TachoMotor:
         else:
             self._reset()
         self._last_goal = None
+        self._ramp()
 
     def _run_direct(self) -> None:
         self._motor.run(self._profile.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign)
@@ -175,6 +176,15 @@ class TachoMotor:
             base = self._last_goal
         self._last_goal = base + delta
         self._motor.run_to(self._last_goal, speed, self._last_goal < self._motor.position_deg)
+        self._ramp()
+
+    def _ramp(self) -> None:
+        """Hand the ramp set point of the change that was asked for to the motor."""
+        motor = self._motor
+        faster = abs(motor.target_dps) > abs(motor.speed_dps)
+        ramp_ms = self._numbers["ramp_up_sp" if faster else "ramp_down_sp"]
+        if ramp_ms and self._profile.motor_ramps:
+            motor.slowest_ramp_dps2 = self._profile.max_speed_dps / ramp_ms * 1000
 
     def _run_absolute(self, speed: float) -> None:
         goal = float(self._numbers["position_sp"] * self._sign)

@@ -34,7 +34,7 @@ def snapshot_of(
         line=line,
         speed=speed,
         colors={s.name: color.reading(s, instant, field) for s in spec.robot.color_sensors} if field else {},
-        ultrasonic_mm=round(min(length for _, length in rays)) if rays else None,
+        ultrasonic_mm=ultrasonic.reading_mm(sonar, instant, spec.world) if sonar else None,
         rays=rays,
         gyro_deg=gyro.angle_deg(instant) if has_gyro else 0,
         gyro_rate_dps=gyro.rate_dps(instant) if has_gyro else 0,
@@ -46,7 +46,7 @@ def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str,
     """Return what the chart draws of a moment though the program printed nothing, by trace name."""
     values = {f"{s.name} red %": color.reading(s, instant, field).red_percent for s in spec.robot.color_sensors}
     if spec.robot.ultrasonic:
-        values["ultrasonic mm"] = float(ultrasonic.distance_mm(instant.pose, spec.robot.ultrasonic, spec.world))
+        values["ultrasonic mm"] = float(ultrasonic.reading_mm(spec.robot.ultrasonic, instant, spec.world))
     if spec.robot.gyro:
         values["gyro °"] = float(gyro.angle_deg(instant))
     return values

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
-from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_mask, disc_pixels
+from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import disturb_pixels
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
 from tuisim.core.state import Instant
+from tuisim.core.weights import disc_weights, weighted_mean
 
 COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
 """Names by colour code, as ev3dev2 has them."""
@@ -86,15 +87,12 @@ def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
 
 def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
     """Return what a colour sensor sees without noise."""
+    if spec.strategy != "mean":
+        box = field.box(spec.diameter_mm, *box_corner(pose, spec))
+        return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))
     red, green, blue = field.disc_sums(spec.diameter_mm, *box_corner(pose, spec))
     count = disc_pixels_of(spec.diameter_mm)
     return ColorReading(red / count, green / count, blue / count)
-
-
-@lru_cache(maxsize=16)
-def _disc_bytes(diameter: int) -> bytes:
-    """1 for each byte of a box that belongs to the disc, 0 for the rest."""
-    return bytes(inside for row in disc_mask(diameter) for inside in row for _ in range(3))
 
 
 def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
@@ -108,9 +106,7 @@ def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReadi
     """Return what a colour sensor sees at an instant, noise included."""
     if not instant.noise.light:
         return clear_reading(spec, instant.pose, field)
-    count = disc_pixels_of(spec.diameter_mm)
-    box = bytes(map(int.__mul__, _seen_box(spec, instant, field), _disc_bytes(spec.diameter_mm)))
-    return ColorReading(sum(box[0::3]) / count, sum(box[1::3]) / count, sum(box[2::3]) / count)
+    return ColorReading(*weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy))
 
 
 disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
@@ -123,9 +119,9 @@ def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
     Pixels outside the disc are OUTSIDE_DISC_RGB.
     """
     box = bytearray(_seen_box(spec, instant, field))
-    for at, inside in enumerate(_disc_bytes(spec.diameter_mm)):
-        if not inside:
-            box[at] = OUTSIDE_DISC_RGB[at % 3]
+    for at, weight in enumerate(disc_weights(spec.diameter_mm, "mean")):
+        if not weight:
+            box[3 * at : 3 * at + 3] = bytes(OUTSIDE_DISC_RGB)
     return bytes(box)
 
 

@@ -3,68 +3,116 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass
 from functools import lru_cache
 
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
+from tuisim.core.noise import stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, UltrasonicSpec, WorldSpec
 from tuisim.core.state import Instant
 
 MIN_ECHO_DEG, MAX_ECHO_DEG = 40.0, 140.0
 """A surface met at a flatter angle to the heading throws the pulse away."""
 
-Segment = tuple[float, float, float, float]
-"""End points x1, y1, x2, y2 in mm."""
+Edge = tuple[float, float, float]
+"""An edge along one axis: its place on the other axis, and where it begins and ends, in mm."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surfaces:
+    """Everything that can echo, sorted by place, so that a ray meets the edges one after the other."""
+
+    upright: tuple[Edge, ...]
+    """x, lower y, upper y."""
+    upright_at: tuple[float, ...]
+    level: tuple[Edge, ...]
+    """y, left x, right x."""
+    level_at: tuple[float, ...]
 
 
 @lru_cache(maxsize=8)
-def surfaces(world: WorldSpec) -> tuple[Segment, ...]:
+def surfaces(world: WorldSpec) -> Surfaces:
     """Return every edge that can echo: the four walls and the sides of the obstacles."""
     boxes = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
     if world.walls:
         boxes.append((0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM)))
-    edges: list[Segment] = []
-    for x0, y0, x1, y1 in boxes:
-        edges += [(x0, y0, x1, y0), (x1, y0, x1, y1), (x1, y1, x0, y1), (x0, y1, x0, y0)]
-    return tuple(edges)
+    upright = sorted((x, lower, upper) for left, lower, right, upper in boxes for x in (left, right))
+    level = sorted((y, left, right) for left, lower, right, upper in boxes for y in (lower, upper))
+    return Surfaces(tuple(upright), tuple(x for x, *_ in upright), tuple(level), tuple(y for y, *_ in level))
 
 
-def _echoes(edge: Segment, heading_deg: float) -> bool:
-    """Whether the angle between edge and heading is above 40 and below 140 degrees."""
-    x1, y1, x2, y2 = edge
-    angle = abs(math.degrees(math.atan2(y2 - y1, x2 - x1)) - heading_deg) % 180.0
-    return MIN_ECHO_DEG < angle < MAX_ECHO_DEG
+def _echoes(edge_deg: float, heading_deg: float) -> bool:
+    """Whether the angle between an edge and the heading is above 40 and below 140 degrees."""
+    return MIN_ECHO_DEG < abs(edge_deg - heading_deg) % 180.0 < MAX_ECHO_DEG
 
 
-def _hit_mm(x_mm: float, y_mm: float, cos: float, sin: float, edge: Segment) -> float:
-    """Distance along a ray to an edge, infinite if it passes by."""
-    x1, y1, x2, y2 = edge
-    ex, ey = x2 - x1, y2 - y1
-    cross = cos * ey - sin * ex
-    if abs(cross) < 1e-12:
-        return math.inf
-    along_ray = ((x1 - x_mm) * ey - (y1 - y_mm) * ex) / cross
-    along_edge = ((x1 - x_mm) * sin - (y1 - y_mm) * cos) / cross
-    return along_ray if along_ray >= 0 and -1e-9 <= along_edge <= 1 + 1e-9 else math.inf
+def _first_hit_mm(
+    edges: tuple[Edge, ...],
+    places: tuple[float, ...],
+    start: tuple[float, float],
+    step: tuple[float, float],
+    most: float,
+) -> float:
+    """Return how far a ray goes before it meets one of the edges, at most `most`.
+
+    Args:
+        edges: Sorted by place.
+        places: Their places.
+        start: Where the ray begins: across the edges, and along them.
+        step: How far it goes in each direction for one mm of way.
+        most: Length of the ray.
+    """
+    across, along = start
+    across_step, along_step = step
+    if abs(across_step) < 1e-12:
+        return most
+    if across_step > 0:
+        passing = range(bisect_left(places, across), len(edges))
+    else:
+        passing = range(bisect_right(places, across) - 1, -1, -1)
+    for at in passing:
+        place, low, high = edges[at]
+        way = (place - across) / across_step
+        if way >= most:
+            return most
+        if low - 1e-9 <= along + way * along_step <= high + 1e-9:
+            return way
+    return most
 
 
 def rays_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> list[tuple[float, float]]:
     """Return each ray as (world angle in degrees, length in mm); the length is at most the range."""
     x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
     facing = pose.heading_deg + spec.angle_deg
-    edges = [edge for edge in surfaces(world) if _echoes(edge, facing)]
+    found = surfaces(world)
+    see_upright, see_level = _echoes(90.0, facing), _echoes(0.0, facing)
     rays = []
     for ray_deg in spec.ray_angles_deg:
         angle = math.radians(facing + ray_deg)
         cos, sin = math.cos(angle), math.sin(angle)
-        nearest = min((_hit_mm(x_mm, y_mm, cos, sin, edge) for edge in edges), default=math.inf)
-        rays.append((facing + ray_deg, min(nearest, spec.max_range_mm)))
+        way = spec.max_range_mm
+        if see_upright:
+            way = _first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), way)
+        if see_level:
+            way = _first_hit_mm(found.level, found.level_at, (y_mm, x_mm), (sin, cos), way)
+        rays.append((facing + ray_deg, way))
     return rays
 
 
 def distance_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> int:
-    """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none."""
+    """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none, without noise."""
     return round(min(length for _, length in rays_mm(pose, spec, world)))
+
+
+def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
+    """Return the distance in whole mm with the sensor's own noise, 0 … `max_range_mm`."""
+    distance = distance_mm(instant.pose, spec, world)
+    if not spec.noise_mm:
+        return distance
+    share = int.from_bytes(stream(instant.seed, instant.tick, spec.name, 4), "little") / 2147483647.5 - 1
+    return max(0, min(round(spec.max_range_mm), round(distance + spec.noise_mm * share)))
 
 
 def columns(spec: UltrasonicSpec) -> tuple[str, ...]:
@@ -74,4 +122,4 @@ def columns(spec: UltrasonicSpec) -> tuple[str, ...]:
 
 def measure(spec: UltrasonicSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return the value of `columns`."""
-    return (float(distance_mm(instant.pose, spec, run.world)),)
+    return (float(reading_mm(spec, instant, run.world)),)
