@@ -22,6 +22,14 @@ from tuisim.switches import SWITCHES, Settings, parse_words, settings_of
         ("-N 128 -M 500", {"light_noise": 128, "motor_noise": 500}),
         ("-OHR", {"panels_on": ("output",), "panels_off": ("controls",), "autorun": True}),
         ("-pP green", {"pen_down": True, "pen_color": "green"}),
+        ("-P DarkOrange", {"pen_color": "darkorange"}),
+        ("--pen-width 2.5 --pen-marks", {"pen_width_mm": 2.5, "pen_marks": True}),
+        ("-P #FFaa00", {"pen_color": "#ffaa00"}),
+        ("--solid --walls off", {"solid": True, "walls": False}),
+        ("--solid --no-solid --walls on", {"solid": False, "walls": True}),
+        ("--background-fit centre", {"background_fit": "centre"}),
+        ("-r my.toml -o box.json", {"robot": "my.toml", "obstacles": "box.json"}),
+        ("--profile own.toml", {"profile": "own.toml"}),
         ("-AcizZXD", {"panels_on": ("arrays", "chart", "instrumentation", "noise", "settings", "positioning", "code")}),
         ("-WqCu", {"panels_off": ("world",), "quiet": True, "clear_trace": True, "rays": True}),
         ("--speed max", {"speed": 0.0}),
@@ -44,13 +52,15 @@ def test_switches(words: str, fields: dict[str, Any]) -> None:
         ("-N 999", "^-N: must be a whole number from 0 to 128, got '999'"),
         ("-N 1.5", "^-N: must be a whole number"),
         ("-M -1", "^-M: must be a whole number from 0 to 500"),
-        ("-P pink", r"^-P: .*red, orange, green"),
-        ("--profile robolap", r"^--profile: .*did you mean robolab\?"),
+        ("-P pinq", r"^-P: no such colour 'pinq' .did you mean .*pink.* any CSS colour name, or #rrggbb"),
+        ("-P #12345", "^-P: no such colour '#12345'"),
+        ("--walls no", r"^--walls: no such value 'no' .one of on, off"),
+        ("--background-fit fill", r"^--background-fit: .*stretch, fit, centre"),
+        ("--pen-width 0", r"^--pen-width: must be a number from 0\.1 to 200"),
         ("--speed 0", r"^--speed: .*max"),
         ("--speed fast", r"^--speed: .*max"),
         ("--seed -1", "^--seed: "),
         ("--fps 0", "^--fps: "),
-        ("--solid", "^--solid: obstacles cannot be made solid yet"),
         ("-b", "-b.*expected one argument"),
         ("-Q", "no such switch or argument: -Q"),
         ("--frob 3", "no such switch or argument: --frob 3"),
@@ -64,7 +74,7 @@ def test_wrong_switches_say_what_is_allowed(words: str, said: str) -> None:
 
 def test_every_switch_sets_a_field_and_no_flag_is_used_twice() -> None:
     fields = Settings.__slots__  # type: ignore[attr-defined]
-    assert {switch.field for switch in SWITCHES} - {"solid"} == set(fields)
+    assert {switch.field for switch in SWITCHES} == set(fields)
     flags = [flag for switch in SWITCHES for flag in switch.flags]
     assert len(flags) == len(set(flags))
 

@@ -12,35 +12,55 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
-from tuisim.errors import ConfigError, ProfileError
+from tuisim.core.profile import ProfileSpec
+from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, Obstacle, RobotSpec
+from tuisim.errors import ConfigError
 
 PRELOADS = ("none", "imports", "preloaded")
-PEN_COLORS = ("red", "orange", "green")
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
 MAX_POSITION_MM = 10_000
 MAX_ANGLE_DEG = 36_000
 MAX_SEED = 2**63 - 1
+MIN_PEN_MM, MAX_PEN_MM = 0.1, 200.0
 MIN_SPEED, MAX_SPEED = 0.01, 1000.0
 MAX_SPEED_WORD = "max"
 
 
 @dataclass(frozen=True, slots=True)
+class RobotChoice:
+    """A robot that has been read, and what its file decides beside it."""
+
+    spec: RobotSpec
+    motor_noise: int | None = None
+    """The motor noise of a run that says none of its own."""
+    own_places: bool = True
+    """Whether its colour sensors stay where they are on a mat that has places of its own for them."""
+
+
+@dataclass(frozen=True, slots=True)
 class Settings:
-    """What the switches decide. None leaves the choice to the mat or the program."""
+    """What the switches and a world file decide. None leaves the choice to the mat, robot, profile or program."""
 
     background: str = "Empty_Map"
-    robot: str = "Default_Robot"
-    obstacles: str | None = None
+    """A mat's name, or an image file."""
+    background_fit: str = BACKGROUND_FITS[0]
+    robot: str | RobotChoice = "Default_Robot"
+    """Its name or file, or itself."""
+    obstacles: str | tuple[Obstacle, ...] | None = None
+    """Their name or file, or themselves."""
+    walls: bool = True
+    solid: bool | None = None
     x_mm: float | None = None
     y_mm: float | None = None
     heading_deg: float | None = None
     light_noise: int = 0
-    motor_noise: int = 0
-    pen_down: bool = False
-    pen_color: str = "red"
-    profile: str = "robolab"
+    motor_noise: int | None = None
+    pen_down: bool | None = None
+    pen_color: str | None = None
+    pen_width_mm: float | None = None
+    pen_marks: bool = False
+    profile: str | ProfileSpec = "robolab"
+    """Its name or file, or itself."""
     seed: int = 0
     preload: str | None = None
     speed: float | None = None
@@ -69,7 +89,8 @@ class Switch:
     convert: Callable[[str, str], Any] | None = None
     """From the value's text and the first flag to the value of the field."""
     panel: str = ""
-    """The panel that a switch without a value puts on or off; otherwise it sets its field to True."""
+    """The panel that a switch without a value puts on or off; otherwise it sets its field to `value`."""
+    value: bool = True
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
@@ -125,10 +146,23 @@ def _name(text: str, flag: str) -> str:
     return text
 
 
-def _profile(text: str, flag: str) -> str:
-    if text not in PROFILES:
-        raise ProfileError(f"no such profile {text!r}", nearest(text, PROFILES), key=flag)
-    return text
+def _on_off(text: str, flag: str) -> bool:
+    return _one_of(("on", "off"))(text, flag) == "on"
+
+
+def pen_color(text: str, flag: str) -> str:
+    """Return a colour in small letters.
+
+    Raises:
+        ConfigError: it is neither a CSS name nor `#rrggbb`.
+    """
+    from tuisim.core.css import css_names, css_rgb
+
+    if css_rgb(text) is None:
+        near = difflib.get_close_matches(text.lower(), css_names(), 3)
+        guess = f"did you mean {' or '.join(near)}? " if near else ""
+        raise ConfigError(f"no such colour {text!r}", f"{guess}any CSS colour name, or #rrggbb", key=flag)
+    return text.lower()
 
 
 def _speed(text: str, flag: str) -> float:
@@ -141,31 +175,33 @@ def _speed(text: str, flag: str) -> float:
         raise ConfigError(f"no such speed {text!r}", allowed, key=flag) from None
 
 
-def _not_solid(text: str, flag: str) -> NoReturn:
-    raise ConfigError("obstacles cannot be made solid yet", "leave the switch out", key=flag)
-
-
 _position = number(-MAX_POSITION_MM, MAX_POSITION_MM)
 _angle = number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
 
 WORLD, RUN, APP, PANEL = "world", "run", "app", "panels (app)"
 
 SWITCHES: tuple[Switch, ...] = (
-    Switch(WORLD, ("-b", "--background"), "background", "mat, see `tuisim backgrounds`", "MAT", _name),
-    Switch(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "robot, such as Small_Robot", "ROBOT", _name),
-    Switch(WORLD, ("-o", "--obstacles"), "obstacles", "None, Central_post, Square_posts or Wall", "PRESET", _name),
+    Switch(WORLD, ("-b", "--background"), "background", "mat, see `tuisim backgrounds`, or image file", "MAT", _name),
+    Switch(WORLD, ("--background-fit",), "background_fit", "how an image fills the field",
+           "|".join(BACKGROUND_FITS), _one_of(BACKGROUND_FITS)),
+    Switch(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "robot, see `tuisim robots`, or file", "ROBOT", _name),
+    Switch(WORLD, ("-o", "--obstacles"), "obstacles", "see `tuisim obstacles`, or file", "NAME", _name),
+    Switch(WORLD, ("--walls",), "walls", "walls on the edges of the field", "on|off", _on_off),
+    Switch(WORLD, ("--solid",), "solid", "obstacles and walls stop the robot"),
+    Switch(WORLD, ("--no-solid",), "solid", "the robot drives through them", value=False),
     Switch(WORLD, ("-x", "--x"), "x_mm", "start x in mm", "MM", _position),
     Switch(WORLD, ("-y", "--y"), "y_mm", "start y in mm", "MM", _position),
     Switch(WORLD, ("-a", "--angle"), "heading_deg", "start heading, counter-clockwise from +x", "DEG", _angle),
     Switch(WORLD, ("-N", "--sensornoise"), "light_noise", "light noise, 0 … 128", "N", whole(0, MAX_LIGHT_NOISE)),
     Switch(WORLD, ("-M", "--motornoise"), "motor_noise", "motor noise, 0 … 500", "N", whole(0, MAX_MOTOR_NOISE)),
     Switch(WORLD, ("-p", "--pendown"), "pen_down", "start with the pen down"),
-    Switch(WORLD, ("-P", "--pencolor"), "pen_color", "red, orange or green", "COLOUR", _one_of(PEN_COLORS)),
-    Switch(RUN, ("--profile",), "profile", "rules of the brick, see `tuisim profiles`", "NAME", _profile),
+    Switch(WORLD, ("-P", "--pencolor"), "pen_color", "any CSS name, or #rrggbb", "COLOUR", pen_color),
+    Switch(WORLD, ("--pen-width",), "pen_width_mm", "width of the trace", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
+    Switch(WORLD, ("--pen-marks",), "pen_marks", "the sensors see what the pen draws"),
+    Switch(RUN, ("--profile",), "profile", "rules of the brick, see `tuisim profiles`, or file", "NAME", _name),
     Switch(RUN, ("--seed",), "seed", "seed of noise and of `random`", "N", whole(0, MAX_SEED)),
     Switch(RUN, ("--speed",), "speed", "max, or times real time", "N", _speed),
     Switch(RUN, ("--preload",), "preload", "names given to the program", "|".join(PRELOADS), _one_of(PRELOADS)),
-    Switch(RUN, ("--solid",), "solid", argparse.SUPPRESS, "", _not_solid),
     Switch(APP, ("-R", "--autorun"), "autorun", "run at once"),
     Switch(APP, ("-C", "--clear"), "clear_trace", "start with a clear trace"),
     Switch(APP, ("-u", "--ultrasound"), "rays", "show the ultrasonic rays"),
@@ -184,6 +220,9 @@ SWITCHES: tuple[Switch, ...] = (
     Switch(PANEL, ("-H", "--hidecontrols"), "panels_off", "hide the simulator controls", panel="controls"),
 )
 """Every shared switch, in the order of the help."""
+
+PANELS = tuple(switch.panel for switch in SWITCHES if switch.panel)
+"""Every panel that a switch shows or hides."""
 
 
 class SwitchParser(argparse.ArgumentParser):
@@ -207,20 +246,9 @@ class SwitchParser(argparse.ArgumentParser):
                 how |= {"action": "append_const", "const": switch.panel}
             elif switch.metavar:
                 how |= {"type": _converter(switch), "metavar": switch.metavar}
-            elif switch.convert is not None:
-                how |= {"nargs": 0, "action": _Refuse, "const": switch}
             else:
-                how |= {"action": "store_true"}
+                how |= {"action": "store_const", "const": switch.value}
             groups[switch.group].add_argument(*switch.flags, **how)
-
-
-class _Refuse(argparse.Action):
-    """A switch whose `convert` says why it cannot be used."""
-
-    def __call__(self, *_: object) -> None:
-        switch: Switch = self.const
-        assert switch.convert is not None
-        switch.convert("", switch.flags[0])
 
 
 def _converter(switch: Switch) -> Callable[[str], Any]:

@@ -9,19 +9,14 @@ from typing import Any
 from tuisim.core.spec import RunSpec
 from tuisim.host import Program
 
+_OF_THE_MAT = frozenset({"background", "background_fit", "obstacles", "x_mm", "y_mm", "heading_deg"})
+
 
 def _kept(spec: RunSpec) -> dict[str, Any]:
-    """The switches that stay as they are when the world changes."""
-    noise = spec.world.noise
-    return {
-        "robot": spec.robot.name,
-        "profile": spec.profile.name,
-        "seed": spec.seed,
-        "light_noise": noise.light,
-        "motor_noise": noise.motor,
-        "pen_down": spec.robot.pen.down,
-        "pen_color": spec.robot.pen.color,
-    }
+    """The settings that stay as they are when the world changes."""
+    from tuisim.config import settings_from
+
+    return {key: value for key, value in settings_from(spec).items() if key not in _OF_THE_MAT}
 
 
 def with_mat(spec: RunSpec, name: str) -> RunSpec:
@@ -48,9 +43,9 @@ def open_program(path: str, spec: RunSpec) -> tuple[Program, RunSpec]:
 
     file = read_program(Path(path).expanduser())
     program = Program(name=file.name, text=file.text, prelude=file.prelude, path=file.path)
+    mat = {"background": spec.world.background, "background_fit": spec.world.background_fit}
     if "background" not in file.switches and not {"x_mm", "y_mm", "heading_deg"} & file.switches.keys():
         given = {key: value for key, value in file.switches.items() if key != "autorun"}
-        asked = build_run_spec(settings_of(_kept(spec), {"background": spec.world.background}, given))
+        asked = build_run_spec(settings_of(_kept(spec), mat, given))
         return program, replace(asked, world=replace(asked.world, start=spec.world.start))
-    given = {"background": spec.world.background, **file.switches}
-    return program, build_run_spec(settings_of(_kept(spec), given))
+    return program, build_run_spec(settings_of(_kept(spec), mat, file.switches))

@@ -1,0 +1,88 @@
+"""From settings to the frozen specification of a run."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from typing import Any
+
+from tuisim.assets import Background, background, backgrounds
+from tuisim.config.obstacles import load_obstacles
+from tuisim.config.profiles import load_profile
+from tuisim.config.reading import told_as
+from tuisim.config.robots import choose_robot
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import ProfileSpec
+from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
+from tuisim.switches import RobotChoice, Settings
+
+
+def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
+    """Return the robot with its colour sensors where the mat wants them, unless it has places of its own."""
+    if choice.own_places:
+        return choice.spec
+    moved = tuple(
+        replace(sensor, x_mm=mat.sensor_x_mm.get(sensor.name, sensor.x_mm)) for sensor in choice.spec.color_sensors
+    )
+    return replace(choice.spec, color_sensors=moved)
+
+
+def mat_name(word: str) -> str:
+    """Return what a specification calls a mat: its name in the catalogue, or the full path of an image."""
+    return word if word in backgrounds() else os.path.abspath(os.path.expanduser(word))
+
+
+def _start(settings: Settings, mat: Background) -> Pose:
+    chosen = {"x_mm": settings.x_mm, "y_mm": settings.y_mm, "heading_deg": settings.heading_deg}
+    return replace(mat.start, **{key: value for key, value in chosen.items() if value is not None})
+
+
+def _with_pen(robot: RobotSpec, settings: Settings) -> RobotSpec:
+    said = {"color": settings.pen_color, "width_mm": settings.pen_width_mm, "down": settings.pen_down}
+    chosen: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+    return replace(robot, pen=replace(robot.pen, **chosen)) if chosen else robot
+
+
+def _obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...]:
+    match settings.obstacles:
+        case None:
+            return mat.obstacles
+        case str(word):
+            return load_obstacles(word, "-o")
+        case boxes:
+            return boxes
+
+
+def _profile(settings: Settings) -> ProfileSpec:
+    chosen = settings.profile
+    return chosen if isinstance(chosen, ProfileSpec) else load_profile(chosen, "--profile")
+
+
+def build_run_spec(settings: Settings) -> RunSpec:
+    """Return the run that the settings describe; where they say nothing, mat, robot and profile decide.
+
+    Raises:
+        BackgroundError, RobotError, ObstacleError, ProfileError: there is no such mat, robot, set of
+            obstacles or profile, or a file that describes one is wrong.
+    """
+    with told_as("", "-b"):
+        mat = background(os.path.expanduser(settings.background))
+    chosen = settings.robot
+    choice = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
+    profile = _profile(settings)
+    motor = settings.motor_noise if settings.motor_noise is not None else choice.motor_noise or 0
+    return RunSpec(
+        robot=_with_pen(robot_on_mat(choice, mat), settings),
+        world=WorldSpec(
+            background=mat_name(settings.background),
+            obstacles=_obstacles(settings, mat),
+            walls=settings.walls,
+            solid=profile.solid if settings.solid is None else settings.solid,
+            background_fit=settings.background_fit,
+            pen_marks=settings.pen_marks,
+            start=_start(settings, mat),
+            noise=NoiseSpec(light=settings.light_noise, motor=motor),
+        ),
+        profile=profile,
+        seed=settings.seed,
+    )

@@ -1,0 +1,51 @@
+"""Robots and obstacles that have a name.
+
+To add a robot or a set of obstacles: add an entry to `ROBOTS` or `OBSTACLES`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from tuisim.core.spec import ROBOT_WEIGHTS, ColorSensorSpec, Obstacle, RobotSpec, UltrasonicSpec
+
+
+def _eyes(x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int) -> tuple[ColorSensorSpec, ...]:
+    """Two colour sensors, as far to the left as to the right."""
+    return (
+        ColorSensorSpec("left", "in2", -x_mm, y_mm, left_diameter_mm),
+        ColorSensorSpec("right", "in3", x_mm, y_mm, right_diameter_mm),
+    )
+
+
+_SMALL = RobotSpec(
+    name="Small_Robot",
+    wheel_diameter_mm=28.0,
+    wheel_spacing_mm=90.0,
+    back_mm=-60.0,
+    weight=ROBOT_WEIGHTS["weightless"],
+    color_sensors=_eyes(10.0, 15.0, 10, 10),
+    ultrasonic=UltrasonicSpec(y_mm=10.0),
+)
+
+ROBOTS: Mapping[str, RobotSpec] = {
+    robot.name: robot
+    for robot in (
+        RobotSpec(),
+        _SMALL,
+        replace(_SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_eyes(30.0, 15.0, 10, 10)),
+        RobotSpec(name="Sensor_Diameter_Config", color_sensors=_eyes(20.0, 30.0, 30, 10)),
+    )
+}
+"""Every robot by name."""
+
+NO_OBSTACLES = "None"
+
+OBSTACLES: Mapping[str, tuple[Obstacle, ...]] = {
+    NO_OBSTACLES: (),
+    "Central_post": (Obstacle(900, 500, 200, 200),),
+    "Square_posts": tuple(Obstacle(x_mm, y_mm, 100, 100) for x_mm in (500, 1500) for y_mm in (200, 700)),
+    "Wall": (Obstacle(1500, 200, 200, 800),),
+}
+"""Every set of obstacles by name."""

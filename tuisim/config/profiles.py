@@ -1,0 +1,109 @@
+"""Profiles by name or from a TOML file, which may say only what differs from its `base`."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.config.reading import Section, means_file, read_file
+from tuisim.config.writing import Scalar, toml_lines
+from tuisim.core.profile import MS, PROFILES, ProfileSpec
+from tuisim.errors import ProfileError
+from tuisim.switches import nearest
+
+DEFAULT_PROFILE = "robolab"
+MAX_COST_MS = 60_000.0
+
+_NS, _MS = "_ns", "_ms"
+_RANGES: dict[str, tuple[float, float]] = {
+    "tick_hz": (1, 1000),
+    "max_speed_dps": (1, 100_000),
+    "reflected_max": (1, 1000),
+    "ultrasonic_period_ticks": (1, 1000),
+}
+"""What a number may be; any other from 0 to a million."""
+_ANY = (0.0, 1e6)
+
+
+def load_profile(word: str, key: str = "") -> ProfileSpec:
+    """Return a profile by name, or from a TOML file.
+
+    Args:
+        word: The name or the path.
+        key: What errors about a name say it stands in, such as `--profile`.
+
+    Raises:
+        ProfileError: there is none of that name, or the file is wrong.
+    """
+    if word in PROFILES:
+        return PROFILES[word]
+    if not means_file(word):
+        hint = f"{nearest(word, PROFILES)}; or a .toml file"
+        raise ProfileError(f"no such profile {word!r}", hint, key=key)
+    path = Path(word).expanduser()
+    if path.suffix.lower() != ".toml":
+        raise ProfileError("is not a .toml file", "the suffix says what is in it", file=str(path))
+    return profile_from_table(Section(read_file(path, ProfileError), str(path), ProfileError), path.stem)
+
+
+def profile_from_table(table: Section, name: str) -> ProfileSpec:
+    """Return the profile that a table describes. A cost may be given in ms instead of ns.
+
+    Args:
+        table: The table.
+        name: What the profile is called if the table does not say it.
+
+    Raises:
+        ProfileError: a key or a value is wrong.
+    """
+    kinds = {field.name: str(field.type) for field in fields(ProfileSpec)}
+    in_ms = {_in_ms(key): key for key in kinds if key.endswith(_NS)}
+    table.allow(("base", *kinds, *in_ms))
+    base = PROFILES[table.one_of("base", PROFILES) if "base" in table else DEFAULT_PROFILE]
+    found: dict[str, Any] = {"name": name}
+    for key in table:
+        if key in in_ms:
+            if in_ms[key] in table:
+                raise table.wrong(key, f"stands beside {in_ms[key]}", "give one of the two")
+            found[in_ms[key]] = round(table.number(key, 0, MAX_COST_MS) * MS)
+        elif key != "base":
+            found[key] = _value(table, key, kinds[key])
+    if found["name"] in PROFILES:
+        raise table.wrong("name", f"{found['name']!r} is one of the profiles of tuisim", "give it a name of its own")
+    return replace(base, **found)
+
+
+def _value(table: Section, key: str, kind: str) -> object:
+    low, high = _RANGES.get(key, (0.0, MAX_COST_MS * MS) if key.endswith(_NS) else _ANY)
+    match kind:
+        case "bool":
+            return table.flag(key)
+        case "int":
+            return table.whole(key, int(low), int(high))
+        case "float":
+            return table.number(key, low, high)
+        case _:
+            return table.text(key)
+
+
+def _in_ms(key: str) -> str:
+    return key.removesuffix(_NS) + _MS
+
+
+def profile_lines(spec: ProfileSpec, parent: str = "") -> list[str]:
+    """Return a profile as lines of TOML, every value said.
+
+    Args:
+        spec: The profile.
+        parent: The table in which it stands; empty for a file of its own.
+    """
+    values: dict[str, Scalar] = {}
+    for field in fields(ProfileSpec):
+        value = getattr(spec, field.name)
+        cost_ms = value / MS if field.name.endswith(_NS) else 0.0
+        if cost_ms and round(cost_ms * MS) == value:
+            values[_in_ms(field.name)] = cost_ms
+        else:
+            values[field.name] = value
+    return [*([f"[{parent}]"] if parent else []), *toml_lines(values)]

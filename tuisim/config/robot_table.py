@@ -1,0 +1,148 @@
+"""A robot as a table of keys and values, in a file of its own or inside a world.
+
+A table may say only what differs from its `base`. Sensors that the base has and the table does not name
+stay; `false` in the place of a sensor takes it away.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+from tuisim.config.presets import ROBOTS
+from tuisim.config.reading import MAX_NAME, Section
+from tuisim.core.spec import ROBOT_WEIGHTS, ColorSensorSpec, GyroSpec, PenSpec, UltrasonicSpec
+from tuisim.errors import RobotError
+from tuisim.switches import RobotChoice, pen_color
+
+DEFAULT_ROBOT = "Default_Robot"
+MAX_RAYS = 100
+
+_SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
+LENGTH_KEYS = ("wheel_diameter_mm", "wheel_spacing_mm", "wheel_width_mm", "back_mm")
+PORT_KEYS = ("left_port", "right_port")
+_TOP = ("base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, "color_sensors", "ultrasonic", "gyro", "pen")
+COLOR_SENSOR_KEYS = ("port", "x_mm", "y_mm", "diameter_mm", "strategy")
+_ULTRASONIC_NUMBERS = ("x_mm", "y_mm", "angle_deg", "max_range_mm", "noise_mm")
+ULTRASONIC_KEYS = ("port", *_ULTRASONIC_NUMBERS, "ray_angles_deg")
+PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
+
+
+def robot_from_table(table: Section, name: str) -> RobotChoice:
+    """Return the robot that a table describes.
+
+    Args:
+        table: The table.
+        name: What the robot is called if the table does not say it.
+
+    Raises:
+        RobotError: a key or a value is wrong.
+    """
+    table.allow(_TOP)
+    base = ROBOTS[table.one_of("base", ROBOTS)] if "base" in table else ROBOTS[DEFAULT_ROBOT]
+    found: dict[str, Any] = {"name": robot_name(table, "name") if "name" in table else name[:MAX_NAME]}
+    found |= {key: table.number(key) for key in LENGTH_KEYS if key in table}
+    found |= {key: table.text(key) for key in PORT_KEYS if key in table}
+    if "weight" in table:
+        found["weight"] = weight(table, "weight")
+    own_places = False
+    if "color_sensors" in table:
+        sensors = table.section("color_sensors")
+        own_places = any(sensors.raw(key) is not False and "x_mm" in sensors.section(key) for key in sensors)
+        found["color_sensors"] = _color_sensors(sensors, base.color_sensors)
+    if "ultrasonic" in table:
+        found["ultrasonic"] = _ultrasonic(table, base.ultrasonic)
+    if "gyro" in table:
+        found["gyro"] = _gyro(table, base.gyro)
+    if "pen" in table:
+        found["pen"] = pen(table.section("pen"), base.pen)
+    with table.telling():
+        return RobotChoice(replace(base, **found), own_places=own_places)
+
+
+def robot_name(table: Section, key: str) -> str:
+    """Return the name of something, or raise."""
+    name = table.text(key)
+    if len(name) > MAX_NAME:
+        raise table.wrong(key, f"must be at most {MAX_NAME} characters, got {len(name)}")
+    return name
+
+
+def weight(table: Section, key: str) -> float:
+    """Return a weight, given by its name or as a number."""
+    value = table.raw(key)
+    if isinstance(value, str):
+        return ROBOT_WEIGHTS[table.one_of(key, ROBOT_WEIGHTS)]
+    return table.number(key)
+
+
+def pen(table: Section, base: PenSpec, keys: Iterable[str] = PEN_KEYS) -> PenSpec:
+    """Return a pen; what the table leaves out is as in `base`."""
+    table.allow(keys)
+    found: dict[str, Any] = {key: table.number(key) for key in ("x_mm", "y_mm", "width_mm") if key in table}
+    if "color" in table:
+        found["color"] = table.converted("color", pen_color)
+    if "down" in table:
+        found["down"] = table.flag("down")
+    with table.telling(table.key.removesuffix("pen").removesuffix(".")):
+        return replace(base, **found)
+
+
+def _color_sensors(table: Section, base: tuple[ColorSensorSpec, ...]) -> tuple[ColorSensorSpec, ...]:
+    """The sensors of the base as the table changes them, and the table's own."""
+    by_name = {sensor.name: sensor for sensor in base}
+    found = dict(by_name)
+    for name in table:
+        if table.raw(name) is False:
+            found.pop(name, None)
+            continue
+        if not _SENSOR_NAME.fullmatch(name):
+            raise table.wrong(name, "is no name for a sensor", "letters, digits and _, a letter first, at most 31")
+        found[name] = _color_sensor(table.section(name), name, by_name.get(name))
+    # A file that names them all also says their order.
+    order = [name for name in table if name in found]
+    return tuple(found[name] for name in (order if len(order) == len(found) else found))
+
+
+def _color_sensor(table: Section, name: str, base: ColorSensorSpec | None) -> ColorSensorSpec:
+    table.allow(COLOR_SENSOR_KEYS)
+    found: dict[str, Any] = {key: table.text(key) for key in ("port", "strategy") if key in table}
+    found |= {key: table.number(key) for key in ("x_mm", "y_mm") if key in table}
+    if "diameter_mm" in table:
+        found["diameter_mm"] = table.whole("diameter_mm", 2, 100)
+    if base is None:
+        for key in ("port", "x_mm", "y_mm"):
+            table.raw(key)
+    with table.telling(table.key.removesuffix(name).removesuffix(".")):
+        return ColorSensorSpec(name=name, **found) if base is None else replace(base, **found)
+
+
+def _ultrasonic(table: Section, base: UltrasonicSpec | None) -> UltrasonicSpec | None:
+    if table.raw("ultrasonic") is False:
+        return None
+    sensor = table.section("ultrasonic")
+    sensor.allow(ULTRASONIC_KEYS)
+    found: dict[str, Any] = {key: sensor.number(key) for key in _ULTRASONIC_NUMBERS if key in sensor}
+    if "port" in sensor:
+        found["port"] = sensor.text("port")
+    if "ray_angles_deg" in sensor:
+        angles = sensor.items("ray_angles_deg")
+        if not 1 <= len(angles) <= MAX_RAYS:
+            raise sensor.wrong("ray_angles_deg", f"must be 1 to {MAX_RAYS} angles, got {len(angles)}")
+        numbered = Section({f"ray_angles_deg[{at}]": angle for at, angle in enumerate(angles, start=1)},
+                           sensor.file, RobotError, sensor.key)  # fmt: skip
+        found["ray_angles_deg"] = tuple(numbered.number(key, -360, 360) for key in numbered)
+    with table.telling():
+        return replace(base or UltrasonicSpec(), **found)
+
+
+def _gyro(table: Section, base: GyroSpec | None) -> GyroSpec | None:
+    if table.raw("gyro") is False:
+        return None
+    sensor = table.section("gyro")
+    sensor.allow(("port",))
+    found: dict[str, Any] = {"port": sensor.text("port")} if "port" in sensor else {}
+    with table.telling():
+        return replace(base or GyroSpec(), **found)

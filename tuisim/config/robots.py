@@ -1,0 +1,124 @@
+"""Robots by name or from a file: read, and written so that they read back the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from tuisim.config.presets import ROBOTS
+from tuisim.config.reading import Section, means_file, parse_toml, read_file
+from tuisim.config.robot_json import robot_from_json
+from tuisim.config.robot_table import (
+    COLOR_SENSOR_KEYS,
+    DEFAULT_ROBOT,
+    LENGTH_KEYS,
+    PEN_KEYS,
+    PORT_KEYS,
+    ULTRASONIC_KEYS,
+    robot_from_table,
+)
+from tuisim.config.writing import Scalar, toml_key, toml_lines, write_whole
+from tuisim.core.spec import ROBOT_WEIGHTS, RobotSpec
+from tuisim.errors import RobotError
+from tuisim.switches import RobotChoice, nearest
+
+COMMENTS = {
+    "wheel_spacing_mm": "between the middles of the wheels",
+    "back_mm": "how far the body reaches behind the axle, as a negative y",
+    "weight": f"{', '.join(ROBOT_WEIGHTS)}, or a number",
+    "left_port": "outA … outD",
+    "port": "in1 … in4",
+    "x_mm": "to the right of the robot's middle",
+    "y_mm": "forward of the axle",
+    "diameter_mm": "of the disc that it sees, whole mm",
+    "strategy": "how the pixels of the disc count: mean, gaussian or centre",
+    "angle_deg": "counter-clockwise from straight ahead",
+    "max_range_mm": "reported when no echo returns",
+    "noise_mm": "uniform, at most so much to either side",
+    "ray_angles_deg": "the fan of rays; the nearest echo counts",
+    "color": "a CSS colour name, or #rrggbb",
+}
+_HEAD = (
+    "# A robot for tuisim. Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels,",
+    "# y forward of it.",
+)
+
+
+def load_robot(word: str, key: str = "") -> RobotSpec:
+    """Return a robot by name, or from a TOML or JSON file.
+
+    Args:
+        word: The name or the path.
+        key: What errors about a name say it stands in, such as `-r`.
+
+    Raises:
+        RobotError: there is none of that name, or the file is wrong.
+    """
+    return choose_robot(word, key).spec
+
+
+def choose_robot(word: str, key: str = "") -> RobotChoice:
+    """Return the same as `load_robot`, with what else the file decides.
+
+    Raises:
+        RobotError: there is none of that name, or the file is wrong.
+    """
+    if word in ROBOTS:
+        return RobotChoice(ROBOTS[word], own_places=False)
+    if not means_file(word):
+        hint = f"{nearest(word, ROBOTS)}; or a .toml or .json file"
+        raise RobotError(f"no such robot {word!r}", hint, key=key)
+    path = Path(word).expanduser()
+    data = read_file(path, RobotError)
+    if path.suffix.lower() == ".json":
+        return robot_from_json(Section(data, str(path), RobotError), path.stem)
+    return robot_from_table(Section(data, str(path), RobotError), path.stem)
+
+
+def save_robot(spec: RobotSpec, path: Path | str) -> None:
+    """Write a robot as a TOML file from which `load_robot` returns an equal one; whole or not at all.
+
+    Raises:
+        RobotError: the file cannot be written, or the robot has what no file can say, such as a name of two lines.
+    """
+    path = Path(path)
+    lines = [*_HEAD, "", *robot_lines(spec)]
+    table = Section(parse_toml("\n".join(lines), str(path), RobotError), str(path), RobotError)
+    if robot_from_table(table, path.stem).spec != spec:
+        raise RobotError("the robot has something that no file can say", file=str(path))
+    write_whole(path, lines, RobotError)
+
+
+def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN_KEYS) -> list[str]:
+    """Return a robot as lines of TOML, every value said.
+
+    Args:
+        spec: The robot.
+        parent: The table in which it stands; empty for a file of its own.
+        pen_keys: What to say of its pen.
+    """
+    under = f"{parent}." if parent else ""
+    lines = [f"[{parent}]"] if parent else []
+    values = _values(spec, ("name", *LENGTH_KEYS, "weight", *PORT_KEYS))
+    values |= {"weight": name for name, weight in ROBOT_WEIGHTS.items() if weight == spec.weight}
+    lines += toml_lines(values, COMMENTS)
+    names = [sensor.name for sensor in spec.color_sensors]
+    if gone := [sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names]:
+        lines += ["", f"[{under}color_sensors]", *(f"{toml_key(name)} = false" for name in gone)]
+    for key in ("ultrasonic", "gyro"):
+        if getattr(spec, key) is None:
+            # A key of the robot itself must stand before its first table.
+            lines.insert(1 if parent else 0, f"{key} = false")
+    for sensor in spec.color_sensors:
+        lines += ["", f"[{under}color_sensors.{toml_key(sensor.name)}]"]
+        lines += toml_lines(_values(sensor, COLOR_SENSOR_KEYS), COMMENTS)
+    if spec.ultrasonic is not None:
+        lines += ["", f"[{under}ultrasonic]", *toml_lines(_values(spec.ultrasonic, ULTRASONIC_KEYS), COMMENTS)]
+    if spec.gyro is not None:
+        lines += ["", f"[{under}gyro]", *toml_lines(_values(spec.gyro, ("port",)), COMMENTS)]
+    return [*lines, "", f"[{under}pen]", *toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
+
+
+def _values(spec: object, keys: Iterable[str]) -> dict[str, Scalar]:
+    values = {key: getattr(spec, key) for key in keys}
+    return {key: list(value) if isinstance(value, tuple) else value for key, value in values.items()}

@@ -1,0 +1,187 @@
+"""World files: one TOML that holds mat, obstacles, robot, noise, start pose, pen and profile, to be shared."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tuisim.assets import background
+from tuisim.config.obstacles import load_obstacles, obstacles_from_table
+from tuisim.config.profiles import load_profile, profile_from_table
+from tuisim.config.reading import Section, means_file, read_file
+from tuisim.config.robot_table import robot_from_table
+from tuisim.config.robots import load_robot
+from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
+from tuisim.errors import ConfigError, ProfileError, RobotError
+from tuisim.switches import (
+    MAX_ANGLE_DEG,
+    MAX_PEN_MM,
+    MAX_POSITION_MM,
+    MAX_SEED,
+    MIN_PEN_MM,
+    PANELS,
+    pen_color,
+)
+
+WORLD_SUFFIX = ".toml"
+FLAGS = {"walls": "walls", "solid": "solid", "pen_marks": "pen_marks", "rays": "rays", "autorun": "autorun"}
+START_LIMITS = {"x_mm": MAX_POSITION_MM, "y_mm": MAX_POSITION_MM, "heading_deg": MAX_ANGLE_DEG}
+NOISE_LIMITS = {"light": MAX_LIGHT_NOISE, "motor": MAX_MOTOR_NOISE}
+PANEL_KEYS = {"panels": "panels_on", "hidden_panels": "panels_off"}
+PEN_KEYS = ("down", "color", "width_mm")
+TOP_KEYS = (
+    "program", "background", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed", *FLAGS,
+    *PANEL_KEYS, "start", "noise", "pen",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class WorldFile:
+    """What a world file says."""
+
+    path: Path
+    settings: Mapping[str, Any]
+    """By field of `Settings`: a layer between a program's magic line and the command line."""
+    program: str | None = None
+    """The program to run in it: a path, or the name of an example."""
+    files: tuple[Path, ...] = ()
+    """The file itself, and the files that it refers to."""
+
+
+def means_world(word: str) -> bool:
+    """Return whether a word of the command line names a world file, and not a program."""
+    return Path(word).suffix.lower() == WORLD_SUFFIX
+
+
+def load_world(path: Path | str) -> WorldFile:
+    """Read a world file. Paths in it are relative to its folder.
+
+    Raises:
+        ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
+    """
+    path = Path(path).expanduser()
+    if not means_world(path.name):
+        raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
+    return world_from_table(Section(read_file(path, ConfigError), str(path), ConfigError), path)
+
+
+def world_from_table(table: Section, path: Path) -> WorldFile:
+    """Return the world that a table describes.
+
+    Args:
+        table: The table.
+        path: Where the file is, or will be.
+
+    Raises:
+        ConfigError: a key or a value is wrong.
+    """
+    table.allow(TOP_KEYS)
+    referred: list[Path] = []
+    near = partial(_near, path.parent, referred)
+    found: dict[str, Any] = _mat(table, near)
+    found |= {field: table.flag(key) for key, field in FLAGS.items() if key in table}
+    for key, choose in (("robot", _robot), ("obstacles", _obstacles), ("profile", _profile)):
+        if key in table:
+            found[key] = choose(table, near, path)
+    if "obstacle" in table:
+        if "obstacles" in table:
+            raise table.wrong("obstacle", "stands beside obstacles", "give one of the two")
+        found["obstacles"] = obstacles_from_table(table)
+    if "seed" in table:
+        found["seed"] = table.whole("seed", 0, MAX_SEED)
+    found |= _noise(table) | _pen(table) | _panels(table)
+    program = None
+    if "program" in table:
+        word = table.text("program")
+        program = word if os.sep not in word and not (path.parent / word).exists() else near(word)
+    return WorldFile(path, found, program, (path, *referred))
+
+
+def _near(folder: Path, referred: list[Path], word: str) -> str:
+    """A path in the file as a path from here; it is noted as one that the file refers to."""
+    found = Path(os.path.normpath(folder / os.path.expanduser(word)))
+    referred.append(found)
+    return str(found)
+
+
+Near = Callable[[str], str]
+
+
+def _mat(table: Section, near: Near) -> dict[str, Any]:
+    """Mat, how it fits, and start pose. A mat brings its own start pose, so the magic line's goes with its mat."""
+    found: dict[str, Any] = {}
+    if "background_fit" in table:
+        found["background_fit"] = table.one_of("background_fit", BACKGROUND_FITS)
+    if "background" in table:
+        word = table.text("background")
+        found |= dict.fromkeys(START_LIMITS)
+        found["background"] = near(word) if os.sep in word or Path(word).suffix else word
+        with table.telling("background"):
+            background(found["background"])
+    if "start" in table:
+        start = table.section("start")
+        start.allow(START_LIMITS)
+        found |= {key: start.number(key, -high, high) for key, high in START_LIMITS.items() if key in start}
+    return found
+
+
+def _robot(table: Section, near: Near, path: Path) -> Any:
+    if not isinstance(table.raw("robot"), str):
+        return robot_from_table(table.section("robot", RobotError), path.stem)
+    return _named(table, "robot", near, load_robot)
+
+
+def _obstacles(table: Section, near: Near, path: Path) -> Any:
+    return _named(table, "obstacles", near, load_obstacles)
+
+
+def _profile(table: Section, near: Near, path: Path) -> Any:
+    if not isinstance(table.raw("profile"), str):
+        return profile_from_table(table.section("profile", ProfileError), path.stem)
+    return _named(table, "profile", near, load_profile)
+
+
+def _named(table: Section, key: str, near: Near, load: Callable[[str], object]) -> str:
+    """The name or the file that stands there; loaded once, so that a mistake is told with this file and key."""
+    word = table.text(key)
+    if means_file(word):
+        word = near(word)
+    with table.telling(key):
+        load(word)
+    return word
+
+
+def _noise(table: Section) -> dict[str, Any]:
+    if "noise" not in table:
+        return {}
+    noise = table.section("noise")
+    noise.allow(NOISE_LIMITS)
+    return {f"{key}_noise": noise.whole(key, 0, high) for key, high in NOISE_LIMITS.items() if key in noise}
+
+
+def _pen(table: Section) -> dict[str, Any]:
+    if "pen" not in table:
+        return {}
+    pen = table.section("pen")
+    pen.allow(PEN_KEYS)
+    found: dict[str, Any] = {}
+    if "down" in pen:
+        found["pen_down"] = pen.flag("down")
+    if "color" in pen:
+        found["pen_color"] = pen.converted("color", pen_color)
+    if "width_mm" in pen:
+        found["pen_width_mm"] = pen.number("width_mm", MIN_PEN_MM, MAX_PEN_MM)
+    return found
+
+
+def _panels(table: Section) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, field in PANEL_KEYS.items():
+        if key in table:
+            named = table.instead({f"{key}[{at}]": panel for at, panel in enumerate(table.items(key), start=1)})
+            found[field] = tuple(named.one_of(each, PANELS) for each in named)
+    return found

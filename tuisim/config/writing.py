@@ -1,0 +1,68 @@
+"""Files that describe things, written: TOML with comments, whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import secrets
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from tuisim.errors import ConfigError
+
+Scalar = str | bool | int | float | list[str] | list[float]
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml_key(key: str) -> str:
+    """Return a key as TOML writes it."""
+    return key if _BARE.fullmatch(key) else toml_value(key)
+
+
+def toml_value(value: Scalar) -> str:
+    """Return a value as TOML writes it; a number reads back to the last bit."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            # TOML knows every escape of JSON, and wants one more character escaped.
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case list():
+            return f"[{', '.join(map(toml_value, value))}]"
+        case float() if value.is_integer() and abs(value) < 1e15:
+            return f"{value:.1f}"
+        case _:
+            return repr(value)
+
+
+def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})) -> list[str]:
+    """Return the lines of one table, each with its comment if it has one."""
+    pairs = [(f"{toml_key(key)} = {toml_value(value)}", comments.get(key, "")) for key, value in values.items()]
+    width = max((len(pair) for pair, comment in pairs if comment and len(pair) <= 36), default=0)
+    return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
+
+
+def write_whole(path: Path, lines: Iterable[str], error: type[ConfigError]) -> None:
+    """Write a file that is whole or not there: beside its place first, then renamed into it.
+
+    Raises:
+        ConfigError: of the class `error`: it cannot be written; what was there is as it was.
+    """
+    try:
+        if path.suffix != ".toml":
+            raise error("must end in .toml", file=str(path))
+        beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
+        try:
+            with beside.open("xb") as stream:
+                stream.write(("\n".join(lines) + "\n").encode())
+                stream.flush()
+                os.fsync(stream.fileno())
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
+    except (OSError, ValueError) as reason:
+        message = f"cannot be written: {getattr(reason, 'strerror', None) or reason}"
+        raise error(message, file=str(path)) from None
