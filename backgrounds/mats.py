@@ -11,8 +11,12 @@ from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 import numpy as np
+from courses import junction_handling_test, line_following_test, obstacles_test, thruxton_circuit
+from digits import mnist_digits, mnist_digits_black
+from harvest import harvest_trail
 from lollipop import LOWER_BRANCH, OPENING, UPPER_BRANCH
 from numpy.typing import NDArray
+from patterns import sensor_diameter_test, simple_shapes
 from shapes import (
     BLACK,
     HEIGHT,
@@ -34,6 +38,9 @@ from shapes import (
     rounded_rect,
     row_gradient,
 )
+from spaceport import space_port
+from speckle import speckled
+from terrain import topo_map
 from testcard import Placement, card
 
 VERY_LIGHT_GREY: Rgb = (220, 220, 220)
@@ -170,6 +177,11 @@ def lollipop() -> Canvas:
     return canvas
 
 
+def noisy_lollipop() -> Canvas:
+    """The lollipop, mottled and blurred."""
+    return speckled(lollipop())
+
+
 def testcard() -> Canvas:
     """Three television test cards, one of them on its side, in a thin frame."""
     canvas = blank()
@@ -197,6 +209,18 @@ MATS: Mapping[str, Callable[[], Canvas]] = {
     "Two_shapes": two_shapes,
     "Lollipop": lollipop,
     "Testcard": testcard,
+    "Noisy_Lollipop": noisy_lollipop,
+    "Line_Following_Test": line_following_test,
+    "Junction_Handling_Test": junction_handling_test,
+    "Obstacles_Test": obstacles_test,
+    "Thruxton_Circuit": thruxton_circuit,
+    "Simple_Shapes": simple_shapes,
+    "Sensor_Diameter_Test": sensor_diameter_test,
+    "Topo_map": topo_map,
+    "MNIST_Digits": mnist_digits,
+    "MNIST_Digits_Black": mnist_digits_black,
+    "Harvest_Trail": harvest_trail,
+    "Space_Port": space_port,
 }
 """Every mat by name."""
 

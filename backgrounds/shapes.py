@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +18,8 @@ WIDTH, HEIGHT = 2362, 1143
 
 SUBPIXELS = 8
 """A smooth edge looks at so many by so many points of a pixel."""
+_BAND_ROWS = 32
+"""Rows of a smooth shape that are looked at together, so that memory stays small."""
 
 Canvas = NDArray[np.float32]
 """Shape (HEIGHT, WIDTH, 3), 0 … 255; not rounded until the picture is done."""
@@ -112,12 +112,34 @@ def paint(canvas: Canvas, rgb: Rgb, shape: Shape, *, smooth: bool = False) -> No
     if not smooth:
         region[shape.inside(x, y)] = rgb
         return
-    covered = np.zeros(region.shape[:2], np.float32)
-    offsets = (np.arange(SUBPIXELS) + 0.5) / SUBPIXELS - 0.5
-    for dy in offsets:
-        for dx in offsets:
-            covered += shape.inside(x + dx, y + dy)
-    region += (covered / SUBPIXELS**2)[:, :, None] * (np.asarray(rgb, np.float32) - region)
+    _blend(canvas, np.asarray(rgb, np.float32), shape)
+
+
+def _blend(canvas: Canvas, rgb: Canvas, shape: Shape) -> None:
+    """Paint a shape, each pixel by the share of it that is covered."""
+    rows, columns = _pixels_of(shape.box)
+    for top in range(rows.start, rows.stop, _BAND_ROWS):
+        band = slice(top, min(top + _BAND_ROWS, rows.stop))
+        region = canvas[band, columns]
+        region += _covered(shape, band, columns)[:, :, None] * (rgb - region)
+
+
+def _covered(shape: Shape, rows: slice, columns: slice) -> Canvas:
+    """How much of each pixel a shape covers, 0 … 1, shape (h, w)."""
+    inside = shape.inside(_points(columns)[None, :], _points(rows)[:, None])
+    height, width = rows.stop - rows.start, max(columns.stop - columns.start, 0)
+    counted: Canvas = inside.reshape(height, SUBPIXELS, width, SUBPIXELS).sum((1, 3), dtype=np.float32)
+    return counted / SUBPIXELS**2
+
+
+def coverage(shape: Shape, height: int, width: int) -> Canvas:
+    """Return how much of each pixel of a small picture a shape covers, 0 … 1, shape (height, width)."""
+    return _covered(shape, slice(0, height), slice(0, width))
+
+
+def _points(span: slice) -> Floats:
+    """Where a smooth edge looks at some rows or columns: SUBPIXELS places in each."""
+    return np.arange(span.start * SUBPIXELS, max(span.stop, span.start) * SUBPIXELS) / SUBPIXELS + 0.5 / SUBPIXELS
 
 
 def ellipse(centre: Point, rx: float, ry: float) -> Shape:
@@ -157,6 +179,23 @@ def rounded_rect(box: Box, radius: float) -> Shape:
     return Shape(box, inside)
 
 
+def union(parts: Sequence[Shape]) -> Shape:
+    """Return the area that is in any of the parts."""
+    boxes = np.array([part.box for part in parts])
+
+    def inside(x: Floats, y: Floats) -> Mask:
+        found = np.zeros((y.size, x.size), np.bool_)
+        # A part far smaller than the whole is asked only about points near it.
+        left, right = np.searchsorted(x[0], boxes[:, 0]), np.searchsorted(x[0], boxes[:, 2], "right")
+        top, bottom = np.searchsorted(y[:, 0], boxes[:, 1]), np.searchsorted(y[:, 0], boxes[:, 3], "right")
+        for at in np.flatnonzero((left < right) & (top < bottom)):
+            rows, columns = slice(top[at], bottom[at]), slice(left[at], right[at])
+            found[rows, columns] |= parts[at].inside(x[:, columns], y[rows])
+        return found
+
+    return Shape((*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist()), inside)
+
+
 def polygon(points: Sequence[Point]) -> Shape:
     """Return the inside of a closed polygon, by the even-odd rule."""
     across, down = zip(*points, strict=True)
@@ -171,47 +210,6 @@ def polygon(points: Sequence[Point]) -> Shape:
         return found
 
     return Shape((min(across), min(down), max(across), max(down)), inside)
-
-
-def _segment(start: Point, end: Point, width: float) -> Shape:
-    """A straight line of some width, cut square at its ends."""
-    (x1, y1), (x2, y2) = start, end
-    half = width / 2 / math.hypot(x2 - x1, y2 - y1)
-    across, down = (y1 - y2) * half, (x2 - x1) * half
-    return polygon(
-        [(x1 + across, y1 + down), (x2 + across, y2 + down), (x2 - across, y2 - down), (x1 - across, y1 - down)]
-    )
-
-
-def _mitre(before: Point, corner: Point, after: Point, width: float) -> Shape:
-    """The kite that fills the outer side of a corner between two lines."""
-    away1 = math.atan2(corner[1] - before[1], corner[0] - before[0])
-    away2 = math.atan2(after[1] - corner[1], after[0] - corner[0])
-    turn = math.remainder(away2 - away1, math.tau)
-    side = -math.copysign(math.pi / 2, turn)
-    tip = width / 2 / math.cos(turn / 2)
-    arms = [(away1 + side, width / 2), (away1 + turn / 2 + side, tip), (away2 + side, width / 2)]
-    return polygon([corner, *((corner[0] + math.cos(a) * r, corner[1] + math.sin(a) * r) for a, r in arms)])
-
-
-def stroke(points: Sequence[Point], width: float, join: Literal["round", "miter"] = "round") -> Shape:
-    """Return a line of constant width along straight pieces, cut square at both ends.
-
-    Args:
-        points: The middle of the line, two or more.
-        width: Its width.
-        join: What a corner looks like from outside.
-    """
-    parts = [_segment(start, end, width) for start, end in pairwise(points)]
-    for before, corner, after in zip(points, points[1:], points[2:], strict=False):
-        parts.append(disc(corner, width / 2) if join == "round" else _mitre(before, corner, after, width))
-
-    def inside(x: Floats, y: Floats) -> Mask:
-        found: Mask = np.logical_or.reduce([part.inside(x, y) for part in parts])
-        return found
-
-    x0, y0, x1, y1 = zip(*(part.box for part in parts), strict=True)
-    return Shape((min(x0), min(y0), max(x1), max(y1)), inside)
 
 
 def row_gradient(canvas: Canvas, y0: int, y1: int, start: int, span: int) -> None:

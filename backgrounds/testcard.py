@@ -146,9 +146,7 @@ def _grid(canvas: Canvas, place: Placement) -> None:
         rect(canvas, CARD_WHITE, place.box(line))
 
 
-def _row_of_blocks(
-    canvas: Canvas, place: Placement, v0: float, v1: float, blocks: Sequence[tuple[float, Rgb]]
-) -> None:
+def _row_of_blocks(canvas: Canvas, place: Placement, v0: float, v1: float, blocks: Sequence[tuple[float, Rgb]]) -> None:
     """Blocks side by side from LEFT_U on, each given by its right edge and colour."""
     left = LEFT_U
     for right, rgb in blocks:

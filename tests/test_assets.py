@@ -29,6 +29,18 @@ STARTS = {
     "Two_shapes": (200, 500, 90),
     "Lollipop": (750, 375, -180),
     "Testcard": (400, 800, 90),
+    "Noisy_Lollipop": (750, 375, -180),
+    "Line_Following_Test": (141, 125, 90),
+    "Junction_Handling_Test": (698, 130, 90),
+    "Obstacles_Test": (121, 125, 90),
+    "Thruxton_Circuit": (457, 242, 120),
+    "Simple_Shapes": (800, 400, 0),
+    "Sensor_Diameter_Test": (550, 450, 90),
+    "Topo_map": (698, 130, 90),
+    "MNIST_Digits": (400, 50, 90),
+    "MNIST_Digits_Black": (400, 50, 90),
+    "Harvest_Trail": (210, 188, 0),
+    "Space_Port": (190, 178, 0),
 }
 
 
@@ -56,7 +68,12 @@ def test_mat_has_its_start_pose(name: str) -> None:
     assert found.start == Pose(*STARTS[name])
     assert found.image.is_file()
     assert found.title and "\n" not in found.title
-    assert found.obstacles == ()
+
+
+def test_only_one_mat_brings_obstacles() -> None:
+    boxes = {name: mat.obstacles for name, mat in assets.backgrounds().items() if mat.obstacles}
+    corners = ((46, 388), (479, 704), (852, 388), (1374, 388), (1758, 900), (2126, 388))
+    assert boxes == {"Obstacles_Test": tuple(Obstacle(x, y, 150, 150) for x, y in corners)}
 
 
 def test_only_radial_grey_moves_sensors() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import lines
 import numpy as np
 import pytest
 import shapes
@@ -59,12 +60,10 @@ def test_rect_off_the_mat_paints_nothing() -> None:
             3200,
             id="polygon with a hole",
         ),
-        pytest.param(shapes.stroke([(100, 100), (160, 180)], 10), 1000, id="stroke"),
-        pytest.param(shapes.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000, id="stroke, mitred"),
-        pytest.param(shapes.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"), 4000, id="mitred, other way"),
-        pytest.param(
-            shapes.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25, id="stroke, rounded"
-        ),
+        pytest.param(lines.stroke([(100, 100), (160, 180)], 10), 1000, id="stroke"),
+        pytest.param(lines.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000, id="stroke, mitred"),
+        pytest.param(lines.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"), 4000, id="mitred, other way"),
+        pytest.param(lines.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25, id="stroke, rounded"),
     ],
 )
 @pytest.mark.parametrize("smooth", [False, True], ids=["hard", "smooth"])
