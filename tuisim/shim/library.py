@@ -195,3 +195,4 @@ def patch_sensor_module(session: Session, module: types.ModuleType, brick: Brick
             self.mode = mode
 
     sensor.Sensor._ensure_mode = ensure_mode
+    sensor.Sensor._scale = free_of_charge(session, sensor.Sensor._scale)
