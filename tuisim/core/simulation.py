@@ -8,14 +8,15 @@ loop does the same floating-point operations in the same order as a single tick.
 from __future__ import annotations
 
 import math
+from math import cos, degrees, radians, sin
 from struct import Struct
-from typing import Protocol
 
 from tuisim.core import motors
 from tuisim.core.drive import mm_per_degree, turn_rate_dps
 from tuisim.core.geometry import Pose
-from tuisim.core.motors import Motor, MotorState
+from tuisim.core.motors import Motor, MotorState, ramped
 from tuisim.core.noise import wheel_noise
+from tuisim.core.sink import Buffer, TickSink
 from tuisim.core.solid import Solids
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Instant
@@ -24,6 +25,9 @@ NS_PER_S = 1_000_000_000
 
 STALL_NS = 100_000_000
 """A running motor that stands still for longer is stalled (EV3 motor driver)."""
+
+ROOM_TICKS = 256
+"""The sink is asked for room for so many records at a time."""
 
 FEW_TICKS = 3
 """Up to so many ticks, setting up a tight loop costs more than it saves."""
@@ -36,25 +40,6 @@ def float32(value: float) -> float:
     return float(_FLOAT32.unpack(_FLOAT32.pack(value))[0])
 
 
-class Buffer(Protocol):
-    """Bytes that can be set by slices: a mapped file, or a bytearray."""
-
-    def __setitem__(self, at: slice, data: bytes, /) -> None:
-        """Store bytes."""
-
-
-class TickSink(Protocol):
-    """Where tick records go."""
-
-    count: int
-
-    def room(self, records: int) -> Buffer:
-        """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k."""
-
-    def publish(self, count: int) -> None:
-        """Tell readers how many records are whole."""
-
-
 class Simulation:
     """The world of one run.
 
@@ -64,9 +49,9 @@ class Simulation:
     """
 
     __slots__ = (
-        "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_sink", "_solids", "_spacing_mm", "_tick_s",
-        "actions", "changed", "gyro_zero_deg", "heading_deg", "left", "line", "noise", "pen_down", "right", "spec",
-        "tick", "x_mm", "y_mm",
+        "_buffer", "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_room_end", "_sink", "_solids",
+        "_spacing_mm", "_tick_s", "_whole", "actions", "changed", "gyro_zero_deg", "heading_deg", "left", "line",
+        "noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -77,6 +62,7 @@ class Simulation:
         self._mm_per_deg = mm_per_degree(spec.robot)
         self._ramp_step = 5000.0 / spec.robot.weight / self._hz if spec.robot.weight else 0.0
         self._spacing_mm = spec.robot.wheel_spacing_mm
+        self._whole = spec.profile.round_forward_speeds
         self._solids = Solids(spec.world, spec.robot) if spec.world.solid else None
         self.tick = 0
         start = spec.world.start
@@ -92,6 +78,9 @@ class Simulation:
         self.changed = False
         """Set when a motor ends a move by itself; the caller clears it."""
         self._left_dps = self._right_dps = 0.0
+        self._buffer: Buffer = sink.room(ROOM_TICKS)
+        self._room_end = ROOM_TICKS
+        """How many records the buffer has room for."""
         self._record()
 
     # Reading
@@ -160,17 +149,12 @@ class Simulation:
         Returns:
             How many were done.
         """
+        if ticks == 1:
+            self._tick()
+            return 1
         done = 0
-        halved = self.spec.profile.halve_position_moves
         while done < ticks:
-            quiet = 0
-            if not self.noise.motor and ticks - done > FEW_TICKS:
-                quiet = min(
-                    ticks - done,
-                    self.left.quiet_ticks(self.tick, self._tick_s, halved),
-                    self.right.quiet_ticks(self.tick, self._tick_s, halved),
-                    self._clear_ticks(),
-                )
+            quiet = self._quiet_ticks(ticks - done) if ticks - done > FEW_TICKS else 0
             if quiet > 0:
                 self._glide(quiet)
                 done += quiet
@@ -181,19 +165,37 @@ class Simulation:
                     break
         return done
 
+    def _quiet_ticks(self, most: int) -> int:
+        """For how many ticks nothing but ramps and motion goes on, at most `most`."""
+        if self.noise.motor:
+            return 0
+        halved = self.spec.profile.halve_position_moves
+        return min(
+            most,
+            self.left.quiet_ticks(self.tick, self._tick_s, halved),
+            self.right.quiet_ticks(self.tick, self._tick_s, halved),
+            self._clear_ticks(),
+        )
+
     def _tick(self) -> None:
         """One tick in full: the rule that the loops below abbreviate."""
         self.tick += 1
         left, right, tick_s, noise = self.left, self.right, self._tick_s, self.noise.motor
         solids = self._solids
         before = (left.state(), right.state()) if solids is not None else None
-        # A motor that just goes on needs none of the rules of `step`; most ticks are such.
-        if left.mode == motors.FOREVER and left.speed_dps == left.target_dps and not noise:
+        # A motor that just goes on needs only the ramp of the rules of `step`; most ticks are such.
+        if left.mode == motors.FOREVER and not noise:
+            if left.speed_dps != left.target_dps:
+                step = left.ramp_step(self._ramp_step, tick_s)
+                left.speed_dps = ramped(left.speed_dps, left.target_dps, step, self._whole)
             left_deg = left.speed_dps * left.sign * tick_s
             left.position_deg += left_deg
         else:
             left_deg = self._step(left, 0)
-        if right.mode == motors.FOREVER and right.speed_dps == right.target_dps and not noise:
+        if right.mode == motors.FOREVER and not noise:
+            if right.speed_dps != right.target_dps:
+                step = right.ramp_step(self._ramp_step, tick_s)
+                right.speed_dps = ramped(right.speed_dps, right.target_dps, step, self._whole)
             right_deg = right.speed_dps * right.sign * tick_s
             right.position_deg += right_deg
         else:
@@ -201,11 +203,11 @@ class Simulation:
         if before is not None:
             left_deg, right_deg = self._obstructed(before, left_deg, right_deg)
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
-        heading = math.radians(self.heading_deg)
+        heading = radians(self.heading_deg)
         forward = (left_mm + right_mm) / 2
-        self.x_mm += forward * math.cos(heading)
-        self.y_mm += forward * math.sin(heading)
-        self.heading_deg += math.degrees((right_mm - left_mm) / self._spacing_mm)
+        self.x_mm += forward * cos(heading)
+        self.y_mm += forward * sin(heading)
+        self.heading_deg += degrees((right_mm - left_mm) / self._spacing_mm)
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         self._record()
 
@@ -252,13 +254,21 @@ class Simulation:
 
     def _record(self) -> None:
         sink, left, right = self._sink, self.left, self.right
-        at = 64 + 64 * sink.count
-        sink.room(1)[at : at + 64] = TICK_RECORD.pack(
+        count = sink.count
+        if count >= self._room_end:
+            self._make_room(ROOM_TICKS)
+        flags = (
+            (FLAG_LEFT_RUNNING if left.mode else 0)
+            | (FLAG_RIGHT_RUNNING if right.mode else 0)
+            | (FLAG_PEN_DOWN if self.pen_down else 0)
+        )
+        at = 64 + 64 * count
+        self._buffer[at : at + 64] = TICK_RECORD.pack(
             self.tick, self.line, self.x_mm, self.y_mm, self.heading_deg,
             left.position_deg, right.position_deg, self._left_dps, self._right_dps,
-            self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF,
+            self.gyro_zero_deg, flags, self.actions & 0xFFFF,
         )  # fmt: skip
-        sink.publish(sink.count + 1)
+        sink.publish(count + 1)
 
     def _flags(self) -> int:
         return (
@@ -266,6 +276,10 @@ class Simulation:
             | (FLAG_RIGHT_RUNNING if self.right.mode else 0)
             | (FLAG_PEN_DOWN if self.pen_down else 0)
         )
+
+    def _make_room(self, ticks: int) -> None:
+        self._buffer = self._sink.room(ticks)
+        self._room_end = self._sink.count + ticks
 
     def _glide(self, ticks: int) -> None:
         """Do ticks in which only the ramps and the motion go on: the hottest loop."""
@@ -298,7 +312,8 @@ class Simulation:
         turn = radians(heading)
         cos, sin = math.cos(turn), math.sin(turn)
         sink = self._sink
-        buffer, at = sink.room(ticks), 64 + 64 * sink.count
+        self._make_room(ticks)
+        buffer, at = self._buffer, 64 + 64 * sink.count
         left_deg = right_deg = 0.0
         for tick, left_speed, right_speed in zip(
             range(self.tick + 1, self.tick + ticks + 1), left_speeds, right_speeds, strict=True
@@ -355,7 +370,8 @@ class Simulation:
         left_dps, right_dps = left_deg * self._hz, right_deg * self._hz
         pack, radians, cos, sin = TICK_RECORD.pack, math.radians, math.cos, math.sin
         sink = self._sink
-        buffer, at = sink.room(ticks), 64 + 64 * sink.count
+        self._make_room(ticks)
+        buffer, at = self._buffer, 64 + 64 * sink.count
         across, up = forward * cos(radians(heading)), forward * sin(radians(heading))
         for tick in range(self.tick + 1, self.tick + ticks + 1):
             left_at += left_count

@@ -76,6 +76,7 @@ class TelemetryWriter:
 
     def __init__(self, folder: Path) -> None:
         self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, _TELEMETRY_CHUNK)
+        self._map = self._file.map
         self.count = 0
 
     def room(self, records: int) -> mmap.mmap:
@@ -83,12 +84,14 @@ class TelemetryWriter:
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
         if need > self._file.capacity:
             self._file.grow(need)
-        return self._file.map
+            self._map = self._file.map
+        return self._map
 
     def publish(self, count: int) -> None:
         """Make the first `count` records visible to readers."""
         self.count = count
-        self._file.publish(count)
+        # As `_GrowingMap.publish` does it, without another call: this happens every tick.
+        self._map[_LENGTH_AT : _LENGTH_AT + 8] = _LENGTH.pack(count)
 
     def close(self) -> None:
         """Cut the file to its true size."""

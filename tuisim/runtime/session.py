@@ -75,6 +75,7 @@ class Session:
         self.free = 0
         self.slow = LIVE if steering.live else 0
         self._due = sim.due_ns(1)
+        self._hz = sim.spec.profile.tick_hz
         self._limit_ns = limits.time_ns or 1 << 62
         self._commands, self._commands_at = 0, -1
         self.stop_reason: StopProgram | None = None
@@ -94,13 +95,18 @@ class Session:
         else:
             sim = self.sim
             sim.line = self.program_line()
+            # `due_ns` of the simulation, written out: most readings make just one tick due.
+            following = -(-(sim.tick + 2) * NS_PER_S // self._hz)
+            if until < following:
+                sim.advance(1)
+                self.now, self._due = until, following
+                return
             ticks = sim.ticks_at(until) - sim.tick
             if ticks > CHUNK_TICKS:
                 self.advance(until, False)
             else:
                 sim.advance(ticks)
-                self.now = until
-                self._due = sim.due_ns(sim.tick + 1)
+                self.now, self._due = until, sim.due_ns(sim.tick + 1)
 
     def charge(self, cost_ns: int) -> None:
         """Let the cost of a call pass, unless calls are free now."""

@@ -3,13 +3,36 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 from tuisim.shim.session import Session
 
 Reader = Callable[[], object]
 Writer = Callable[[str], None]
 NumberWriter = Callable[[int], None]
+
+
+class _Writers(dict[str, Writer]):
+    """Functions by attribute; one that is not there fails as a driver does."""
+
+    def __init__(self, writers: Mapping[str, Writer], readable: Collection[str]) -> None:
+        super().__init__(writers)
+        self._readable = readable
+
+    def __missing__(self, name: str) -> Writer:
+        raise OSError(errno.EACCES if name in self._readable else errno.ENOENT, name)
+
+
+class _NumberWriters(dict[str, NumberWriter]):
+    """The same for whole numbers; an attribute that takes text only is given the number as text."""
+
+    def __init__(self, number_writers: Mapping[str, NumberWriter], writers: Mapping[str, Writer]) -> None:
+        super().__init__(number_writers)
+        self._writers = writers
+
+    def __missing__(self, name: str) -> NumberWriter:
+        write = self._writers[name]
+        return lambda value: write(str(value))
 
 
 class SimDevice:
@@ -33,9 +56,11 @@ class SimDevice:
     ) -> None:
         self.session = session
         self.readers = dict(readers)
-        self.writers = dict(writers)
-        self._number_writers = dict(number_writers or {})
-        for name, write_number in self._number_writers.items():
+        self.writers = _Writers(writers, self.readers)
+        """By attribute, what sets it from text; a driver's OSError for one that cannot be set."""
+        self.number_writers = _NumberWriters(number_writers or {}, self.writers)
+        """By attribute, what sets it to a whole number without the way through text."""
+        for name, write_number in self.number_writers.items():
             self.writers[name] = lambda text, write=write_number: write(_whole(text))  # type: ignore[misc]
         self._costs = dict(costs or {})
         self._common_cost = session.sim.spec.profile.attribute_read_ns
@@ -62,22 +87,7 @@ class SimDevice:
         Raises:
             OSError: ENOENT or EACCES as for `read`, EINVAL for a value the driver refuses.
         """
-        writer = self.writers.get(name)
-        if writer is None:
-            raise OSError(errno.EACCES if name in self.readers else errno.ENOENT, name)
-        writer(text)
-
-    def write_number(self, name: str, value: int) -> None:
-        """Set an attribute to a whole number, without the way through text.
-
-        Raises:
-            OSError: as for `write`.
-        """
-        writer = self._number_writers.get(name)
-        if writer is None:
-            self.write(name, str(value))
-        else:
-            writer(value)
+        self.writers[name](text)
 
 
 def _whole(text: str) -> int:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from tuisim.core.sensors import SENSORS, color, gyro, ultrasonic
-from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
 from tuisim.shim.devices import SimDevice, Writer, refuse
 from tuisim.shim.session import Session
@@ -94,44 +93,44 @@ class ColorDevice(LegoSensor):
         read = self._read_ns = profile.color_read_ns
 
         def reflected() -> tuple[int]:
-            return (self.reading().rgb[0] * 100 // 255,)
+            return (self.channels()[0] * 100 // color.WHITE,)
 
         def raw() -> tuple[int, int, int]:
             # The library gives int(raw * 255 / 300): rounding up here returns the whole channel exactly.
-            red, green, blue = self.reading().rgb
+            red, green, blue = self.channels()
             return -(-red * RAW_WHITE // 255), -(-green * RAW_WHITE // 255), -(-blue * RAW_WHITE // 255)
 
         modes = {
             "COL-REFLECT": Mode(reflected, read, units="pct"),
             "COL-AMBIENT": Mode(lambda: (0,), read, units="pct"),
-            "COL-COLOR": Mode(lambda: (self.reading().code,), profile.color_code_read_ns, units="col"),
+            "COL-COLOR": Mode(lambda: (color.color_code(*self.channels()),), profile.color_code_read_ns, units="col"),
             "REF-RAW": Mode(lambda: (raw()[0], 0), read),
             "RGB-RAW": Mode(raw, read),
         }
         super().__init__(session, spec.port, SENSORS["color"].driver_name, modes, "COL-REFLECT")
         self._spec = spec
-        self._seen: ColorReading | None = None
-        self._seen_at: tuple[int, int] = (-1, -1)
+        self._clear = color.rgb_reader(spec, session.field)
+        self._seen = (0, 0, 0)
+        self._seen_tick, self._seen_actions = -1, -1
 
-    def reading(self) -> ColorReading:
-        """Return what the sensor sees now, free of charge; measured once a tick."""
+    def channels(self) -> tuple[int, int, int]:
+        """Return the whole channels that the sensor sees now, free of charge; measured once a tick."""
         sim = self._session.sim
-        at = (sim.tick, sim.actions)
-        if at != self._seen_at or self._seen is None:
-            self._seen_at = at
+        if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
+            self._seen_tick, self._seen_actions = sim.tick, sim.actions
             if sim.noise.light:
-                self._seen = color.reading(self._spec, sim.instant(), self._session.field)
+                self._seen = color.reading(self._spec, sim.instant(), self._session.field).rgb
             else:
-                self._seen = color.clear_reading(self._spec, sim.pose, self._session.field)
+                self._seen = self._clear(sim.x_mm, sim.y_mm, sim.heading_deg)
         return self._seen
 
-    def read(self, mode: str) -> ColorReading:
-        """Switch to a mode and return what the sensor sees, after the cost of a reading."""
+    def read(self, mode: str) -> tuple[int, int, int]:
+        """Switch to a mode and return the whole channels, after the cost of a reading."""
         self.mode = mode
         session = self._session
         if not session.free:
             session.spend(self._read_ns)
-        return self.reading()
+        return self.channels()
 
 
 def ultrasonic_sensor(session: Session, spec: UltrasonicSpec) -> LegoSensor:

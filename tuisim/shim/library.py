@@ -100,7 +100,7 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
 
     def set_attribute(self: Any, attribute: Any, name: str, value: Any) -> Any:
         try:
-            devices[self._path].write(name, value if isinstance(value, str) else value.decode("latin-1"))
+            devices[self._path].writers[name](value if isinstance(value, str) else value.decode("latin-1"))
         except OSError as error:
             self._raise_friendly_access_error(error, name, value)
         return attribute
@@ -108,7 +108,7 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
     def set_attr_int(self: Any, attribute: Any, name: str, value: Any) -> Any:
         number = int(value)
         try:
-            devices[self._path].write_number(name, number)
+            devices[self._path].number_writers[name](number)
         except OSError as error:
             self._raise_friendly_access_error(error, name, str(number))
         return attribute

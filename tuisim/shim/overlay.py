@@ -13,12 +13,11 @@ from __future__ import annotations
 import types
 from typing import Any
 
+from tuisim.core.sensors.color import WHITE, percent
 from tuisim.shim.devices import Brick
 from tuisim.shim.lego_sensors import ColorDevice
 from tuisim.shim.library import free_of_charge
 from tuisim.shim.session import Session
-
-WHOLE_CHANNEL = 255
 
 
 def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, colors: dict[str, ColorDevice]) -> None:
@@ -34,19 +33,19 @@ def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, 
     color_sensor = lego.ColorSensor
 
     def channel(index: int) -> property:
-        return property(lambda self: colors[self._path].read("RGB-RAW").rgb[index])
+        return property(lambda self: colors[self._path].read("RGB-RAW")[index])
 
     def reflected(self: Any) -> int:
-        return int(colors[self._path].read("COL-REFLECT").red)
+        return colors[self._path].read("COL-REFLECT")[0]
 
-    if session.sim.spec.profile.reflected_max == WHOLE_CHANNEL:
+    if session.sim.spec.profile.reflected_max == WHITE:
         color_sensor.reflected_light_intensity = property(reflected)
 
     def red_percent(self: Any) -> float:
-        return colors[self._path].read("COL-REFLECT").red_percent
+        return percent(colors[self._path].read("COL-REFLECT")[0], WHITE)
 
     def mean_percent(self: Any) -> float:
-        return colors[self._path].read("RGB-RAW").mean_percent
+        return percent(sum(colors[self._path].read("RGB-RAW")), 3 * WHITE)
 
     color_sensor.reflected_light_intensity_pc = property(red_percent)
     color_sensor.full_reflected_light_intensity = property(mean_percent)

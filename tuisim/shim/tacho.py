@@ -47,7 +47,7 @@ class TachoMotor:
             "hold_pid/Kp": 80000, "hold_pid/Ki": 0, "hold_pid/Kd": 0,
         }  # fmt: skip
         self._stop_action = "coast"
-        self._polarity = "normal"
+        self._polarity, self._sign = "normal", 1
         self._last_goal: float | None = None
         self._holding = False
 
@@ -100,10 +100,6 @@ class TachoMotor:
 
         return write
 
-    @property
-    def _sign(self) -> int:
-        return -1 if self._polarity == "inversed" else 1
-
     def _speed(self) -> int:
         motor = self._motor
         kept = motor.speed_dps * motor.sign if self._profile.keep_speed_when_stopped else motor.moving_dps
@@ -132,7 +128,7 @@ class TachoMotor:
     def _set_polarity(self, text: str) -> None:
         if text not in POLARITIES:
             raise refuse(text)
-        self._polarity = text
+        self._polarity, self._sign = text, -1 if text == "inversed" else 1
 
     def _command(self, text: str) -> None:
         if text not in COMMANDS:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from math import cos, radians, sin
 
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels
 from tuisim.core.geometry import Pose, world_point
@@ -14,6 +16,15 @@ from tuisim.core.weights import disc_weights, weighted_mean
 
 COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
 """Names by colour code, as ev3dev2 has them."""
+
+WHITE = 255
+"""A whole channel of a white pixel."""
+
+
+def percent(value: int, whole: int) -> float:
+    """Return what part of `whole` a value is, as the course's programs get it."""
+    # Divided first: the other order ends in another last digit for 57 of the 256 channel values.
+    return 100 * (value / whole)
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +43,12 @@ class ColorReading:
     @property
     def red_percent(self) -> float:
         """`reflected_light_intensity_pc`: 100 · (int(red) / 255)."""
-        # Divided first: the other order ends in another last digit for 57 of the 256 values.
-        return 100 * (int(self.red) / 255)
+        return percent(int(self.red), WHITE)
 
     @property
     def mean_percent(self) -> float:
         """`full_reflected_light_intensity`: 100 · (the sum of the whole channels / 765)."""
-        return 100 * (sum(self.rgb) / 765)
+        return percent(sum(self.rgb), 3 * WHITE)
 
     @property
     def code(self) -> int:
@@ -93,6 +103,32 @@ def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReadi
     red, green, blue = field.disc_sums(spec.diameter_mm, *box_corner(pose, spec))
     count = disc_pixels_of(spec.diameter_mm)
     return ColorReading(red / count, green / count, blue / count)
+
+
+def rgb_reader(spec: ColorSensorSpec, field: Field) -> Callable[[float, float, float], tuple[int, int, int]]:
+    """Return a function that gives the whole channels a sensor sees without noise.
+
+    It takes the robot's x and y in mm and its heading in degrees, and agrees with
+    `clear_reading(...).rgb`. A tight control loop spends much of its time here, so all
+    that depends on the sensor is worked out before, and the steps are written out.
+    """
+    if spec.strategy != "mean":
+        return lambda x_mm, y_mm, heading_deg: clear_reading(spec, Pose(x_mm, y_mm, heading_deg), field).rgb
+    diameter, right_mm, forward_mm = spec.diameter_mm, spec.x_mm, spec.y_mm
+    radius, count, sums = diameter / 2, disc_pixels_of(diameter), field.sums[diameter]
+    width, height = field.width_px + diameter, field.height_px + diameter
+
+    def read(x_mm: float, y_mm: float, heading_deg: float) -> tuple[int, int, int]:
+        turn = radians(heading_deg - 90.0)
+        across, up = cos(turn), sin(turn)
+        col = int(x_mm + across * right_mm - up * forward_mm - radius) + diameter
+        row = int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius) + diameter
+        if not (0 <= col < width and 0 <= row < height):
+            return 0, 0, 0
+        at = (row * width + col) * 3
+        return sums[at] // count, sums[at + 1] // count, sums[at + 2] // count
+
+    return read
 
 
 def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:

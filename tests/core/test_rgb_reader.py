@@ -1,0 +1,52 @@
+"""The quick way to a colour reading agrees with the plain one."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import replace
+from random import Random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tuisim.core.field import Field, disc_pixels
+from tuisim.core.geometry import Pose
+from tuisim.core.sensors.color import clear_reading, rgb_reader
+from tuisim.core.spec import FIELD_HEIGHT_MM, RobotSpec
+
+WIDTH_PX, DIAMETER = 40, 20
+LEFT, RIGHT = RobotSpec().color_sensors
+
+
+def random_field() -> Field:
+    """A narrow mat whose disc sums are any that a disc can have."""
+    random = Random(1)
+    most = 255 * disc_pixels(DIAMETER)
+    size = (FIELD_HEIGHT_MM + DIAMETER) * (WIDTH_PX + DIAMETER) * 3
+    sums = array("I", (random.randint(0, most) for _ in range(size)))
+    pixels = memoryview(bytes(range(256)) * (WIDTH_PX * FIELD_HEIGHT_MM * 3 // 256 + 1))
+    return Field(WIDTH_PX, FIELD_HEIGHT_MM, pixels, {DIAMETER: memoryview(sums)})
+
+
+FIELD = random_field()
+
+
+@given(st.floats(-80, 120), st.floats(-80, 1200), st.floats(-720, 720))
+def test_whole_channels_are_those_of_a_reading(x_mm: float, y_mm: float, heading_deg: float) -> None:
+    for sensor in (LEFT, RIGHT):
+        seen = clear_reading(sensor, Pose(x_mm, y_mm, heading_deg), FIELD)
+        assert rgb_reader(sensor, FIELD)(x_mm, y_mm, heading_deg) == seen.rgb
+
+
+@pytest.mark.parametrize("strategy", ["gaussian", "centre"])
+def test_weighted_discs_are_read_as_well(strategy: str) -> None:
+    sensor = replace(LEFT, strategy=strategy)
+    seen = clear_reading(sensor, Pose(20.0, 500.0, 30.0), FIELD)
+    assert rgb_reader(sensor, FIELD)(20.0, 500.0, 30.0) == seen.rgb
+    assert any(seen.rgb)
+
+
+def test_whole_channels_of_every_mean() -> None:
+    count = disc_pixels(DIAMETER)
+    assert all(int(total / count) == total // count for total in range(255 * count + 1))
