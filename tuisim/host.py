@@ -12,21 +12,17 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
-
-import msgspec
 
 from tuisim import assets
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView
+from tuisim.decoding import decode_event
 from tuisim.errors import HostError
 from tuisim.fields import FieldFiles, prepare
 from tuisim.protocol import (
-    EVENTS,
     PROTOCOL_VERSION,
     Ended,
     InputWanted,
@@ -78,33 +74,6 @@ class RunOptions:
     """Whether input() asks the user when there are no scripted answers left; otherwise that is the end of the input."""
 
 
-class _Envelope(msgspec.Struct):
-    kind: str
-
-
-_EVENT_FIELDS: Mapping[str, type[Any]] = {
-    kind: msgspec.defstruct(
-        f"{event.__name__}Fields",
-        [(field.name, {"int": int, "str": str, "bool": bool}[str(field.type)]) for field in fields(event)],
-    )
-    for kind, event in EVENTS.items()
-}
-
-
-def decode_event(line: bytes) -> Message:
-    """Return the event in one line from the child.
-
-    Raises:
-        HostError: the line is not an event of this protocol.
-    """
-    try:
-        event = EVENTS[msgspec.json.decode(line, type=_Envelope).kind]
-        values = msgspec.json.decode(line, type=_EVENT_FIELDS[event.kind])
-    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError) as error:
-        raise HostError(f"the program's process sent something that is no message: {line[:60]!r}") from error
-    return event(**msgspec.structs.asdict(values))
-
-
 class RunHandle:
     """One run: its child process, pipes and recording. Made by `start_run`."""
 
@@ -116,10 +85,14 @@ class RunHandle:
         run = store.new_run(program, spec, field.to_plain(), asdict(options), options.live)
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
         self.ended: Ended | None = None
+        self.started = False
+        """Whether the child has come to the program's first line."""
         self.paused = False
         self.waiting_for_input: str | None = None
         self.telemetry, self.output = TelemetryView(self.folder), OutputView(self.folder)
         self._rest = b""
+        self._held: list[Message] = []
+        """Commands given before the child listens: the signal that announces one would kill it."""
         self._end_of_events = False
         self._stop_at: float | None = None
         self._asked_at = 0.0
@@ -173,6 +146,11 @@ class RunHandle:
                 case Started(protocol=number) if number != PROTOCOL_VERSION:
                     self.kill()
                     raise HostError(f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}")
+                case Started():
+                    self.started = True
+                    held, self._held = self._held, []
+                    for command in held:
+                        self.send(command)
                 case Paused():
                     self.paused = True
                 case Resumed():
@@ -277,6 +255,9 @@ class RunHandle:
         """Send a command; after the end of the run there is nobody to hear it."""
         if self.ended is not None or self._announced is not None:
             return
+        if not self.started:
+            self._held.append(command)
+            return
         if command.kind == "answer":
             self.waiting_for_input = None
         try:
@@ -315,7 +296,7 @@ class RunHandle:
         if self._stop_at is not None:
             if now - self._stop_at > STUCK_AFTER_S:
                 self._read_stack_and_kill()
-            elif now - self._asked_at > ASK_AGAIN_S:
+            elif self.started and now - self._asked_at > ASK_AGAIN_S:
                 self._asked_at = now
                 self._signal(signal.SIGUSR1)
         elif self._options.stall_limit_s and not self.paused:

@@ -14,8 +14,9 @@ import pytest
 
 from tests.runtime.conftest import Done, Start
 from tuisim.datalog.records import TICK_RECORD
+from tuisim.decoding import decode_event
 from tuisim.errors import HostError
-from tuisim.host import RunHandle, decode_event
+from tuisim.host import RunHandle
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, StepTicks
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -55,6 +56,22 @@ def test_stop_always_works_and_keeps_what_was_printed(start: Start, text: str) -
     assert ended is not None
     assert ended.end == "stopped"
     assert run.output.all_rows()[0].text == "Before: 1"
+
+
+def test_commands_before_the_first_line_wait_for_it(start: Start) -> None:
+    run = start("print(colorLeft.color)", live=True)
+    run.send(SetPose(1500.0, 500.0, 0.0))
+    ended = run.wait(10.0)
+    assert ended is not None
+    assert (ended.end, [row.text for row in run.output.all_rows()]) == ("finished", ["1"])
+
+
+def test_stop_before_the_first_line(start: Start) -> None:
+    run = start("while True: pass", live=True)
+    run.stop()
+    ended = run.wait(10.0)
+    assert ended is not None
+    assert ended.end == "stopped"
 
 
 def test_cleaning_up_runs_after_a_stop(start: Start) -> None:

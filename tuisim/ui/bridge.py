@@ -60,9 +60,6 @@ class Bridge:
         self.run: RunHandle | None = None
         self._still = self._at_rest(self.home)
         self._end: protocol.Ended | None = None
-        self._started = False
-        self._held: list[protocol.Message] = []
-        """Commands given before the child listens."""
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer holds."""
 
@@ -85,7 +82,7 @@ class Bridge:
             return WAITING
         if run.paused:
             return PAUSED
-        return RUNNING if self._started else STARTING
+        return RUNNING if run.started else STARTING
 
     @property
     def run_id(self) -> str:
@@ -145,8 +142,7 @@ class Bridge:
         self._end, self._moved = None, True
         options = RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)
         self.run = start_run(self.program, self.spec, options)
-        self._moved, self._started = False, False
-        self._held.clear()
+        self._moved = False
 
     def stop(self) -> None:
         """End the program; the end comes with a later poll."""
@@ -205,12 +201,8 @@ class Bridge:
             self.run = None
 
     def _send(self, command: protocol.Message) -> None:
-        if self.run is None or self.run.ended is not None:
-            return
-        if self._started:
+        if self.run is not None:
             self.run.send(command)
-        else:
-            self._held.append(command)
 
     # What comes from the run
 
@@ -229,10 +221,6 @@ class Bridge:
             match event:
                 case protocol.Ended():
                     self._end = ended = event
-                case protocol.Started():
-                    self._started = True
-                    for command in self._held:
-                        self.run.send(command)
                 case protocol.Spoke(text=text):
                     spoken.append(text)
         rows = self.run.output.new_rows(ROWS_A_POLL)
