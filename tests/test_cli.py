@@ -151,7 +151,13 @@ def test_stored_runs_are_listed_shown_exported_and_removed(
 
 @pytest.mark.parametrize(
     ("command", "name"),
-    [("backgrounds", "Grey_bands"), ("programs", "log_greys.py"), ("profiles", "robolab")],
+    [
+        ("backgrounds", "Grey_bands"),
+        ("robots", "Small_Robot"),
+        ("obstacles", "Square_posts"),
+        ("programs", "log_greys.py"),
+        ("profiles", "robolab"),
+    ],
 )
 def test_lists(command: str, name: str, tuisim: Command) -> None:
     assert name in tuisim(command).stdout

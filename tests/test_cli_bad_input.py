@@ -13,7 +13,7 @@ BAD = {
     "missing program": ("run nope.py", "nope.py: there is no such program"),
     "misspelt program": ("run porg.py", "did you mean prog.py?"),
     "second program missing": ("run prog.py nope.py", "nope.py: there is no such program"),
-    "no program": ("run", "PROGRAM"),
+    "no program": ("run", "no program is named (tuisim run PROGRAM…)"),
     "directory as program": ("run .", "is a directory, not a program"),
     "binary as program": ("run binary.py", "is not Python text"),
     "notebook as program": ("run book.ipynb", "is a notebook"),
@@ -47,7 +47,12 @@ BAD = {
     "which run": ("runs show", "show: which run?"),
     "unknown action": ("runs shwo 1", "no such action 'shwo' (did you mean show?)"),
     "export needs a file": ("runs export 1", "needs a run and a file"),
-    "too many words": ("profiles robolab", "robolab"),
+    "too many words": ("backgrounds Loop", "Loop"),
+    "two programs in the app": ("prog.py magic.py", "two programs: prog.py and magic.py"),
+    "two worlds": ("run a.toml b.toml prog.py", "--world: two worlds: a.toml and b.toml"),
+    "unknown robot to show": ("robots Smal_Robot", "no such robot 'Smal_Robot' (did you mean Small_Robot"),
+    "unknown obstacles to show": ("obstacles Posts", "no such obstacles 'Posts' (did you mean Square_posts"),
+    "unknown profile to show": ("profiles ev4", "no such profile 'ev4' (did you mean ev3?"),
 }
 
 

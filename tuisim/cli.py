@@ -21,8 +21,10 @@ COMMANDS: Mapping[str, str] = {
     "run": "run programs without the app",
     "runs": "list, show, export or remove stored runs",
     "backgrounds": "list the mats",
+    "robots": "list the robots, or show one as a file",
+    "obstacles": "list the obstacles, or show some as a file",
     "programs": "list the example programs",
-    "profiles": "list the profiles and what each call costs",
+    "profiles": "list the profiles, what each call costs and why",
 }
 """Every command and what it does."""
 
@@ -44,15 +46,16 @@ def _parser(command: str) -> SwitchParser:
         listing = "\n".join(f"  tuisim {name:<12} {what}" for name, what in COMMANDS.items())
         parser = SwitchParser(
             prog="tuisim",
-            usage="tuisim [PROGRAM] [switches]\n       tuisim COMMAND …",
+            usage="tuisim [WORLD.toml] [PROGRAM] [switches]\n       tuisim COMMAND …",
             description="A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.",
             epilog=f"commands (each has its own --help):\n{listing}\n\n"
-            "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, holds switches too;\n"
-            "those given here win.",
+            "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, holds switches too.\n"
+            "Those given here win over a world file, and that wins over the magic line.",
             formatter_class=_HelpFormatter,
             allow_abbrev=False,
         )
-        parser.add_argument("program", nargs="?", metavar="PROGRAM", help="a Python file, or an example's name")
+        parser.add_argument("words", nargs="*", metavar="PROGRAM", help="a Python file, or an example's name")
+        parser.add_world()
         parser.add_argument("--version", action="version", version=f"tuisim {__version__}")
         parser.add_switches()
         return parser
@@ -66,9 +69,9 @@ def _parser(command: str) -> SwitchParser:
 
 def _open(arguments: Namespace) -> int:
     """Start the app."""
-    from tuisim.commands.prepare import prepare
+    from tuisim.commands.prepare import prepare_app
 
-    prepared = prepare(arguments.program, arguments)
+    prepared = prepare_app(arguments.words, arguments)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise ConfigError("the app needs a terminal", "use `tuisim run PROGRAM` where there is none")
     from tuisim.ui.app import run_app

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ast
 import io
+import os
 import re
 import shlex
 import tokenize
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,9 @@ PRELUDES: Mapping[str, str] = {
     "sim_magic_preloaded": "preloaded",
 }
 """The prelude that each magic stands for."""
+
+_FILE_FIELDS = {"background", "robot", "obstacles", "profile"}
+"""Settings that may name a file."""
 
 _MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
 _DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
@@ -53,7 +57,7 @@ class ProgramSource:
     prelude: str
     """none, imports or preloaded."""
     switches: Mapping[str, Any] = field(default_factory=dict)
-    """Switches of the magic line, by field of `Settings`."""
+    """Switches of the magic line, by field of `Settings`; files in them are found from the program's folder."""
 
 
 def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
@@ -71,6 +75,16 @@ def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
                 closing = quote
         else:
             return
+
+
+def _beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
+    """The switches of a magic line with the files that they name found from the program's folder."""
+    found = dict(switches)
+    for field_name in _FILE_FIELDS & found.keys():
+        word = found[field_name]
+        if os.sep in word or Path(word).suffix:
+            found[field_name] = str(folder / os.path.expanduser(word))
+    return found
 
 
 def find_magic(text: str, name: str) -> Magic | None:
@@ -133,7 +147,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
 
 
 def read_program(path: Path) -> ProgramSource:
-    """Read a program file.
+    """Read a program file; files that its magic line names are looked for beside it.
 
     Raises:
         ConfigError: it is missing, a directory, no Python text, too large, or its magic line is wrong.
@@ -156,7 +170,8 @@ def read_program(path: Path) -> ProgramSource:
         raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", "name a Python file", file=shown)
     if path.suffix == ".ipynb":
         raise ConfigError("is a notebook", "name a Python file", file=shown)
-    return parse_program(_decode(data, shown), path.name, shown)
+    program = parse_program(_decode(data, shown), path.name, shown)
+    return replace(program, switches=_beside(path.parent, program.switches))
 
 
 def _decode(data: bytes, shown: str) -> str:

@@ -237,6 +237,10 @@ class SwitchParser(argparse.ArgumentParser):
         text = message.removeprefix("argument ").replace("unrecognized arguments:", "no such switch or argument:")
         raise ConfigError(text, f"see `{self.prog} --help`" if self.add_help else "")
 
+    def add_world(self) -> None:
+        """Add `--world`, which a magic line cannot have."""
+        self.add_argument("--world", metavar="FILE", help="a world file; it may also stand before the program")
+
     def add_switches(self) -> None:
         """Add every shared switch; one that is not given leaves no trace in the namespace."""
         groups = {group: self.add_argument_group(group) for group in dict.fromkeys(s.group for s in SWITCHES)}

@@ -1,13 +1,19 @@
-"""From the words of a command line to what is run: program, settings, specification."""
+"""From the words of a command line to what is run: program, settings, specification.
+
+The command line wins over the world file, the world file over the program's magic line, and that over
+the defaults.
+"""
 
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.config import build_run_spec
+from tuisim.config import WorldFile, build_run_spec, load_world, means_world
 from tuisim.core.spec import RunSpec
+from tuisim.errors import ConfigError
 from tuisim.host import Program
 from tuisim.programfile import ProgramSource, read_program
 from tuisim.switches import Settings, given, settings_of
@@ -20,6 +26,7 @@ class Prepared:
     program: Program | None
     settings: Settings
     spec: RunSpec
+    world: WorldFile | None = None
 
 
 def _find(word: str) -> Path:
@@ -35,23 +42,61 @@ def _find(word: str) -> Path:
     return path
 
 
+def _world(words: Sequence[str], switch: str | None) -> WorldFile | None:
+    """The world that is named, as a word or with the switch."""
+    named = [word for word in words if means_world(word)] + ([] if switch is None else [switch])
+    if len(named) > 1:
+        raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
+    return load_world(named[0]) if named else None
+
+
+def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -> Prepared:
+    in_world = world.settings if world else {}
+    if word is None:
+        settings = settings_of(in_world, given(arguments))
+        return Prepared(None, settings, build_run_spec(settings), world)
+    file = read_program(_find(word))
+    settings = settings_of(file.switches, in_world, given(arguments))
+    return Prepared(_program(file, settings), settings, build_run_spec(settings), world)
+
+
 def _program(file: ProgramSource, settings: Settings) -> Program:
     return Program(name=file.name, text=file.text, prelude=settings.preload or file.prelude, path=file.path)
 
 
-def prepare(word: str | None, arguments: Namespace) -> Prepared:
-    """Read a program and make its run; the command line's switches win over the magic line's.
+def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
+    """Read what the app is opened with: nothing, a program, a world, or a program in a world.
 
     Args:
-        word: The program as the user named it; None for the app without a program.
+        words: What the user named.
         arguments: The parsed command line.
 
     Raises:
-        ConfigError: program, magic line or switches are wrong.
+        ConfigError: program, magic line, world or switches are wrong, or there are two programs.
     """
-    if word is None:
-        settings = settings_of(given(arguments))
-        return Prepared(None, settings, build_run_spec(settings))
-    file = read_program(_find(word))
-    settings = settings_of(file.switches, given(arguments))
-    return Prepared(_program(file, settings), settings, build_run_spec(settings))
+    world = _world(words, arguments.world)
+    programs = [word for word in words if not means_world(word)]
+    if len(programs) > 1:
+        raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
+    word = programs[0] if programs else world.program if world else None
+    return _prepared(word, world, arguments)
+
+
+def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared]:
+    """Read programs to run one after another, all in the world that is named, if one is.
+
+    Args:
+        words: Programs and at most one world, as the user named them.
+        arguments: The parsed command line.
+
+    Raises:
+        ConfigError: a program, magic line, world or switch is wrong, or there is no program.
+    """
+    world = _world(words, arguments.world)
+    programs = [word for word in words if not means_world(word)]
+    if not programs and world and world.program is not None:
+        programs = [world.program]
+    if not programs:
+        where = f"{world.path} names no program" if world else "no program is named"
+        raise ConfigError(where, "tuisim run PROGRAM…")
+    return [_prepared(word, world, arguments) for word in programs]

@@ -1,4 +1,4 @@
-"""`tuisim profiles`: the rules of each kind of brick, and what each call costs."""
+"""`tuisim profiles`: the rules of each kind of brick, what each call costs, and where the numbers come from."""
 
 from __future__ import annotations
 
@@ -7,24 +7,39 @@ from argparse import Namespace
 from dataclasses import asdict
 
 from tuisim.commands.tables import table
+from tuisim.config import load_profile
+from tuisim.config.profiles import SOURCES
 from tuisim.core.profile import MS, PROFILES
 from tuisim.switches import SwitchParser
+
+_APART = ("name", "title")
 
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim profiles`."""
+    parser.description = "List the profiles: what each call costs in simulated time, and where the numbers come from."
+    parser.add_argument("profiles", nargs="*", metavar="NAME|FILE", help="show these instead of all")
     parser.add_argument("--json", action="store_true", help="as JSON")
 
 
 def execute(arguments: Namespace) -> int:
-    """Print every profile, one a column; costs in simulated milliseconds a call."""
-    profiles = {name: asdict(profile) for name, profile in PROFILES.items()}
+    """Print profiles, one a column; costs in simulated milliseconds a call.
+
+    Raises:
+        ProfileError: there is no such profile, or its file is wrong.
+    """
+    shown = [load_profile(word) for word in arguments.profiles] or list(PROFILES.values())
+    profiles = [asdict(profile) for profile in shown]
     if arguments.json:
-        print(json.dumps(list(profiles.values())))
+        print(json.dumps(profiles))
         return 0
-    keys = [key for key in next(iter(profiles.values())) if key != "name"]
-    rows = [[key.removesuffix("_ns"), *(_shown(key, profile[key]) for profile in profiles.values())] for key in keys]
-    print(table(("", *profiles), rows))
+    print(table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in profiles]), end="\n\n")
+    rows = [
+        [key.removesuffix("_ns"), *(_shown(key, profile[key]) for profile in profiles), SOURCES.get(key, "")]
+        for key in profiles[0]
+        if key not in _APART
+    ]
+    print(table(("", *(profile["name"] for profile in profiles), "WHERE IT COMES FROM"), rows))
     return 0
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from tuisim.commands import outcome
 from tuisim.commands.follow import Follower
-from tuisim.commands.prepare import Prepared, prepare
+from tuisim.commands.prepare import Prepared, prepare_runs
 from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
@@ -27,8 +27,9 @@ def add_arguments(parser: SwitchParser) -> None:
         "Run programs without the app. What a program prints goes to stdout, the rest to stderr. "
         "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit; the worst of several."
     )
-    parser.usage = "tuisim run PROGRAM… [switches] [--export FILE]… [--telemetry FILE] [--json] …"
-    parser.add_argument("programs", nargs="+", metavar="PROGRAM", help="a Python file, or an example's name")
+    parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--telemetry FILE] [--json] …"
+    parser.add_argument("programs", nargs="*", metavar="PROGRAM", help="a Python file, or an example's name")
+    parser.add_world()
     add = parser.add_argument_group("data and limits").add_argument
     add("--export", action="append", default=[], metavar="FILE",
         help=f"write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated")  # fmt: skip
@@ -49,7 +50,7 @@ def execute(arguments: Namespace) -> int:
         HostError: a child process could not be started or spoke nonsense.
     """
     # All input is checked before the first program runs.
-    prepared = [prepare(word, arguments) for word in arguments.programs]
+    prepared = prepare_runs(arguments.programs, arguments)
     telemetry = arguments.telemetry
     for target in (*arguments.export, telemetry):
         if target is not None:

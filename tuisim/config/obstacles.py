@@ -84,7 +84,12 @@ def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
     """
     if len(obstacles) > MAX_OBSTACLES:
         raise ObstacleError(f"cannot hold {len(obstacles)} obstacles", f"at most {MAX_OBSTACLES}", file=str(path))
-    write_whole(Path(path), [_HEAD, "", *obstacle_lines(obstacles)], ObstacleError)
+    write_whole(Path(path), obstacle_file(obstacles), ObstacleError)
+
+
+def obstacle_file(obstacles: Sequence[Obstacle]) -> list[str]:
+    """Return the lines of a file of obstacles."""
+    return [_HEAD, "", *obstacle_lines(obstacles)]
 
 
 def obstacle_lines(obstacles: Sequence[Obstacle]) -> list[str]:

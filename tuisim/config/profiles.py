@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.reading import Section, means_file, read_file
+from tuisim.config.reading import Section, means_file, name_of, read_file
 from tuisim.config.writing import Scalar, toml_lines
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.errors import ProfileError
@@ -24,6 +25,34 @@ _RANGES: dict[str, tuple[float, float]] = {
 }
 """What a number may be; any other from 0 to a million."""
 _ANY = (0.0, 1e6)
+
+_OLD = "measured on the old simulator"
+_NEW = "choice of this project"
+
+SOURCES: Mapping[str, str] = {
+    "tick_hz": f"{_NEW}: 100; {_OLD}: 30",
+    "color_read_ns": f"{_OLD}: it waits before the value is taken",
+    "color_code_read_ns": f"{_OLD}: it waits twice; ev3: a reading like any other",
+    "ultrasonic_read_ns": f"{_OLD}: it waits before the value is taken",
+    "gyro_read_ns": f"{_OLD}: it waits twice; ev3: a reading like any other",
+    "attribute_read_ns": f"{_NEW}, so that polling takes time; {_OLD}: nothing",
+    "clock_read_ns": f"{_NEW}, so that loops on the clock end; {_OLD}: nothing",
+    "max_speed_dps": "EV3 motor driver table: large motor without a load",
+    "reflected_max": "ev3dev2 library: 100; the course and the old simulator: 255",
+    "round_forward_speeds": _OLD,
+    "halve_position_moves": f"{_OLD}: its encoder counts such a move twice",
+    "keep_speed_when_stopped": _OLD,
+    "timed_stop_skips_tick": f"{_OLD}: 59 ticks in 2 s",
+    "direction_from_set_point": _OLD,
+    "motor_ramps": "ev3dev2 library: ramp_up_sp and ramp_down_sp; the old simulator has none",
+    "chain_relative_moves": "EV3 motor driver: a move counts from where the last was to end",
+    "pair_tail_ns": f"{_OLD}: the wait for the second motor times out",
+    "forward_noise_only": _OLD,
+    "ultrasonic_period_ticks": _OLD,
+    "solid": "on a real field things are solid; in the old simulator nothing is",
+    "plain_state": _OLD,
+}
+"""Where the numbers of a key come from."""
 
 
 def load_profile(word: str, key: str = "") -> ProfileSpec:
@@ -44,7 +73,7 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
     path = Path(word).expanduser()
     if path.suffix.lower() != ".toml":
         raise ProfileError("is not a .toml file", "the suffix says what is in it", file=str(path))
-    return profile_from_table(Section(read_file(path, ProfileError), str(path), ProfileError), path.stem)
+    return profile_from_table(Section(read_file(path, ProfileError), str(path), ProfileError), name_of(path))
 
 
 def profile_from_table(table: Section, name: str) -> ProfileSpec:

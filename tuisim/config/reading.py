@@ -43,6 +43,11 @@ def means_file(word: str) -> bool:
     return os.sep in word or Path(word).suffix.lower() in FILE_SUFFIXES
 
 
+def name_of(path: Path) -> str:
+    """Return what something is called whose file gives it no name."""
+    return "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME] or "unnamed"
+
+
 def relocated(error: ConfigError, file: str, key: str) -> ConfigError:
     """Return the same error with another file and key as the place where it stands."""
     where = ": ".join(part for part in (error.file, error.key) if part)

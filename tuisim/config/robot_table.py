@@ -42,7 +42,7 @@ def robot_from_table(table: Section, name: str) -> RobotChoice:
     """
     table.allow(_TOP)
     base = ROBOTS[table.one_of("base", ROBOTS)] if "base" in table else ROBOTS[DEFAULT_ROBOT]
-    found: dict[str, Any] = {"name": robot_name(table, "name") if "name" in table else name[:MAX_NAME]}
+    found: dict[str, Any] = {"name": robot_name(table, "name") if "name" in table else name}
     found |= {key: table.number(key) for key in LENGTH_KEYS if key in table}
     found |= {key: table.text(key) for key in PORT_KEYS if key in table}
     if "weight" in table:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tuisim.config.presets import ROBOTS
-from tuisim.config.reading import Section, means_file, parse_toml, read_file
+from tuisim.config.reading import Section, means_file, name_of, parse_toml, read_file
 from tuisim.config.robot_json import robot_from_json
 from tuisim.config.robot_table import (
     COLOR_SENSOR_KEYS,
@@ -71,8 +71,8 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
     path = Path(word).expanduser()
     data = read_file(path, RobotError)
     if path.suffix.lower() == ".json":
-        return robot_from_json(Section(data, str(path), RobotError), path.stem)
-    return robot_from_table(Section(data, str(path), RobotError), path.stem)
+        return robot_from_json(Section(data, str(path), RobotError), name_of(path))
+    return robot_from_table(Section(data, str(path), RobotError), name_of(path))
 
 
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
@@ -82,11 +82,16 @@ def save_robot(spec: RobotSpec, path: Path | str) -> None:
         RobotError: the file cannot be written, or the robot has what no file can say, such as a name of two lines.
     """
     path = Path(path)
-    lines = [*_HEAD, "", *robot_lines(spec)]
+    lines = robot_file(spec)
     table = Section(parse_toml("\n".join(lines), str(path), RobotError), str(path), RobotError)
-    if robot_from_table(table, path.stem).spec != spec:
+    if robot_from_table(table, name_of(path)).spec != spec:
         raise RobotError("the robot has something that no file can say", file=str(path))
     write_whole(path, lines, RobotError)
+
+
+def robot_file(spec: RobotSpec) -> list[str]:
+    """Return the lines of a robot's file."""
+    return [*_HEAD, "", *robot_lines(spec)]
 
 
 def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN_KEYS) -> list[str]:
@@ -100,7 +105,7 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
     under = f"{parent}." if parent else ""
     lines = [f"[{parent}]"] if parent else []
     values = _values(spec, ("name", *LENGTH_KEYS, "weight", *PORT_KEYS))
-    values |= {"weight": name for name, weight in ROBOT_WEIGHTS.items() if weight == spec.weight}
+    values["weight"] = next((name for name, weight in ROBOT_WEIGHTS.items() if weight == spec.weight), spec.weight)
     lines += toml_lines(values, COMMENTS)
     names = [sensor.name for sensor in spec.color_sensors]
     if gone := [sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names]:

@@ -12,7 +12,7 @@ from typing import Any
 from tuisim.assets import background
 from tuisim.config.obstacles import load_obstacles, obstacles_from_table
 from tuisim.config.profiles import load_profile, profile_from_table
-from tuisim.config.reading import Section, means_file, read_file
+from tuisim.config.reading import Section, means_file, name_of, read_file
 from tuisim.config.robot_table import robot_from_table
 from tuisim.config.robots import load_robot
 from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
@@ -131,7 +131,7 @@ def _mat(table: Section, near: Near) -> dict[str, Any]:
 
 def _robot(table: Section, near: Near, path: Path) -> Any:
     if not isinstance(table.raw("robot"), str):
-        return robot_from_table(table.section("robot", RobotError), path.stem)
+        return robot_from_table(table.section("robot", RobotError), name_of(path))
     return _named(table, "robot", near, load_robot)
 
 
@@ -141,7 +141,7 @@ def _obstacles(table: Section, near: Near, path: Path) -> Any:
 
 def _profile(table: Section, near: Near, path: Path) -> Any:
     if not isinstance(table.raw("profile"), str):
-        return profile_from_table(table.section("profile", ProfileError), path.stem)
+        return profile_from_table(table.section("profile", ProfileError), name_of(path))
     return _named(table, "profile", near, load_profile)
 
 

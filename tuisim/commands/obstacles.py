@@ -1,0 +1,41 @@
+"""`tuisim obstacles`: the sets of obstacles that have a name, or one set as a file."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from dataclasses import asdict
+
+from tuisim.commands.tables import table
+from tuisim.config import OBSTACLES, load_obstacles
+from tuisim.config.obstacles import obstacle_file
+from tuisim.switches import SwitchParser
+
+
+def add_arguments(parser: SwitchParser) -> None:
+    """Declare the arguments of `tuisim obstacles`."""
+    parser.description = "List the sets of obstacles, or print one as a file to start an own set from."
+    parser.add_argument("obstacles", nargs="?", metavar="NAME|FILE", help="print this one as TOML")
+    parser.add_argument("--json", action="store_true", help="as JSON")
+
+
+def execute(arguments: Namespace) -> int:
+    """Print the sets of obstacles, or one as a file.
+
+    Raises:
+        ObstacleError: there is no such set, or its file is wrong.
+    """
+    word = arguments.obstacles
+    chosen = OBSTACLES if word is None else {word: load_obstacles(word)}
+    if arguments.json:
+        sets = [{"name": name, "obstacles": [asdict(box) for box in boxes]} for name, boxes in chosen.items()]
+        print(json.dumps(sets))
+    elif word is not None:
+        print("\n".join(obstacle_file(chosen[word])))
+    else:
+        rows = [
+            (name, "; ".join(f"{b.x_mm:g}, {b.y_mm:g}, {b.width_mm:g}, {b.height_mm:g}" for b in boxes) or "nothing")
+            for name, boxes in chosen.items()
+        ]
+        print(table(("NAME", "BOXES x, y, width, height in mm"), rows))
+    return 0

@@ -1,0 +1,43 @@
+"""`tuisim robots`: the robots that have a name, or one robot as a file."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from dataclasses import asdict
+
+from tuisim.commands.tables import table
+from tuisim.config import ROBOTS, load_robot
+from tuisim.config.robots import robot_file
+from tuisim.core.spec import RobotSpec
+from tuisim.switches import SwitchParser
+
+
+def add_arguments(parser: SwitchParser) -> None:
+    """Declare the arguments of `tuisim robots`."""
+    parser.description = "List the robots, or print one as a file to start an own robot from."
+    parser.add_argument("robot", nargs="?", metavar="NAME|FILE", help="print this one as TOML")
+    parser.add_argument("--json", action="store_true", help="as JSON")
+
+
+def execute(arguments: Namespace) -> int:
+    """Print the robots, or one as a file.
+
+    Raises:
+        RobotError: there is no such robot, or its file is wrong.
+    """
+    chosen = None if arguments.robot is None else load_robot(arguments.robot)
+    if arguments.json:
+        robots = [chosen] if chosen else ROBOTS.values()
+        print(json.dumps([asdict(robot) for robot in robots]))
+    elif chosen:
+        print("\n".join(robot_file(chosen)))
+    else:
+        print(table(("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter"), list(map(_row, ROBOTS.values()))))
+    return 0
+
+
+def _row(robot: RobotSpec) -> tuple[str, ...]:
+    wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
+    sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
+    return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors)
