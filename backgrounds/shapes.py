@@ -128,8 +128,9 @@ def _covered(shape: Shape, rows: slice, columns: slice) -> Canvas:
     """How much of each pixel a shape covers, 0 … 1, shape (h, w)."""
     inside = shape.inside(_points(columns)[None, :], _points(rows)[:, None])
     height, width = rows.stop - rows.start, max(columns.stop - columns.start, 0)
-    counted: Canvas = inside.reshape(height, SUBPIXELS, width, SUBPIXELS).sum((1, 3), dtype=np.float32)
-    return counted / SUBPIXELS**2
+    counted = inside.reshape(height, SUBPIXELS, width, SUBPIXELS).sum((1, 3), dtype=np.float32)
+    share: Canvas = counted / np.float32(SUBPIXELS**2)
+    return share
 
 
 def coverage(shape: Shape, height: int, width: int) -> Canvas:
@@ -188,7 +189,7 @@ def union(parts: Sequence[Shape]) -> Shape:
         # A part far smaller than the whole is asked only about points near it.
         left, right = np.searchsorted(x[0], boxes[:, 0]), np.searchsorted(x[0], boxes[:, 2], "right")
         top, bottom = np.searchsorted(y[:, 0], boxes[:, 1]), np.searchsorted(y[:, 0], boxes[:, 3], "right")
-        for at in np.flatnonzero((left < right) & (top < bottom)):
+        for at in np.flatnonzero((left < right) & (top < bottom)).tolist():
             rows, columns = slice(top[at], bottom[at]), slice(left[at], right[at])
             found[rows, columns] |= parts[at].inside(x[:, columns], y[rows])
         return found

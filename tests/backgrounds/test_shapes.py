@@ -64,6 +64,18 @@ def test_rect_off_the_mat_paints_nothing() -> None:
         pytest.param(lines.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000, id="stroke, mitred"),
         pytest.param(lines.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"), 4000, id="mitred, other way"),
         pytest.param(lines.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25, id="stroke, rounded"),
+        pytest.param(
+            shapes.union([shapes.rounded_rect((100, 100, 200, 150), 0), shapes.rounded_rect((150, 100, 250, 150), 0)]),
+            7500,
+            id="union",
+        ),
+        pytest.param(
+            lines.closed_line([(100, 100, 20), (300, 100, 20), (300, 300, 20), (100, 300, 20)]),
+            16_000 - 400 + 100 * math.pi,
+            id="closed line",
+        ),
+        pytest.param(lines.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi, id="pen line"),
+        pytest.param(lines.pen_line([(100, 100), (100, 100)], 30, 20), 150 * math.pi, id="pen dot"),
     ],
 )
 @pytest.mark.parametrize("smooth", [False, True], ids=["hard", "smooth"])
@@ -90,3 +102,11 @@ def test_shade_takes_a_colour_for_each_pixel() -> None:
     colors = np.arange(2 * 3 * 3, dtype=float).reshape(2, 3, 3)
     shapes.shade(canvas, (5, 7, 8, 9), colors)
     assert np.array_equal(canvas[7:9, 5:8], colors)
+
+
+def test_bent_line_goes_from_end_to_end_and_keeps_within_its_points() -> None:
+    line = lines.bent([(0, 0), (100, 0), (100, 100), (200, 100)], steps=4)
+    assert (line[0], line[-1]) == ((0, 0), (200, 100))
+    assert (100, 50) in line
+    assert len(line) == 1 + 2 * 4
+    assert all(0 <= x <= 200 and 0 <= y <= 100 for x, y in line)
