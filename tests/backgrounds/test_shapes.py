@@ -75,7 +75,7 @@ def test_rect_off_the_mat_paints_nothing() -> None:
             id="closed line",
         ),
         pytest.param(lines.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi, id="pen line"),
-        pytest.param(lines.pen_line([(100, 100), (100, 100)], 30, 20), 150 * math.pi, id="pen dot"),
+        pytest.param(lines.pen_line([(100, 100), (100, 100)], 90, 60), 1350 * math.pi, id="pen dot"),
     ],
 )
 @pytest.mark.parametrize("smooth", [False, True], ids=["hard", "smooth"])
