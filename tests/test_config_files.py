@@ -1,0 +1,352 @@
+"""Robots, obstacles, profiles and worlds: what files may leave out, and that what is written reads back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tuisim.config import (
+    OBSTACLES,
+    ROBOTS,
+    build_run_spec,
+    load_obstacles,
+    load_profile,
+    load_robot,
+    load_world,
+    save_obstacles,
+    save_robot,
+    save_world,
+)
+from tuisim.config.profiles import SOURCES
+from tuisim.core.css import css_names
+from tuisim.core.profile import PROFILES, ProfileSpec
+from tuisim.core.spec import (
+    INPUT_PORTS,
+    STRATEGIES,
+    ColorSensorSpec,
+    GyroSpec,
+    Obstacle,
+    PenSpec,
+    RobotSpec,
+    RunSpec,
+    UltrasonicSpec,
+)
+from tuisim.errors import ConfigError, ObstacleError, RobotError
+from tuisim.switches import RobotChoice, Settings, parse_words, settings_of
+
+Write = Callable[[str, str], str]
+
+# Files are made anew by every example, so one folder may serve them all.
+EXAMPLES = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    """Write a file of a test and return its path."""
+
+    def write(name: str, text: str) -> str:
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        return str(tmp_path / name)
+
+    return write
+
+
+def mm(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.floats(low, high, allow_nan=False)
+
+
+places = mm(-500, 500)
+names = st.text(min_size=1, max_size=30).filter(lambda name: name.isprintable() and name.strip() != "")
+pens = st.builds(PenSpec, x_mm=places, y_mm=places, color=st.sampled_from(sorted(css_names())) | st.just("#0a1b2c"),
+                 width_mm=mm(0.1, 200), down=st.booleans())  # fmt: skip
+boxes = st.builds(Obstacle, mm(-1e4, 1e4), mm(-1e4, 1e4), mm(1e-9, 1e4), mm(1e-9, 1e4))
+
+
+@st.composite
+def robots(draw: st.DrawFn) -> RobotSpec:
+    """Robots of every make: with and without each sensor, on any ports, eyes in any order."""
+    ports = draw(st.permutations(INPUT_PORTS))
+    eyes = draw(st.lists(st.sampled_from(["left", "right", "middle", "A_1"]), unique=True, max_size=2))
+    colors = tuple(
+        ColorSensorSpec(
+            name, port, draw(places), draw(places), draw(st.integers(2, 100)), draw(st.sampled_from(STRATEGIES))
+        )
+        for name, port in zip(eyes, ports, strict=False)
+    )
+    sonar = st.builds(UltrasonicSpec, port=st.just(ports[2]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360),
+                      max_range_mm=mm(1, 1e4), noise_mm=mm(0, 1000),
+                      ray_angles_deg=st.lists(mm(-360, 360), min_size=1, max_size=5).map(tuple))  # fmt: skip
+    left, right = draw(st.sampled_from([("outB", "outC"), ("outD", "outA")]))
+    return RobotSpec(
+        name=draw(names),
+        wheel_diameter_mm=draw(mm(1, 500)),
+        wheel_spacing_mm=draw(mm(1, 1000)),
+        wheel_width_mm=draw(mm(1, 200)),
+        back_mm=draw(mm(-1000, 0)),
+        weight=draw(st.sampled_from([0.0, 3.0, 6.0, 9.0]) | mm(0, 1000)),
+        left_port=left,
+        right_port=right,
+        color_sensors=colors,
+        ultrasonic=draw(st.none() | sonar),
+        gyro=draw(st.none() | st.just(GyroSpec(port=ports[3]))),
+        pen=draw(pens),
+    )
+
+
+@EXAMPLES
+@given(robot=robots())
+def test_a_robot_reads_back_to_the_last_bit(robot: RobotSpec, tmp_path: Path) -> None:
+    save_robot(robot, tmp_path / "robot.toml")
+    assert load_robot(str(tmp_path / "robot.toml")) == robot
+
+
+@EXAMPLES
+@given(found=st.lists(boxes, max_size=5).map(tuple))
+def test_obstacles_read_back_to_the_last_bit(found: tuple[Obstacle, ...], tmp_path: Path) -> None:
+    save_obstacles(found, tmp_path / "boxes.toml")
+    assert load_obstacles(str(tmp_path / "boxes.toml")) == found
+
+
+own_profiles = st.builds(
+    lambda base, cost_ns, speed: replace(base, name="mine", color_read_ns=cost_ns, max_speed_dps=speed),
+    st.sampled_from(list(PROFILES.values())), st.integers(0, 10**10), mm(1, 1e5),
+)  # fmt: skip
+
+
+@EXAMPLES
+@given(
+    robot=robots() | st.sampled_from(list(ROBOTS)),
+    background=st.sampled_from(["Empty_Map", "Radial_grey"]),
+    obstacles=st.sampled_from(list(OBSTACLES)) | st.lists(boxes, max_size=3).map(tuple),
+    profile=st.sampled_from(list(PROFILES)) | own_profiles,
+    flags=st.fixed_dictionaries({key: st.booleans() for key in ("walls", "solid", "pen_marks", "pen_down")}),
+    start=st.fixed_dictionaries({"x_mm": mm(-1e4, 1e4), "y_mm": mm(-1e4, 1e4), "heading_deg": mm(-3e4, 3e4)}),
+    light_noise=st.integers(0, 128),
+    motor_noise=st.none() | st.integers(0, 500),
+    seed=st.integers(0, 2**63 - 1),
+    program=st.sampled_from([None, "log_greys.py"]),
+)
+def test_a_world_makes_the_same_run_again(
+    robot: Any, program: str | None, flags: dict[str, bool], start: dict[str, float], tmp_path: Path, **chosen: Any
+) -> None:
+    if isinstance(robot, RobotSpec):
+        robot = RobotChoice(robot)
+    spec = build_run_spec(Settings(robot=robot, **flags, **start, **chosen))
+    save_world(spec, tmp_path / "lab.toml", program)
+    world = load_world(tmp_path / "lab.toml")
+    assert build_run_spec(settings_of(world.settings)) == spec
+    assert world.program == program
+
+
+@pytest.mark.parametrize(
+    ("text", "changes"),
+    [
+        ("wheel_diameter_mm = 40", {"wheel_diameter_mm": 40.0}),
+        ("weight = 'heavy'", {"weight": 9.0}),
+        ("weight = 4.5", {"weight": 4.5}),
+        ("left_port = 'outA'\nright_port = 'outD'", {"left_port": "outA", "right_port": "outD"}),
+        ("gyro = false\nultrasonic = false", {"gyro": None, "ultrasonic": None}),
+        ("[gyro]\nport = 'in4'", {}),
+        ("[pen]\ncolor = 'Teal'", {"pen": PenSpec(color="teal")}),
+        ("[ultrasonic]\nnoise_mm = 5", {"ultrasonic": UltrasonicSpec(noise_mm=5)}),
+    ],
+    ids=["length", "weight by name", "weight", "motor ports", "no sensors", "as it is", "pen", "ultrasonic"],
+)
+def test_a_robot_file_says_only_what_differs(text: str, changes: dict[str, Any], write: Write) -> None:
+    assert load_robot(write("mine.toml", text)) == replace(RobotSpec(name="mine"), **changes)
+
+
+def test_a_robot_file_may_differ_from_any_robot(write: Write) -> None:
+    found = load_robot(write("mine.toml", "base = 'Small_Robot_Wide_Eyes'\nname = 'Wide'\nback_mm = -70"))
+    assert found == replace(ROBOTS["Small_Robot_Wide_Eyes"], name="Wide", back_mm=-70.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "sensors"),
+    [
+        ("[color_sensors.left]\ndiameter_mm = 30", [("left", 30), ("right", 20)]),
+        ("[color_sensors]\nleft = false", [("right", 20)]),
+        ("[color_sensors]\nleft = false\nright = false", []),
+        ("[color_sensors]\nright = {}\nleft = {}", [("right", 20), ("left", 20)]),
+        ("gyro = false\n[color_sensors.middle]\nport = 'in4'\nx_mm = 0\ny_mm = 50\ndiameter_mm = 8",
+         [("left", 20), ("right", 20), ("middle", 8)]),
+    ],
+    ids=["one changed", "one gone", "none", "other order", "a third"],
+)  # fmt: skip
+def test_colour_sensors_of_a_file(text: str, sensors: list[tuple[str, int]], write: Write) -> None:
+    found = load_robot(write("mine.toml", text)).color_sensors
+    assert [(sensor.name, sensor.diameter_mm) for sensor in found] == sensors
+
+
+COURSE_ROBOT = {
+    "wheeldiameter": 28, "wheelSpacing": 90, "wheelNoise": 50, "back": -60, "weight": "weightless",
+    "pen": {"x": 1, "y": 2, "color": "Orange", "width": 8},
+    "sensor1": {"enabled": True, "x": -10, "y": 15, "diameter": 10},
+    "sensor2": {"enabled": False},
+    "ultrasonic": {"enabled": True, "x": 0, "y": 10, "angle": 5, "noise": 2},
+    "gyro": {"enabled": False},
+}  # fmt: skip
+
+
+def test_the_json_of_the_course_is_read(write: Write) -> None:
+    small = ROBOTS["Small_Robot"]
+    assert load_robot(write("old.json", json.dumps(COURSE_ROBOT))) == replace(
+        small,
+        name="old",
+        color_sensors=small.color_sensors[:1],
+        ultrasonic=UltrasonicSpec(y_mm=10.0, angle_deg=5.0, noise_mm=2.0),
+        gyro=None,
+        pen=PenSpec(1.0, 2.0, "orange", 8.0),
+    )
+    assert load_robot(write("bare.json", "{}")) == RobotSpec(name="bare")
+
+
+@pytest.mark.parametrize(("words", "noise"), [("", 50), ("-M 7", 7), ("-M 0", 0)], ids=["file", "switch", "none"])
+def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(
+    words: str, noise: int, write: Write
+) -> None:
+    robot = write("old.json", json.dumps(COURSE_ROBOT))
+    spec = build_run_spec(settings_of({"robot": robot}, parse_words(words.split())))
+    assert spec.world.noise.motor == noise
+
+
+@pytest.mark.parametrize(
+    ("text", "eyes"),
+    [
+        ("wheel_diameter_mm = 40", [-60.0, 60.0]),
+        ("[color_sensors.left]\ndiameter_mm = 30", [-60.0, 60.0]),
+        ("[color_sensors.left]\nx_mm = -25", [-25.0, 20.0]),
+    ],
+    ids=["wheels", "diameter", "place"],
+)
+def test_eyes_that_a_file_places_stay_on_a_mat_with_places_of_its_own(
+    text: str, eyes: list[float], write: Write
+) -> None:
+    spec = build_run_spec(Settings(background="Radial_grey", robot=write("mine.toml", text)))
+    assert [sensor.x_mm for sensor in spec.robot.color_sensors] == eyes
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "found"),
+    [
+        ("a.toml", "[[obstacle]]\nx_mm = 1\ny_mm = 2\nwidth_mm = 3\nheight_mm = 4.5", (Obstacle(1, 2, 3, 4.5),)),
+        ("a.toml", "obstacle = []", ()),
+        ("a.json", "[[1, 2, 3, 4.5], [5, 6, 7, 8]]", (Obstacle(1, 2, 3, 4.5), Obstacle(5, 6, 7, 8))),
+        ("a.json", "[]", ()),
+    ],
+    ids=["toml", "toml, none", "json", "json, none"],
+)
+def test_obstacle_files(name: str, text: str, found: tuple[Obstacle, ...], write: Write) -> None:
+    assert load_obstacles(write(name, text)) == found
+
+
+@pytest.mark.parametrize(
+    ("text", "changes"),
+    [
+        ("color_read_ms = 2.5", {"color_read_ns": 2_500_000}),
+        ("clock_read_ns = 7", {"clock_read_ns": 7}),
+        ("tick_hz = 50\nsolid = true\ntitle = 'Mine'", {"tick_hz": 50, "solid": True, "title": "Mine"}),
+        ("base = 'nbev3devsim'\nname = 'older'\npair_tail_ms = 0", {"name": "older", "pair_tail_ns": 0}),
+    ],
+    ids=["ms", "ns", "rules", "base"],
+)
+def test_a_profile_file_says_only_what_differs(text: str, changes: dict[str, Any], write: Write) -> None:
+    base = PROFILES["nbev3devsim" if "base" in text else "robolab"]
+    assert load_profile(write("mine.toml", text)) == replace(base, **{"name": "mine", **changes})
+
+
+def test_every_number_of_a_profile_says_where_it_comes_from() -> None:
+    assert set(SOURCES) == {field.name for field in fields(ProfileSpec)} - {"name", "title"}
+
+
+def test_paths_in_a_world_are_relative_to_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lab = tmp_path / "lab"
+    lab.mkdir()
+    (tmp_path / "small.toml").write_text("base = 'Small_Robot'")
+    (lab / "boxes.json").write_text("[[1, 2, 3, 4]]")
+    (lab / "slow.toml").write_text("tick_hz = 50")
+    (lab / "drive.py").write_text("")
+    (lab / "lab.toml").write_text(
+        "robot = '../small.toml'\nobstacles = 'boxes.json'\nprofile = 'slow.toml'\nprogram = 'drive.py'\n"
+        "panels = ['chart', 'arrays']\nhidden_panels = ['controls']\nrays = true\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    world = load_world("lab/lab.toml")
+    asked = settings_of(world.settings)
+    spec = build_run_spec(asked)
+    assert (spec.robot.name, spec.world.obstacles, spec.profile.tick_hz) == ("small", (Obstacle(1, 2, 3, 4),), 50)
+    assert world.program == "lab/drive.py"
+    assert [str(file) for file in world.files] == [
+        "lab/lab.toml", "small.toml", "lab/boxes.json", "lab/slow.toml", "lab/drive.py",
+    ]  # fmt: skip
+    assert (asked.panels_on, asked.panels_off, asked.rays) == (("chart", "arrays"), ("controls",), True)
+
+
+def test_a_world_with_a_mat_does_not_start_where_the_magic_line_wanted_to_on_another(write: Write) -> None:
+    magic = parse_words(["-b", "Loop", "-x", "700", "-N", "5", "-P", "green"])
+    world = load_world(write("lab.toml", "background = 'Square'\n[pen]\ncolor = 'blue'")).settings
+    asked = settings_of(magic, world, parse_words(["-N", "9"]))
+    spec = build_run_spec(asked)
+    assert (spec.world.background, spec.world.start.x_mm) == ("Square", 550)
+    assert (spec.world.noise.light, spec.robot.pen.color) == (9, "blue")
+    assert build_run_spec(settings_of(magic, load_world(write("a.toml", "seed = 3")).settings)).world.start.x_mm == 700
+
+
+@pytest.mark.parametrize(
+    ("words", "solid"),
+    [("", False), ("--solid", True), ("--profile ev3", True), ("--profile ev3 --no-solid", False)],
+    ids=["default", "switch", "profile", "switch against the profile"],
+)
+def test_things_are_solid_as_the_profile_says_unless_a_switch_does(words: str, solid: bool) -> None:
+    assert build_run_spec(settings_of(parse_words(words.split()))).world.solid is solid
+
+
+def test_pen_and_world_switches_reach_the_run() -> None:
+    words = "--walls off --pen-marks --pen-width 2.5 -P #00FF7f -p --background-fit fit"
+    spec = build_run_spec(settings_of(parse_words(words.split())))
+    world = spec.world
+    assert (world.walls, world.pen_marks, world.background_fit) == (False, True, "fit")
+    assert spec.robot.pen == PenSpec(color="#00ff7f", width_mm=2.5, down=True)
+
+
+def run_like(**changes: Any) -> RunSpec:
+    spec = build_run_spec(Settings())
+    return replace(spec, **{key: replace(getattr(spec, key), **change) for key, change in changes.items()})
+
+
+@pytest.mark.parametrize(
+    ("save", "thing", "error"),
+    [
+        (save_robot, replace(RobotSpec(), name="two\nlines"), RobotError),
+        (save_robot, replace(RobotSpec(), pen=PenSpec(color="reed")), RobotError),
+        (save_robot, replace(RobotSpec(), gyro=GyroSpec(name="other")), RobotError),
+        (save_obstacles, (Obstacle(0, 0, 1, 1),) * 1001, ObstacleError),
+        (save_world, run_like(robot={"name": ""}), RobotError),
+        (save_world, run_like(profile={"tick_hz": 50}), ConfigError),
+    ],
+    ids=["robot's name", "colour", "sensor's name", "many obstacles", "robot in a world", "profile in a world"],
+)
+def test_what_no_file_can_say_is_not_written(
+    save: Callable[..., None], thing: object, error: type[ConfigError], tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text("before")
+    with pytest.raises(error, match="mine"):
+        save(thing, file)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]
+    assert file.read_text() == "before"
+
+
+@pytest.mark.parametrize("name", ["folder.toml", "no/such.toml", "robot.txt", "robot"])
+def test_a_place_that_cannot_be_written_is_told_and_left_as_it_is(name: str, tmp_path: Path) -> None:
+    (tmp_path / "folder.toml").mkdir()
+    with pytest.raises(RobotError, match=name):
+        save_robot(RobotSpec(), tmp_path / name)
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.toml"]
