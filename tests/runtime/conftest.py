@@ -10,7 +10,7 @@ import pytest
 
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
-from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.host import Program, RunHandle, RunOptions, start_run
 from tuisim.protocol import Ended
 
@@ -57,10 +57,12 @@ def start() -> Iterator[Start]:
         seed: int = 0,
         prelude: str = "preloaded",
         background: str = "Grey_bands",
+        pen: PenSpec | None = None,
+        pen_marks: bool = False,
         **options: Any,
     ) -> RunHandle:
-        world = WorldSpec(background=background, start=Pose(*pose), noise=NoiseSpec(*noise))
-        spec = RunSpec(RobotSpec(), world, PROFILES[profile], seed)
+        world = WorldSpec(background=background, start=Pose(*pose), noise=NoiseSpec(*noise), pen_marks=pen_marks)
+        spec = RunSpec(RobotSpec(pen=pen or PenSpec()), world, PROFILES[profile], seed)
         options.setdefault("time_limit_s", 20.0)
         handle = start_run(Program(FILE, text, prelude), spec, RunOptions(**options))
         handles.append(handle)

@@ -247,3 +247,13 @@ def test_viewers_and_programs_read_the_same(run: Run) -> None:
         assert int(frame["left_red"][tick - 3]) == int(red)
         assert frame["ultrasonic_mm"][tick - 2] / 10 == pytest.approx(float(distance_cm))
         assert frame["gyro_deg"][tick] == int(angle)
+
+
+@pytest.mark.parametrize("pen_marks", [False, True])
+def test_pen_marks_are_seen_where_the_world_says_so(run: Run, pen_marks: bool) -> None:
+    from tuisim.core.spec import PenSpec
+
+    text = "tank_drive.on_for_seconds(30, 30, 2)\ntank_drive.on_for_seconds(-30, -30, 1)\nprint(colorLeft.rgb[0] < 255)"
+    pen = PenSpec(x_mm=-20.0, y_mm=0.0, color="black", width_mm=30.0, down=True)
+    done = run(text, background="Empty_Map", pose=(500.0, 500.0, 0.0), pen=pen, pen_marks=pen_marks)
+    assert done.lines == [str(pen_marks)]

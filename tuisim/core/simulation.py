@@ -8,6 +8,7 @@ loop does the same floating-point operations in the same order as a single tick.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from math import cos, degrees, radians, sin
 from struct import Struct
 
@@ -113,6 +114,10 @@ class Simulation:
             noise=self.noise,
             seed=self.spec.seed,
         )
+
+    def records_since(self, first: int) -> Iterator[tuple[float, ...]]:
+        """Return the tick records from `first` on, with the fields of `TICK_RECORD`."""
+        return TICK_RECORD.iter_unpack(self._buffer[64 + 64 * first : 64 + 64 * self._sink.count])
 
     # Changing
 

@@ -6,10 +6,13 @@ from typing import Protocol
 
 
 class Buffer(Protocol):
-    """Bytes that can be set by slices: a mapped file, or a bytearray."""
+    """Bytes that can be set and read by slices: a mapped file, or a bytearray."""
 
     def __setitem__(self, at: slice, data: bytes, /) -> None:
         """Store bytes."""
+
+    def __getitem__(self, at: slice, /) -> bytes | bytearray:
+        """Read bytes."""
 
 
 class TickSink(Protocol):

@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.field import Field
+from tuisim.core.marks import PenMarks
 from tuisim.core.sensors import SENSORS, mounted
 from tuisim.core.sensors.color import columns as color_columns
 from tuisim.core.sensors.color import disc_pixels_of
@@ -43,7 +44,7 @@ def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[Action], fie
     found: dict[str, Array] = {}
     slow = []
     for kind, sensor in sensors:
-        if kind is SENSORS["color"] and not lit and sensor.strategy == "mean":
+        if kind is SENSORS["color"] and not lit and sensor.strategy == "mean" and not spec.world.pen_marks:
             found.update(quiet_color_columns(records, sensor, field))
         else:
             slow.append((kind, sensor))
@@ -103,7 +104,11 @@ def _measured(
     names = [name for kind, sensor in sensors for name in kind.columns(sensor)]
     rows = np.empty((len(records), len(names)))
     measures = [(kind.measure, sensor) for kind, sensor in sensors]
+    pen = PenMarks(field, spec) if spec.world.pen_marks else None
+    seen = field if pen is None else pen.field
     for at, (values, noise) in enumerate(zip(records.tolist(), noises, strict=True)):
+        if pen is not None:
+            pen.take_in([values])
         instant = instant_of(TickRecord(*values), spec, noise)
-        rows[at] = [value for measure, sensor in measures for value in measure(sensor, instant, spec, field)]
+        rows[at] = [value for measure, sensor in measures for value in measure(sensor, instant, spec, seen)]
     return {name: rows[:, at] for at, name in enumerate(names)}

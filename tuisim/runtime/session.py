@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tuisim.core.field import Field
+from tuisim.core.marks import PenMarks
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S, Simulation
 from tuisim.datalog.records import SPEECH
@@ -68,7 +69,9 @@ class Session:
         limits: Limits,
         program_file: str,
     ) -> None:
-        self.sim, self.field, self.output, self.channel, self.steering = sim, field, output, channel, steering
+        self.sim, self.output, self.channel, self.steering = sim, output, channel, steering
+        self._field = field
+        self._pen = PenMarks(field, sim.spec) if sim.spec.world.pen_marks else None
         self.limits = limits
         self.program_file = program_file
         self.now = 0
@@ -84,6 +87,14 @@ class Session:
         """Set by the baton: waits until a time (or a motor change) while other threads run."""
 
     # What the shim calls
+
+    @property
+    def field(self) -> Field:
+        """The mat as it is now, with what the pen has drawn where that counts."""
+        if self._pen is None:
+            return self._field
+        self._pen.take_in(self.sim.records_since(self._pen.records))
+        return self._pen.field
 
     def spend(self, duration_ns: int) -> None:
         """Let time pass."""

@@ -118,7 +118,7 @@ class ColorDevice(LegoSensor):
         sim = self._session.sim
         if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
-            if sim.noise.light:
+            if sim.noise.light or sim.spec.world.pen_marks:
                 self._seen = color.reading(self._spec, sim.instant(), self._session.field).rgb
             else:
                 self._seen = self._clear(sim.x_mm, sim.y_mm, sim.heading_deg)

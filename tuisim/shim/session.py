@@ -12,11 +12,14 @@ class Session(Protocol):
     """The program's clock and the simulation behind it."""
 
     sim: Simulation
-    field: Field
     now: int
     """Simulated ns since the start."""
     free: int
     """Above 0 while calls cost nothing: the library's own look-ups, constructors, the prelude."""
+
+    @property
+    def field(self) -> Field:
+        """The mat as it is now."""
 
     def spend(self, duration_ns: int) -> None:
         """Let time pass, whatever it costs."""

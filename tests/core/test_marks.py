@@ -1,0 +1,84 @@
+"""The pen's marks on the mat, where sensors are to see them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tests.core.memory_sink import MemorySink
+from tuisim.core.field import Field
+from tuisim.core.geometry import Pose
+from tuisim.core.marks import PenMarks
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.sensors.color import pixel_array, reading
+from tuisim.core.simulation import Simulation
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.state import Instant
+
+PIXELS = FIELD_WIDTH_MM * FIELD_HEIGHT_MM
+WHITE_SUM = 305 * 255
+
+
+@pytest.fixture(scope="module")
+def white() -> Field:
+    """A white mat whose sums are those of white everywhere (edges of the field aside)."""
+    count = (FIELD_WIDTH_MM + 20) * (FIELD_HEIGHT_MM + 20) * 3
+    sums = memoryview(bytearray(WHITE_SUM.to_bytes(4, "little") * count)).cast("I")
+    return Field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, memoryview(b"\xff" * (3 * PIXELS)), {20: sums})
+
+
+def drawn(white: Field, pen: PenSpec) -> tuple[Simulation, PenMarks]:
+    """Drive straight for a second with the pen."""
+    world = WorldSpec(start=Pose(500.0, 500.0, 0.0), pen_marks=True)
+    sim = Simulation(RunSpec(RobotSpec(pen=pen), world, ROBOLAB), MemorySink())
+    marks = PenMarks(white, sim.spec)
+    sim.left.run(500.0)
+    sim.right.run(500.0)
+    for _ in range(10):
+        sim.advance(10)
+        marks.take_in(sim.records_since(marks.records))
+    return sim, marks
+
+
+def test_a_line_is_as_wide_as_the_pen_and_has_its_colour(white: Field) -> None:
+    sim, marks = drawn(white, PenSpec(color="#00ff00", width_mm=6.0, down=True))
+    middle = int(500 + (sim.x_mm - 500) / 2)
+    rows = sorted(row for col, row in marks.field.marks if col == middle)
+    assert rows == list(range(FIELD_HEIGHT_MM - 503, FIELD_HEIGHT_MM - 497))
+    assert set(marks.field.marks.values()) == {(0, 255, 0)}
+
+
+def test_sensors_see_the_line_and_arrays_agree(white: Field) -> None:
+    _, marks = drawn(white, PenSpec(color="black", width_mm=10.0, down=True))
+    sensor = RobotSpec().color_sensors[0]
+    over = Instant(0, Pose(550.0, 480.0, 0.0))
+    seen = reading(sensor, over, marks.field)
+    box = pixel_array(sensor, over, marks.field)
+    inside = [pixel for pixel in zip(box[::3], box[1::3], box[2::3], strict=True) if pixel != (245, 226, 225)]
+    assert seen.red == sum(pixel[0] for pixel in inside) / 305
+    assert seen.red < 200
+    assert reading(sensor, over, white).red == 255
+
+
+def test_pen_up_draws_nothing(white: Field) -> None:
+    _, marks = drawn(white, PenSpec(down=False))
+    assert not marks.field.marks
+
+
+def test_a_lifted_robot_draws_no_line(white: Field) -> None:
+    sim, marks = drawn(white, PenSpec(down=True))
+    before = len(marks.field.marks)
+    sim.place(Pose(1500.0, 900.0, 0.0))
+    sim.actions += 1
+    sim.rewrite_record()
+    sim.advance(1)
+    marks.take_in(sim.records_since(marks.records))
+    assert len(marks.field.marks) - before < 100
+
+
+def test_taking_in_at_once_or_bit_by_bit_is_the_same(white: Field) -> None:
+    sim, marks = drawn(white, PenSpec(down=True, x_mm=20.0, y_mm=-30.0))
+    again = PenMarks(white, replace(sim.spec))
+    again.take_in(sim.records_since(0))
+    assert again.field.marks == marks.field.marks
