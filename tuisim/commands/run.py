@@ -92,7 +92,7 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int,
     )
     handle = start_run(one.program, one.spec, options, store)
     try:
-        follower = Follower(handle, sys.stderr if arguments.json else sys.stdout, arguments.timeout)
+        follower = Follower(handle, sys.stderr if arguments.json else sys.stdout)
         ended, cut = follower.to_the_end()
     finally:
         handle.close()
