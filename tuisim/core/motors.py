@@ -7,7 +7,10 @@ second.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass
+from itertools import accumulate, repeat
+from operator import neg
 
 from tuisim.core.profile import ProfileSpec
 
@@ -152,12 +155,22 @@ class Motor:
 
     def ramp_ahead(self, ticks: int, step: float, whole: bool) -> list[float]:
         """Change the speed as so many ticks do, and return it for each of them."""
-        speed, target, speeds = self.speed_dps, self.target_dps, []
-        for _ in range(ticks):
-            if speed != target:
-                speed = ramped(speed, target, step, whole)
-            speeds.append(speed)
-        self.speed_dps = speed
+        speed, target = self.speed_dps, self.target_dps
+        if whole:
+            speeds = []
+            for _ in range(ticks):
+                if speed != target:
+                    speed = ramped(speed, target, step, whole)
+                speeds.append(speed)
+        elif speed == target or step == 0.0:
+            speeds = [target] * ticks
+        else:
+            # The sums of `ramped`, without a call for each; those beyond the target become it.
+            change = step if speed < target else -step
+            speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
+            short = bisect_left(speeds, target) if change > 0 else bisect_left(speeds, -target, key=neg)
+            speeds[short:] = repeat(target, ticks - short)
+        self.speed_dps = speeds[-1]
         return speeds
 
     def quiet_ticks(self, tick: int, tick_s: float, halved: bool) -> int:
