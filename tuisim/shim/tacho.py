@@ -176,9 +176,11 @@ class TachoMotor:
 
     def _ramp(self) -> None:
         """Hand the ramp set point of the change that was asked for to the motor."""
+        up_ms, down_ms = self._numbers["ramp_up_sp"], self._numbers["ramp_down_sp"]
+        if not (up_ms or down_ms):
+            return
         motor = self._motor
-        faster = abs(motor.target_dps) > abs(motor.speed_dps)
-        ramp_ms = self._numbers["ramp_up_sp" if faster else "ramp_down_sp"]
+        ramp_ms = up_ms if abs(motor.target_dps) > abs(motor.speed_dps) else down_ms
         if ramp_ms and self._profile.motor_ramps:
             motor.slowest_ramp_dps2 = self._profile.max_speed_dps / ramp_ms * 1000
 
