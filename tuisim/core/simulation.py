@@ -7,9 +7,8 @@ loop does the same floating-point operations in the same order as a single tick.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from math import cos, degrees, radians, sin
+from math import ceil, cos, degrees, radians, sin
 from struct import Struct
 
 from tuisim.core import motors
@@ -28,7 +27,7 @@ STALL_NS = 100_000_000
 """A running motor that stands still for longer is stalled (EV3 motor driver)."""
 
 ROOM_TICKS = 256
-"""The sink is asked for room for so many records at a time."""
+"""The sink is asked for room for so many records beyond those at hand."""
 
 FEW_TICKS = 3
 """Up to so many ticks, setting up a tight loop costs more than it saves."""
@@ -230,7 +229,7 @@ class Simulation:
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return left_deg, right_deg
-        turn_deg = math.degrees((right_mm - left_mm) / self._spacing_mm)
+        turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
         part = self._solids.free_part(self.x_mm, self.y_mm, self.heading_deg, (left_mm + right_mm) / 2, turn_deg)
         if part == 1.0:
             self.left.blocked_ticks = self.right.blocked_ticks = 0
@@ -260,15 +259,14 @@ class Simulation:
     def _record(self) -> None:
         sink, left, right = self._sink, self.left, self.right
         count = sink.count
-        if count >= self._room_end:
-            self._make_room(ROOM_TICKS)
+        buffer = self._buffer if count < self._room_end else self._make_room(1)
         flags = (
             (FLAG_LEFT_RUNNING if left.mode else 0)
             | (FLAG_RIGHT_RUNNING if right.mode else 0)
             | (FLAG_PEN_DOWN if self.pen_down else 0)
         )
         at = 64 + 64 * count
-        self._buffer[at : at + 64] = TICK_RECORD.pack(
+        buffer[at : at + 64] = TICK_RECORD.pack(
             self.tick, self.line, self.x_mm, self.y_mm, self.heading_deg,
             left.position_deg, right.position_deg, self._left_dps, self._right_dps,
             self.gyro_zero_deg, flags, self.actions & 0xFFFF,
@@ -282,9 +280,12 @@ class Simulation:
             | (FLAG_PEN_DOWN if self.pen_down else 0)
         )
 
-    def _make_room(self, ticks: int) -> None:
-        self._buffer = self._sink.room(ticks)
-        self._room_end = self._sink.count + ticks
+    def _make_room(self, ticks: int) -> Buffer:
+        """Return a buffer with room for so many more records, and often for some beyond."""
+        end = self._sink.count + ticks
+        if end > self._room_end:
+            self._buffer, self._room_end = self._sink.room(ticks + ROOM_TICKS), end + ROOM_TICKS
+        return self._buffer
 
     def _glide(self, ticks: int) -> None:
         """Do ticks in which only the ramps and the motion go on: the hottest loop."""
@@ -302,7 +303,7 @@ class Simulation:
         for motor in (self.left, self.right):
             if motor.mode and motor.speed_dps != motor.target_dps:
                 step = motor.ramp_step(self._ramp_step, self._tick_s)
-                longest = max(longest, math.ceil(abs(motor.target_dps - motor.speed_dps) / step) if step else 1)
+                longest = max(longest, ceil(abs(motor.target_dps - motor.speed_dps) / step) if step else 1)
         return min(most, longest)
 
     def _glide_ramping(self, ticks: int) -> None:
@@ -313,12 +314,11 @@ class Simulation:
         left_sign, right_sign, left_at, right_at = left.sign, right.sign, left.position_deg, right.position_deg
         line, zero, flags, actions = self.line, self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF
         x, y, heading, hz = self.x_mm, self.y_mm, self.heading_deg, self._hz
-        pack, radians, degrees = TICK_RECORD.pack, math.radians, math.degrees
+        pack_into = TICK_RECORD.pack_into
         turn = radians(heading)
-        cos, sin = math.cos(turn), math.sin(turn)
+        across, up = cos(turn), sin(turn)
         sink = self._sink
-        self._make_room(ticks)
-        buffer, at = self._buffer, 64 + 64 * sink.count
+        buffer, at = self._make_room(ticks), 64 + 64 * sink.count
         left_deg = right_deg = 0.0
         for tick, left_speed, right_speed in zip(
             range(self.tick + 1, self.tick + ticks + 1), left_speeds, right_speeds, strict=True
@@ -328,15 +328,16 @@ class Simulation:
             right_at += right_deg if right_counts is None else right_counts * right_deg + right.counts_on_dps * tick_s
             left_mm, right_mm = left_deg * mm_per_deg, right_deg * mm_per_deg
             forward = (left_mm + right_mm) / 2
-            x += forward * cos
-            y += forward * sin
+            x += forward * across
+            y += forward * up
             if left_mm != right_mm:
                 heading += degrees((right_mm - left_mm) / spacing)
                 turn = radians(heading)
-                cos, sin = math.cos(turn), math.sin(turn)
-            buffer[at : at + 64] = pack(
-                tick, line, x, y, heading, left_at, right_at, left_deg * hz, right_deg * hz, zero, flags, actions
-            )
+                across, up = cos(turn), sin(turn)
+            pack_into(
+                buffer, at, tick, line, x, y, heading, left_at, right_at, left_deg * hz, right_deg * hz,
+                zero, flags, actions,
+            )  # fmt: skip
             at += 64
         self.tick += ticks
         self.x_mm, self.y_mm, self.heading_deg = x, y, heading
@@ -368,15 +369,14 @@ class Simulation:
             right_count = 2 * right_deg
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         forward = (left_mm + right_mm) / 2
-        turned = math.degrees((right_mm - left_mm) / self._spacing_mm)
+        turned = degrees((right_mm - left_mm) / self._spacing_mm)
         x, y, heading = self.x_mm, self.y_mm, self.heading_deg
         left_at, right_at = left.position_deg, right.position_deg
         line, zero, flags, actions = self.line, self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF
         left_dps, right_dps = left_deg * self._hz, right_deg * self._hz
-        pack, radians, cos, sin = TICK_RECORD.pack, math.radians, math.cos, math.sin
+        pack_into = TICK_RECORD.pack_into
         sink = self._sink
-        self._make_room(ticks)
-        buffer, at = self._buffer, 64 + 64 * sink.count
+        buffer, at = self._make_room(ticks), 64 + 64 * sink.count
         across, up = forward * cos(radians(heading)), forward * sin(radians(heading))
         for tick in range(self.tick + 1, self.tick + ticks + 1):
             left_at += left_count
@@ -387,8 +387,8 @@ class Simulation:
                 heading += turned
                 turn = radians(heading)
                 across, up = forward * cos(turn), forward * sin(turn)
-            buffer[at : at + 64] = pack(
-                tick, line, x, y, heading, left_at, right_at, left_dps, right_dps, zero, flags, actions
+            pack_into(
+                buffer, at, tick, line, x, y, heading, left_at, right_at, left_dps, right_dps, zero, flags, actions
             )
             at += 64
         self.tick += ticks

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from mmap import mmap
+from typing import Protocol, TypeAlias
 
-
-class Buffer(Protocol):
-    """Bytes that can be set and read by slices: a mapped file, or a bytearray."""
-
-    def __setitem__(self, at: slice, data: bytes, /) -> None:
-        """Store bytes."""
-
-    def __getitem__(self, at: slice, /) -> bytes | bytearray:
-        """Read bytes."""
+Buffer: TypeAlias = mmap | bytearray
+"""Bytes that can be set: of a mapped file, or in memory."""
 
 
 class TickSink(Protocol):
