@@ -88,7 +88,8 @@ def profile_from_table(table: Section, name: str) -> ProfileSpec:
     """
     kinds = {field.name: str(field.type) for field in fields(ProfileSpec)}
     in_ms = {_in_ms(key): key for key in kinds if key.endswith(_NS)}
-    table.allow(("base", *kinds, *in_ms))
+    in_ns = frozenset(in_ms.values())
+    table.allow(("base", *(key for key in kinds if key not in in_ns), *in_ms), unsaid=in_ns)
     base = PROFILES[table.one_of("base", PROFILES) if "base" in table else DEFAULT_PROFILE]
     found: dict[str, Any] = {"name": name}
     for key in table:

@@ -195,11 +195,11 @@ class Section:
         """Return a table with other data in the same place."""
         return Section(data, self.file, self._error, self.key)
 
-    def allow(self, keys: Iterable[str]) -> None:
-        """Raise unless every key is one of `keys`."""
+    def allow(self, keys: Iterable[str], unsaid: Iterable[str] = ()) -> None:
+        """Raise unless every key is one of `keys`, or of `unsaid`, which the hint leaves out."""
         known = list(keys)
         for key in self._data:
-            if key not in known:
+            if key not in known and key not in unsaid:
                 raise self.wrong(shown(key)[1:-1], "no such key", nearest(key[:MAX_NAME], known))
 
     def raw(self, key: str) -> object:
