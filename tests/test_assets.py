@@ -97,10 +97,65 @@ def test_a_wrong_name_gets_a_guess_and_the_list(name: str, guess: str) -> None:
     assert all(known in caught.value.hint for known in STARTS)
 
 
-@pytest.mark.parametrize("name", ["", "zzzzzz", "../Grey_bands"])
+@pytest.mark.parametrize("name", ["", "zzzzzz", "..", "~"])
 def test_a_strange_name_is_refused(name: str) -> None:
     with pytest.raises(BackgroundError, match="no such mat"):
         assets.background(name)
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A current folder with pictures in it."""
+    (tmp_path / "mats").mkdir()
+    for name in ("maze.png", "maze", "mats/maze.v2.jpg", "Loop"):
+        shutil.copy(assets.backgrounds_folder() / "Square.png", tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("word", "file", "name"),
+    [
+        ("maze.png", "maze.png", "maze"),
+        ("./maze.png", "maze.png", "maze"),
+        ("maze", "maze", "maze"),
+        ("mats/maze.v2.jpg", "mats/maze.v2.jpg", "maze.v2"),
+        ("mats/../maze.png", "maze.png", "maze"),
+        ("~/maze.png", "maze.png", "maze"),
+        ("./Loop", "Loop", "Loop"),
+    ],
+)
+def test_an_image_is_a_mat(word: str, file: str, name: str, here: Path) -> None:
+    mat = assets.background(word)
+    assert (mat.name, mat.image, mat.start) == (name, here / file, Pose(200, 800, 0))
+    assert mat.title == f"The image {Path(file).name}"
+    assert not mat.obstacles and not mat.sensor_x_mm
+
+
+def test_a_whole_path_is_a_mat(here: Path) -> None:
+    assert assets.background(str(here / "maze.png")).image == here / "maze.png"
+
+
+def test_the_catalogue_goes_before_files(here: Path) -> None:
+    assert assets.background("Loop").image == assets.backgrounds_folder() / "Loop.png"
+
+
+@pytest.mark.parametrize(
+    ("word", "message"),
+    [
+        pytest.param("nowhere.png", "nowhere.png: cannot be read: No such file", id="missing"),
+        pytest.param("./nowhere", "nowhere: cannot be read: No such file", id="missing, no suffix"),
+        pytest.param("mats/", "mats: is a folder", id="folder"),
+        pytest.param("maze.png/x.png", "x.png: cannot be read: Not a directory", id="file for a folder"),
+        pytest.param("a\0b.png", "is no file name", id="null character"),
+        pytest.param("x" * 300 + ".png", "File name too long", id="long name"),
+        pytest.param("~nobody-of-that-name/x.png", "no such folder|cannot be read", id="no such home"),
+    ],
+)
+def test_an_image_that_is_not_there(word: str, message: str, here: Path) -> None:
+    with pytest.raises(BackgroundError, match=message):
+        assets.background(word)
 
 
 def test_programs_have_titles(root: Path) -> None:

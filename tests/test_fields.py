@@ -86,34 +86,6 @@ def test_pixels_are_those_of_the_image(home: Path) -> None:
     assert fields.open_field(files).box(4, -1, -1)[12:24] == bytes(3) + b"\xff" * 9
 
 
-@pytest.mark.parametrize("mode", ["RGB", "L", "P", "1", "CMYK", "RGBA"])
-def test_every_kind_of_picture_becomes_rgb(mode: str, home: Path, tmp_path: Path) -> None:
-    image = Image.new("RGB", (WIDTH, HEIGHT), "black").convert(mode)
-    image.save(tmp_path / "mat.tiff")
-    pixels = fields.mat_pixels(fields.prepare(tmp_path / "mat.tiff", ()))
-    assert pixels.shape == (HEIGHT, WIDTH, 3) and not pixels.any()
-
-
-def test_transparent_parts_are_white(home: Path, tmp_path: Path) -> None:
-    image = Image.new("RGBA", (WIDTH, HEIGHT), (0, 0, 0, 0))
-    image.putpixel((4, 5), (0, 0, 0, 255))
-    image.putpixel((6, 7), (255, 0, 0, 51))
-    image.save(tmp_path / "mat.png")
-    pixels = fields.mat_pixels(fields.prepare(tmp_path / "mat.png", ()))
-    assert pixels[5, 4].tolist() == [0, 0, 0]
-    assert pixels[7, 6].tolist() == [255, 204, 204]
-    assert pixels[0, 0].tolist() == [255, 255, 255]
-
-
-@pytest.mark.parametrize(
-    ("size", "dark"), [((100, 50), 100 * 50), ((3000, 2000), WIDTH * HEIGHT)], ids=["smaller", "larger"]
-)
-def test_other_sizes_begin_at_the_top_left(size: tuple[int, int], dark: int, home: Path, tmp_path: Path) -> None:
-    pixels = fields.mat_pixels(fields.prepare(picture(tmp_path, size=size, fill="black"), ()))
-    assert int((pixels == 0).all(axis=2).sum()) == dark
-    assert pixels[0, 0].tolist() == [0, 0, 0]
-
-
 def test_what_is_cached_is_not_made_again(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path)
     first = fields.prepare(image, (20, 10))
@@ -197,30 +169,6 @@ def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None
 def test_plain_form_survives_json(home: Path, tmp_path: Path) -> None:
     files = fields.prepare(picture(tmp_path), (20, 10))
     assert fields.FieldFiles.from_plain(json.loads(json.dumps(files.to_plain()))) == files
-
-
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        pytest.param(None, "mat.png: cannot be read", id="missing"),
-        pytest.param(b"", "not a picture", id="empty"),
-        pytest.param(b"hello", "not a picture", id="text"),
-        pytest.param(b"\x89PNG\r\n\x1a\n" + bytes(40), "not a picture", id="broken PNG"),
-    ],
-)
-def test_bad_images(content: bytes | None, message: str, home: Path, tmp_path: Path) -> None:
-    if content is not None:
-        (tmp_path / "mat.png").write_bytes(content)
-    with pytest.raises(BackgroundError, match=message):
-        fields.prepare(tmp_path / "mat.png", [20])
-    assert not cached(home)
-
-
-def test_cut_short_image(home: Path, tmp_path: Path) -> None:
-    whole = assets.background("Testcard").image.read_bytes()
-    (tmp_path / "mat.png").write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(BackgroundError, match="not a picture"):
-        fields.prepare(tmp_path / "mat.png", [20])
 
 
 @pytest.mark.parametrize("diameter", [0, -5, 129])

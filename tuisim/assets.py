@@ -16,8 +16,11 @@ from typing import Any, NamedTuple
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
 from tuisim.errors import BackgroundError, ConfigError, ObstacleError
+from tuisim.pictures import check_file
 
 CATALOG = "catalog.toml"
+OWN_START = Pose(200.0, 800.0, 0.0)
+"""Where a robot starts on an image of the user's own."""
 _PACKAGE = Path(__file__).resolve().parent
 _FOLDERS = ("backgrounds", "programs")
 _KEYS = {"title", "start", "obstacles", "sensor_x_mm"}
@@ -25,7 +28,7 @@ _KEYS = {"title", "start", "obstacles", "sensor_x_mm"}
 
 @dataclass(frozen=True, slots=True)
 class Background:
-    """One mat of the catalogue."""
+    """One mat: of the catalogue, or an own image."""
 
     name: str
     title: str
@@ -169,7 +172,14 @@ def backgrounds() -> Mapping[str, Background]:
 
 
 def background(name: str) -> Background:
-    """Return one mat.
+    """Return one mat: of the catalogue, or an image of the user's own.
+
+    What has a folder in it or a suffix is the path of an image, and so is the name of a file
+    here; a name of the catalogue goes first. An own mat is called after its file, without
+    the suffix.
+
+    Args:
+        name: Such as `Lollipop`, `maze.png` or `~/mats/maze.jpg`.
 
     Raises:
         BackgroundError: there is none of that name, or its picture is missing.
@@ -177,11 +187,32 @@ def background(name: str) -> Background:
     """
     known = backgrounds()
     if name not in known:
+        if is_image_path(name):
+            return own_background(Path(name))
         raise BackgroundError(f"no such mat {name!r}", _names_hint(name, list(known)))
     found = known[name]
     if not found.image.is_file():
         raise BackgroundError(f"the mat {name!r} has no picture", file=str(found.image))
     return found
+
+
+def is_image_path(name: str) -> bool:
+    """Return whether a word that names no mat of the catalogue means an image."""
+    return os.sep in name or bool(Path(name).suffix) or os.path.isfile(name)
+
+
+def own_background(path: Path) -> Background:
+    """Return an image as a mat, with the robot at OWN_START.
+
+    Raises:
+        BackgroundError: there is no such file, or it cannot be a picture.
+    """
+    try:
+        image = Path(os.path.abspath(path.expanduser()))
+    except RuntimeError as error:
+        raise BackgroundError(f"no such folder: {error}", file=str(path)) from error
+    check_file(image)
+    return Background(image.stem, f"The image {image.name}", OWN_START, image)
 
 
 def _names_hint(name: str, known: list[str]) -> str:
@@ -190,4 +221,4 @@ def _names_hint(name: str, known: list[str]) -> str:
     by_lower = {each.lower(): each for each in known}
     near = get_close_matches(name.lower(), by_lower, n=1, cutoff=0.5)
     guess = f"did you mean {by_lower[near[0]]}? " if near else ""
-    return f"{guess}there are {', '.join(known)}"
+    return f"{guess}there are {', '.join(known)}, or the path of an image"

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import BackgroundError
+from tuisim.pictures import check_fit, decode, fits_as_it_is, read_file
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,19 +87,20 @@ def _sums_size(diameter: int) -> int:
     return (FIELD_HEIGHT_MM + diameter) * (FIELD_WIDTH_MM + diameter) * 3 * 4
 
 
-def prepare(image: Path, diameters: Iterable[int]) -> FieldFiles:
+def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> FieldFiles:
     """Make an image ready to be read by colour sensors of some diameters.
 
-    The image is put on white; it begins at the top left corner of the field and is cut to
-    it. What the cache already has is not made again.
+    What the cache already has is not made again.
 
     Args:
-        image: Any picture that Pillow reads; one pixel is one mm.
+        image: Any picture that Pillow reads, within the limits of `pictures`.
         diameters: Disc diameters in pixels, in any order, also repeated.
+        fit: How an image of another size than the field meets it, one of
+            `core.spec.BACKGROUND_FITS`; see `pictures`.
 
     Raises:
-        BackgroundError: the image cannot be read, a diameter is impossible, or the cache
-            folder cannot be written.
+        BackgroundError: the image cannot be read, a diameter or `fit` is impossible, or the
+            cache folder cannot be written.
     """
     import hashlib
 
@@ -106,17 +108,16 @@ def prepare(image: Path, diameters: Iterable[int]) -> FieldFiles:
     for diameter in wanted:
         if not 1 <= diameter <= MAX_DIAMETER_PX:
             raise BackgroundError(f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}")
-    try:
-        content = image.read_bytes()
-    except OSError as error:
-        raise BackgroundError(f"cannot be read: {error.strerror or error}", file=str(image)) from error
+    check_fit(fit)
+    content = read_file(image)
     folder = cache_folder() / "fields"
-    stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{_LAYOUT}"
+    how = "" if fits_as_it_is(content) else f"{fit}-"
+    stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{how}{_LAYOUT}"
     sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in wanted)
     files = FieldFiles(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
     missing = [(diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))]
     if not _in_use(files.pixels, _pixels_size()) or missing:
-        _make(files, missing, image, content)
+        _make(files, missing, decode(content, image, fit))
     return files
 
 
@@ -131,9 +132,8 @@ def _in_use(path: Path, size: int) -> bool:
     return True
 
 
-def _make(files: FieldFiles, missing: list[tuple[int, Path]], image: Path, content: bytes) -> None:
+def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np.uint8]) -> None:
     """Write the pixels and the missing sums into the cache, then make room."""
-    pixels = _decode(content, image)
     folder = files.pixels.parent
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -147,28 +147,6 @@ def _make(files: FieldFiles, missing: list[tuple[int, Path]], image: Path, conte
             "TUISIM_HOME may name another folder that can be written",
             file=str(folder),
         ) from error
-
-
-def _decode(content: bytes, image: Path) -> NDArray[np.uint8]:
-    """Return the field as an image shows it, shape (height, width, 3)."""
-    import io
-    import warnings
-
-    import numpy as np
-    from PIL import Image
-
-    field = Image.new("RGBA", (FIELD_WIDTH_MM, FIELD_HEIGHT_MM), "white")
-    try:
-        with warnings.catch_warnings():
-            # Pillow only warns of an image that would fill the memory.
-            warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(io.BytesIO(content)) as picture:
-                field.alpha_composite(picture.convert("RGBA").crop((0, 0, *field.size)))
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
-        # Pillow raises a SyntaxError for a PNG with broken chunks.
-        hint = "a mat is a PNG or JPEG picture, 2362 × 1143 pixels"
-        raise BackgroundError("not a picture that can be read", hint, file=str(image)) from error
-    return np.asarray(field.convert("RGB"))
 
 
 def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:

@@ -359,7 +359,8 @@ def field_files(spec: RunSpec) -> FieldFiles:
     Raises:
         BackgroundError: there is no such mat, or its image cannot be read.
     """
-    return prepare(assets.background(spec.world.background).image, {s.diameter_mm for s in spec.robot.color_sensors})
+    image = assets.background(spec.world.background).image
+    return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
 
 
 def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:

@@ -21,7 +21,8 @@ def open_mat(run: StoredRun) -> Field:
             return open_field(made_on)
         name = run.spec.world.background
         image = background(name).image
-        found = prepare(image, {sensor.diameter_mm for sensor in run.spec.robot.color_sensors})
+        diameters = {sensor.diameter_mm for sensor in run.spec.robot.color_sensors}
+        found = prepare(image, diameters, fit=run.spec.world.background_fit)
         # The files are called after the content of the picture.
         if made_on is not None and found.pixels.name != made_on.pixels.name:
             raise LogError(f"the mat {name} is not the one of the run any more", file=str(image))

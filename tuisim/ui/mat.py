@@ -32,5 +32,6 @@ def prepare_mat(spec: RunSpec) -> Mat:
     from tuisim import assets, fields
 
     image = assets.background(spec.world.background).image
-    files = fields.prepare(image, {sensor.diameter_mm for sensor in spec.robot.color_sensors})
+    diameters = {sensor.diameter_mm for sensor in spec.robot.color_sensors}
+    files = fields.prepare(image, diameters, fit=spec.world.background_fit)
     return Mat(spec.world.background, fields.open_field(files), fields.mat_pixels(files))
