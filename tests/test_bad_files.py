@@ -239,7 +239,8 @@ def test_a_mistake_in_a_file_that_a_world_names_is_told_with_that_file(key: str,
 
 REAL = (
     "robot: misspelt key", "robot: NaN", "robot: motors", "json robot: type", "json robot: syntax",
-    "json obstacles: deep", "obstacle: flat", "obstacle: 1e9", "profile: negative", "world: mat", "world: robot inside", "world: noise",
+    "json obstacles: deep", "obstacle: flat", "obstacle: 1e9", "profile: negative", "world: mat",
+    "world: robot inside", "world: noise",
 )  # fmt: skip
 REAL_BROKEN = ("symlink loop", "100 MB", "binary", "deep", "unreadable")
 

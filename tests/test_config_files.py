@@ -134,7 +134,7 @@ own_profiles = st.builds(
     program=st.sampled_from([None, "log_greys.py"]),
 )
 def test_a_world_makes_the_same_run_again(
-    robot: Any, program: str | None, flags: dict[str, bool], start: dict[str, float], tmp_path: Path, **chosen: Any
+    robot: Any, program: str | None, flags: Any, start: Any, tmp_path: Path, **chosen: Any
 ) -> None:
     if isinstance(robot, RobotSpec):
         robot = RobotChoice(robot)
@@ -350,3 +350,15 @@ def test_a_place_that_cannot_be_written_is_told_and_left_as_it_is(name: str, tmp
     with pytest.raises(RobotError, match=name):
         save_robot(RobotSpec(), tmp_path / name)
     assert [path.name for path in tmp_path.iterdir()] == ["folder.toml"]
+
+
+def test_the_files_of_the_readme_work_together(root: Path, tmp_path: Path) -> None:
+    blocks = (root / "README.md").read_text(encoding="utf-8").split("```toml\n# ")[1:]
+    for block in blocks:
+        name, _, text = block.partition("```")[0].partition("\n")
+        (tmp_path / name).write_text(text)
+    spec = build_run_spec(settings_of(load_world(tmp_path / "lab.toml").settings))
+    assert [sensor.name for sensor in spec.robot.color_sensors] == ["left", "right", "middle"]
+    assert (spec.profile.name, spec.profile.color_read_ns) == ("profile", 5_000_000)
+    assert load_obstacles(str(tmp_path / "obstacles.toml")) == (Obstacle(900, 500, 200, 100),)
+    assert len(blocks) == 4

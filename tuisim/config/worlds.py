@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tuisim.assets import background
+from tuisim.assets import background, programs_folder
 from tuisim.config.obstacles import load_obstacles, obstacles_from_table
 from tuisim.config.profiles import load_profile, profile_from_table
 from tuisim.config.reading import Section, means_file, name_of, read_file
@@ -37,6 +37,10 @@ TOP_KEYS = (
     "program", "background", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed", *FLAGS,
     *PANEL_KEYS, "start", "noise", "pen",
 )  # fmt: skip
+
+
+Near = Callable[[str], str]
+"""From a path in the file to a path from here."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,11 +98,16 @@ def world_from_table(table: Section, path: Path) -> WorldFile:
     if "seed" in table:
         found["seed"] = table.whole("seed", 0, MAX_SEED)
     found |= _noise(table) | _pen(table) | _panels(table)
-    program = None
-    if "program" in table:
-        word = table.text("program")
-        program = word if os.sep not in word and not (path.parent / word).exists() else near(word)
+    program = _program(table.text("program"), path.parent, near) if "program" in table else None
     return WorldFile(path, found, program, (path, *referred))
+
+
+def _program(word: str, folder: Path, near: Near) -> str:
+    """The path of a program; the name of an example stays a name if there is no such file beside the world."""
+    known = os.sep not in word and not (folder / word).exists()
+    if known and any((programs_folder() / name).is_file() for name in (word, f"{word}.py")):
+        return word
+    return near(word)
 
 
 def _near(folder: Path, referred: list[Path], word: str) -> str:
@@ -106,9 +115,6 @@ def _near(folder: Path, referred: list[Path], word: str) -> str:
     found = Path(os.path.normpath(folder / os.path.expanduser(word)))
     referred.append(found)
     return str(found)
-
-
-Near = Callable[[str], str]
 
 
 def _mat(table: Section, near: Near) -> dict[str, Any]:

@@ -1,0 +1,96 @@
+"""The real command with world files and with robots and obstacles of one's own."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.conftest import Command
+
+LAB = """\
+program = "sub/where.py"
+background = "Square"
+robot = { base = "Small_Robot", wheel_diameter_mm = 40 }
+seed = 5
+[start]
+x_mm = 600
+"""
+WHERE = "# %%sim_magic_preloaded -b Loop -y 700 --seed 3\nprint('Value: ' + str(tank_drive.left_motor.position))\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "lab.toml").write_text(LAB)
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "where.py").write_text(WHERE)
+    (tmp_path / "other.py").write_text(WHERE)
+    return tmp_path
+
+
+# The words of `tuisim run`, and what is then known of the run.
+RUNS: dict[str, tuple[list[object], dict[str, Any]]] = {
+    "the world's own program": (["lab.toml"], {"program": "where.py", "background": "Square", "seed": 5, "x_mm": 600}),
+    "the mat's start": (["lab.toml"], {"y_mm": 300, "heading_deg": -90, "robot": "lab"}),
+    "another program": (["lab.toml", "other.py"], {"program": "other.py", "background": "Square", "seed": 5}),
+    "as a switch": (["other.py", "--world", "lab.toml"], {"program": "other.py", "background": "Square", "x_mm": 600}),
+    "switches win": (["lab.toml", "-b", "Loop", "-x", 5, "--seed", 9], {"background": "Loop", "seed": 9, "x_mm": 5}),
+    "magic alone": (["other.py"], {"background": "Loop", "seed": 3, "y_mm": 700, "robot": "Default_Robot"}),
+}
+
+
+@pytest.mark.parametrize(("words", "facts"), RUNS.values(), ids=RUNS)
+def test_command_line_wins_over_world_and_world_over_magic(
+    words: list[object], facts: dict[str, Any], folder: Path, tuisim: Command
+) -> None:
+    done = tuisim("run", *words, "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout).items() >= facts.items()
+
+
+def test_several_programs_run_in_one_world(folder: Path, tuisim: Command) -> None:
+    done = tuisim("run", "lab.toml", "other.py", "sub/where.py", "--json")
+    assert [json.loads(line)["seed"] for line in done.stdout.splitlines()] == [5, 5]
+
+
+def test_a_printed_robot_and_printed_obstacles_are_files(folder: Path, tuisim: Command) -> None:
+    (folder / "mine.toml").write_text(tuisim("robots", "Small_Robot").stdout)
+    (folder / "boxes.toml").write_text(tuisim("obstacles", "Wall").stdout)
+    assert tuisim("robots", "mine.toml").stdout == (folder / "mine.toml").read_text()
+    done = tuisim("run", "other.py", "-r", "mine.toml", "-o", "boxes.toml", "--json")
+    assert json.loads(done.stdout)["robot"] == "Small_Robot"
+
+
+def test_files_of_a_magic_line_are_looked_for_beside_the_program(folder: Path, tuisim: Command) -> None:
+    (folder / "sub" / "eyes.toml").write_text("[color_sensors.left]\ndiameter_mm = 8\n")
+    (folder / "sub" / "look.py").write_text("# %%sim_magic_preloaded -r eyes.toml\nprint(colorLeft.rgb)\n")
+    done = tuisim("run", "sub/look.py", "--json")
+    assert json.loads(done.stdout)["robot"] == "eyes"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("seed = 3", "lab.toml names no program (tuisim run PROGRAM…)"),
+        ("program = 'whre.py'", "whre.py: there is no such program"),
+        ("program = 'sub/whre.py'", "sub/whre.py: there is no such program (did you mean where.py?)"),
+        ("program = 3", "lab.toml: program: must be text, got 3"),
+    ],
+    ids=["no program", "missing program", "misspelt program", "program's type"],
+)
+def test_a_world_without_a_program_to_run(text: str, said: str, folder: Path, tuisim: Command) -> None:
+    (folder / "lab.toml").write_text(text)
+    done = tuisim("run", "lab.toml")
+    assert done.stderr.startswith(f"tuisim: {said}")
+    assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
+
+
+def test_profiles_of_ones_own_stand_beside_the_others(folder: Path, tuisim: Command) -> None:
+    (folder / "slow.toml").write_text("color_read_ms = 25\n")
+    lines = tuisim("profiles", "ev3", "slow.toml").stdout.splitlines()
+    assert [line.split()[:5] for line in lines if line.startswith("color_read")] == [
+        ["color_read", "10", "ms", "25", "ms"]
+    ]
+    assert "measured on the old simulator" in next(line for line in lines if line.startswith("color_read"))
