@@ -1,0 +1,73 @@
+"""The three strategies of a colour sensor: how it weighs the pixels of its disc."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tuisim import assets, fields
+from tuisim.core.field import Field
+from tuisim.core.geometry import Pose
+from tuisim.core.sensors.color import reading
+from tuisim.core.spec import STRATEGIES, NoiseSpec, RobotSpec
+from tuisim.core.state import Instant
+from tuisim.core.weights import disc_weights
+
+LEFT = RobotSpec().color_sensors[0]
+
+# The left edge of the black band of Grey_bands is at x = 1450; the sensor is 30 mm before the axle.
+EDGE = {
+    1409: (255.0, 255.0, 255.0),
+    1412: (238.28, 247.20, 243.49),
+    1415: (198.98, 216.31, 216.43),
+    1418: (151.33, 160.66, 159.45),
+    1421: (103.67, 94.34, 95.55),
+    1424: (56.02, 38.69, 38.57),
+    1427: (16.72, 7.80, 11.51),
+    1430: (0.0, 0.0, 0.0),
+}
+"""By robot x in mm: red of mean, gaussian and centre."""
+
+
+@pytest.fixture(scope="module")
+def grey_bands() -> Field:
+    return fields.open_field(fields.prepare(assets.background("Grey_bands").image, {20}))
+
+
+def seen(field: Field, x_mm: float, strategy: str, light: int = 0) -> float:
+    instant = Instant(3, Pose(x_mm, 500.0, 0.0), noise=NoiseSpec(light, 0), seed=1)
+    return reading(replace(LEFT, strategy=strategy), instant, field).red
+
+
+@pytest.mark.parametrize(("x_mm", "reds"), EDGE.items())
+def test_readings_across_an_edge(grey_bands: Field, x_mm: int, reds: tuple[float, ...]) -> None:
+    found = tuple(seen(grey_bands, float(x_mm), strategy) for strategy in STRATEGIES)
+    assert found == pytest.approx(reds, abs=0.005)
+
+
+@pytest.mark.parametrize("strategy", ["gaussian", "centre"])
+def test_weighted_sensors_see_a_steeper_edge_of_the_same_band(grey_bands: Field, strategy: str) -> None:
+    """Away from the edge's middle a weighted reading is closer to what lies under the middle of the disc."""
+    for x_mm in (1412, 1415):
+        assert seen(grey_bands, x_mm, strategy) > seen(grey_bands, x_mm, "mean")
+    for x_mm in (1424, 1427):
+        assert seen(grey_bands, x_mm, strategy) < seen(grey_bands, x_mm, "mean")
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+@pytest.mark.parametrize("diameter", [2, 7, 10, 20, 30])
+def test_weights_are_those_of_the_disc(strategy: str, diameter: int) -> None:
+    weights = disc_weights(diameter, strategy)
+    inside = disc_weights(diameter, "mean")
+    assert len(weights) == diameter * diameter
+    assert set(inside) <= {0, 1}
+    assert all((weight > 0) == bool(one) for weight, one in zip(weights, inside, strict=True))
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_noise_comes_before_the_weights(grey_bands: Field, strategy: str) -> None:
+    clear, noisy = seen(grey_bands, 1125, strategy), seen(grey_bands, 1125, strategy, light=20)
+    assert clear == pytest.approx(128.0)
+    assert noisy != clear
+    assert noisy == pytest.approx(128.0, abs=4.0)
