@@ -109,7 +109,7 @@ def test_tight_loops_agree_with_the_full_tick() -> None:
     class Slow(Simulation):
         def _glide(self, ticks: int) -> None:
             for _ in range(ticks):
-                self._tick()
+                self.tick_once()
 
     spec = simulation(ROBOLAB).spec
     assert script(Slow(spec, MemorySink()), 10_000) == script(Simulation(spec, MemorySink()), 10_000)

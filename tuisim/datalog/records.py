@@ -24,7 +24,6 @@ HEADER_BYTES = 64
 _HEADER = Struct("<8sIIQ")
 """Magic, format version, record size (0: variable), published length."""
 _LENGTH_AT = 16
-_LENGTH = Struct("<Q")
 FORMAT_VERSION = 1
 
 TELEMETRY_MAGIC = b"TUISIMTL"
@@ -51,22 +50,30 @@ class _GrowingMap:
         self._fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o644)
         self.capacity = HEADER_BYTES + first_bytes
         os.ftruncate(self._fd, self.capacity)
-        self.map = mmap.mmap(self._fd, self.capacity)
+        self._map_file()
         self.map[0 : _HEADER.size] = _HEADER.pack(magic, FORMAT_VERSION, record_bytes, 0)
 
     def grow(self, need: int) -> None:
         while self.capacity < need:
             self.capacity *= 2
-        self.map.close()
+        self._unmap()
         os.ftruncate(self._fd, self.capacity)
+        self._map_file()
+
+    def _map_file(self) -> None:
         self.map = mmap.mmap(self._fd, self.capacity)
+        # Set in one aligned store, which no reader can see half done: pack_into would clear the bytes first.
+        self.length = memoryview(self.map)[_LENGTH_AT : _LENGTH_AT + 8].cast("Q")
+
+    def _unmap(self) -> None:
+        self.length.release()
+        self.map.close()
 
     def publish(self, length: int) -> None:
-        # One slice assignment: pack_into would clear the bytes first, and a reader would see 0.
-        self.map[_LENGTH_AT : _LENGTH_AT + 8] = _LENGTH.pack(length)
+        self.length[0] = length
 
     def close(self, used: int) -> None:
-        self.map.close()
+        self._unmap()
         os.ftruncate(self._fd, used)
         os.close(self._fd)
 
@@ -76,7 +83,7 @@ class TelemetryWriter:
 
     def __init__(self, folder: Path) -> None:
         self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, _TELEMETRY_CHUNK)
-        self._map = self._file.map
+        self._length = self._file.length
         self.count = 0
 
     def room(self, records: int) -> mmap.mmap:
@@ -84,14 +91,14 @@ class TelemetryWriter:
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
         if need > self._file.capacity:
             self._file.grow(need)
-            self._map = self._file.map
-        return self._map
+            self._length = self._file.length
+        return self._file.map
 
     def publish(self, count: int) -> None:
         """Make the first `count` records visible to readers."""
         self.count = count
         # As `_GrowingMap.publish` does it, without another call: this happens every tick.
-        self._map[_LENGTH_AT : _LENGTH_AT + 8] = _LENGTH.pack(count)
+        self._length[0] = count
 
     def close(self) -> None:
         """Cut the file to its true size."""

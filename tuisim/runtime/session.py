@@ -78,7 +78,9 @@ class Session:
         self.free = 0
         self.slow = LIVE if steering.live else 0
         self._due = sim.due_ns(1)
-        self._hz = sim.spec.profile.tick_hz
+        hz = sim.spec.profile.tick_hz
+        self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz
+        """Length of a tick, 0 where that is no whole number."""
         self._limit_ns = limits.time_ns or 1 << 62
         self._commands, self._commands_at = 0, -1
         self.stop_reason: StopProgram | None = None
@@ -106,10 +108,10 @@ class Session:
         else:
             sim = self.sim
             sim.line = self.program_line()
-            # `due_ns` of the simulation, written out: most readings make just one tick due.
-            following = -(-(sim.tick + 2) * NS_PER_S // self._hz)
+            # Most readings make just one tick due, and whole ticks can be counted up.
+            following = self._due + self._tick_ns if self._tick_ns else sim.due_ns(sim.tick + 2)
             if until < following:
-                sim.advance(1)
+                sim.tick_once()
                 self.now, self._due = until, following
                 return
             ticks = sim.ticks_at(until) - sim.tick
