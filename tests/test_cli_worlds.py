@@ -87,6 +87,19 @@ def test_a_world_without_a_program_to_run(text: str, said: str, folder: Path, tu
     assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
 
 
+@pytest.mark.parametrize("length", [0, 60, 3000], ids=["empty", "hardly begun", "truncated"])
+def test_nothing_is_run_if_a_later_world_has_a_damaged_picture(
+    length: int, folder: Path, home: Path, root: Path, tuisim: Command
+) -> None:
+    (folder / "mat.png").write_bytes((root / "backgrounds" / "Square.png").read_bytes()[:length])
+    (folder / "bad.py").write_text("# %%sim_magic -b mat.png\n")
+    done = tuisim("run", "other.py", "bad.py")
+    assert done.stderr.startswith("tuisim: ")
+    assert "mat.png: is " in done.stderr
+    assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
+    assert not list(home.glob("runs/*"))
+
+
 def test_profiles_of_ones_own_stand_beside_the_others(folder: Path, tuisim: Command) -> None:
     (folder / "slow.toml").write_text("color_read_ms = 25\n")
     lines = tuisim("profiles", "ev3", "slow.toml").stdout.splitlines()

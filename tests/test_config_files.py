@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -287,6 +288,23 @@ def test_paths_in_a_world_are_relative_to_its_folder(tmp_path: Path, monkeypatch
         "lab/lab.toml", "small.toml", "lab/boxes.json", "lab/slow.toml", "lab/drive.py",
     ]  # fmt: skip
     assert (asked.panels_on, asked.panels_off, asked.rays) == (("chart", "arrays"), ("controls",), True)
+
+
+@pytest.mark.parametrize("name", ["mat.png", "mat", "pics/mat.png"])
+def test_an_image_is_written_as_seen_from_the_worlds_folder(
+    name: str, root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "lab" / "pics").mkdir(parents=True)
+    shutil.copy(root / "backgrounds" / "Square.png", tmp_path / "lab" / name)
+    monkeypatch.chdir(tmp_path)
+    spec = build_run_spec(Settings(background=f"lab/{name}", background_fit="centre"))
+    assert spec.world.background == str(tmp_path / "lab" / name)
+    save_world(spec, "lab/lab.toml")
+    assert str(tmp_path) not in (tmp_path / "lab" / "lab.toml").read_text()
+    assert build_run_spec(settings_of(load_world("lab/lab.toml").settings)) == spec
+    (tmp_path / "lab").rename(tmp_path / "moved")
+    moved = build_run_spec(settings_of(load_world("moved/lab.toml").settings))
+    assert moved.world.background == str(tmp_path / "moved" / name)
 
 
 def test_a_world_with_a_mat_does_not_start_where_the_magic_line_wanted_to_on_another(write: Write) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
 from collections.abc import Sequence
@@ -13,7 +14,7 @@ from tuisim.datalog.export import EXPORTERS, check_target, export_samples, expor
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
-from tuisim.host import RunOptions, start_run
+from tuisim.host import RunOptions, field_files, start_run
 from tuisim.switches import SwitchParser, number
 
 MAX_TIME_LIMIT_S = 1e6
@@ -45,12 +46,16 @@ def execute(arguments: Namespace) -> int:
     """Run the programs and return the worst exit code.
 
     Raises:
-        ConfigError: a program or a switch is wrong; nothing was run.
+        ConfigError: a program, a world, a mat or a switch is wrong; nothing was run.
         ExportError: a target cannot be written; checked before anything is run.
         HostError: a child process could not be started or spoke nonsense.
     """
     # All input is checked before the first program runs.
     prepared = prepare_runs(arguments.programs, arguments)
+    for one in prepared:
+        # A damaged picture shows only when it is read; the catalogue's are whole, and are read when they are needed.
+        if os.path.isabs(one.spec.world.background):
+            field_files(one.spec)
     telemetry = arguments.telemetry
     for target in (*arguments.export, telemetry):
         if target is not None:
