@@ -30,6 +30,9 @@ COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
 """So many calls that cost nothing cost this much together."""
 
+REPEATED_WAITS = 100
+"""So many waits that follow each other anyway are done as one."""
+
 CHUNK_TICKS = 2000
 """A long wait is done in pieces of so many ticks, to look for commands in between."""
 
@@ -137,8 +140,16 @@ class Session:
         elif self.slow & (ATTENTION | STOPPING):
             self.checkpoint()
 
-    def wait_for_motor(self, timeout_ns: int) -> None:
-        """Wait until a motor ends a move, at most so long."""
+    def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
+        """Wait until a motor ends a move, at most so long.
+
+        Args:
+            timeout_ns: How long.
+            again: The caller does nothing but wait again when the time is up.
+        """
+        if again and not self.slow & THREADS:
+            # Nobody else can change anything meanwhile, so many short waits are as good as one long one.
+            timeout_ns *= REPEATED_WAITS
         self._pass(self.now + timeout_ns, True)
 
     def speak(self, text: str, wait_ns: int) -> None:
@@ -170,11 +181,13 @@ class Session:
             Whether a motor ended the wait.
         """
         if until > self._limit_ns and not self.stop_reason:
-            self._run_ticks(self._limit_ns, False)
-            self.now = self._limit_ns
-            limit_s = self._limit_ns / NS_PER_S
-            raise self.request_stop("time_limit", f"stopped at the limit of {limit_s:g} s simulated time")
-        changed = self._run_ticks(until, on_change)
+            changed = self._run_ticks(self._limit_ns, on_change)
+            if not changed:
+                self.now = self._limit_ns
+                limit_s = self._limit_ns / NS_PER_S
+                raise self.request_stop("time_limit", f"stopped at the limit of {limit_s:g} s simulated time")
+        else:
+            changed = self._run_ticks(until, on_change)
         # A wait that a motor ended is over at the tick in which the motor stood still.
         self.now = max(self.now, self.sim.due_ns(self.sim.tick)) if changed else until
         self._due = self.sim.due_ns(self.sim.tick + 1)

@@ -35,18 +35,43 @@ class OpenAttribute:
         self._device.write(self._name, text if isinstance(text, str) else text.decode())
 
 
+class Patience:
+    """What the library waits for, which its poll alone does not tell."""
+
+    def __init__(self) -> None:
+        self.until_motors_stop = 0
+        """Above 0 while it polls only to look again whether a motor still moves."""
+
+    def patient(self, function: Callable[..., bool]) -> Callable[..., bool]:
+        """Return `wait_until_not_moving` so that it is known to wait for nothing else."""
+
+        @wraps(function)
+        def wait_until_not_moving(motor: Any, timeout: float | None = None) -> bool:
+            if timeout is not None:
+                # Then the library also looks at the time after each poll.
+                return function(motor, timeout)
+            self.until_motors_stop += 1
+            try:
+                return function(motor)
+            finally:
+                self.until_motors_stop -= 1
+
+        return wait_until_not_moving
+
+
 class MotorPoll:
     """Stands in for `select.poll` in the library: waits for a motor in simulated time."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, session: Session, patience: Patience) -> None:
+        self._session, self._patience = session, patience
 
     def register(self, _file: OpenAttribute, _events: int = 0) -> None:
         """Any motor that changes ends the wait; the library looks at its own again."""
 
     def poll(self, timeout_ms: float | None = None) -> list[Any]:
         """Wait until a motor ends a move, at most so long."""
-        self._session.wait_for_motor(int((1000 if timeout_ms is None else timeout_ms) * MS))
+        timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
+        self._session.wait_for_motor(timeout_ns, again=self._patience.until_motors_stop > 0)
         return []
 
 
@@ -141,7 +166,9 @@ def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[.
 def patch_motor_module(session: Session, module: types.ModuleType) -> None:
     """Finish `ev3dev2.motor` after its import."""
     motor: Any = module
-    motor.select = types.SimpleNamespace(poll=lambda: MotorPoll(session), POLLPRI=select.POLLPRI)
+    patience = Patience()
+    motor.select = types.SimpleNamespace(poll=lambda: MotorPoll(session, patience), POLLPRI=select.POLLPRI)
+    motor.Motor.wait_until_not_moving = patience.patient(motor.Motor.wait_until_not_moving)
     motor.Motor.__init__ = free_of_charge(session, motor.Motor.__init__)
     motor.Motor.wait = free_of_charge(session, motor.Motor.wait)
     profile = session.sim.spec.profile

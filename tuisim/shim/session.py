@@ -30,8 +30,8 @@ class Session(Protocol):
     def command(self) -> None:
         """Count a call that costs nothing, so that no loop of them stands still for ever."""
 
-    def wait_for_motor(self, timeout_ns: int) -> None:
-        """Wait until a motor ends a move, at most so long."""
+    def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
+        """Wait until a motor ends a move, at most so long; `again`: the caller then just waits again."""
 
     def speak(self, text: str, wait_ns: int) -> None:
         """Show (and where possible say) a text; the program goes on after `wait_ns`."""
