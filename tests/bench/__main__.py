@@ -8,6 +8,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from tests.bench.crowded import crowded
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
 from tests.bench.frames import chart, frames
 from tests.bench.running import EMPTY, begin
@@ -18,6 +19,7 @@ from tuisim.host import RunOptions
 
 BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "speed": speeds,
+    "crowded": crowded,
     "first-line": first_line,
     "help": help_text,
     "first-paint": first_paint,

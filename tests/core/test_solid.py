@@ -191,14 +191,22 @@ def test_noise_does_not_push_through_a_wall() -> None:
     assert drive(sim, [("forever", 900.0, 880.0, 600)]) <= ALLOWED_MM
 
 
-def test_clearance_is_never_more_than_there_is() -> None:
+@pytest.mark.parametrize("straight", [-1, 0, 1], ids=["back", "anyhow", "on"])
+def test_the_way_said_to_be_free_is_free(straight: int) -> None:
     obstacles = tuple(Obstacle(100.0 * i, 60.0 * (i % 9), 30.0, 30.0) for i in range(20))
     world = WorldSpec(obstacles=obstacles, solid=True)
-    robot = RobotSpec()
-    for start in range(0, 2300, 37):
-        solids = Solids(world, robot)
-        for way in range(0, 60, 7):
-            x, y = float(start), 200.0 + 10 * way
-            gap = solids.clearance_mm(x, y)
-            moved = replace(world, start=Pose(x + gap * 0.99, y, 0.0))
-            assert gap == 0.0 or overlap_mm(simulation(moved)) <= 1e-6
+    solids = Solids(world, RobotSpec())
+    ways = []
+    for number in range(400):
+        pose = (200.0 + 37.0 * number % 1900, 200.0 + 53.0 * number % 700, 17.0 * number)
+        sim = simulation(replace(world, start=Pose(*pose)))
+        if overlap_mm(sim) > 0:
+            continue
+        way = solids.free_way_mm(pose, 1e9, straight)
+        ways.append(way)
+        heading = math.radians(pose[2]) + (0.0 if straight else 1.0 + number)
+        step = way * 0.999 * (straight or 1)
+        there = Pose(pose[0] + step * math.cos(heading), pose[1] + step * math.sin(heading), pose[2])
+        sim.place(there)
+        assert overlap_mm(sim) <= 1e-6
+    assert max(ways) > 50

@@ -25,6 +25,9 @@ STALL_MS = 100
 ROOM_TICKS = 256
 """The sink is asked for room for so many records beyond those at hand."""
 
+LOOK_TICKS = 16
+"""Solid things are looked at anew when the way known to be free is shorter than that of so many ticks."""
+
 FEW_TICKS = 3
 """Up to so many ticks, setting up a tight loop costs more than it saves."""
 
@@ -115,7 +118,7 @@ class Motion:
             most,
             self.left.quiet_ticks(self.tick, self._tick_s, halved),
             self.right.quiet_ticks(self.tick, self._tick_s, halved),
-            self._clear_ticks(),
+            self._clear_ticks(most),
         )
 
     def tick_once(self) -> None:
@@ -159,12 +162,25 @@ class Motion:
         )  # fmt: skip
         self._sink.publish(count + 1)
 
-    def _clear_ticks(self) -> int:
-        """For how many ticks nothing solid can be met, however the robot moves."""
+    def _clear_ticks(self, most: int) -> int:
+        """For how many ticks, at most `most`, nothing solid can be met by a robot that is not told anything new."""
         if self._solids is None:
-            return motors.ENDLESS
-        farthest_mm = self.spec.profile.max_speed_dps * self._tick_s * self._mm_per_deg
-        return int(self._solids.clearance_mm(self.x_mm, self.y_mm) / farthest_mm)
+            return most
+        left, right = self.left, self.right
+        left_ends = (left.moving_dps, left.target_dps * left.sign if left.mode else 0.0)
+        right_ends = (right.moving_dps, right.target_dps * right.sign if right.mode else 0.0)
+        per_dps = self._tick_s * self._mm_per_deg
+        straight, turn = 0, 0.0
+        if left_ends == right_ends and left_ends[0] * left_ends[1] >= 0:
+            straight = 1 if sum(left_ends) > 0 else -1
+        else:
+            turn = max(max(right_ends) - min(left_ends), max(left_ends) - min(right_ends)) * per_dps / self._spacing_mm
+        fastest = max(map(abs, (*left_ends, *right_ends))) * per_dps
+        way = fastest + turn * self._solids.reach_mm
+        if way == 0.0:
+            return most
+        pose = (self.x_mm, self.y_mm, self.heading_deg)
+        return min(most, int(self._solids.free_way_mm(pose, way * min(most, LOOK_TICKS), straight) / way))
 
     def _obstructed(
         self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
@@ -174,7 +190,8 @@ class Motion:
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return left_deg, right_deg
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
-        part = self._solids.free_part(self.x_mm, self.y_mm, self.heading_deg, (left_mm + right_mm) / 2, turn_deg)
+        pose = (self.x_mm, self.y_mm, self.heading_deg)
+        part = self._solids.free_part(pose, (left_mm + right_mm) / 2, turn_deg)
         if part == 1.0:
             self.left.blocked_ticks = self.right.blocked_ticks = 0
             return left_deg, right_deg

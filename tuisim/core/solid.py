@@ -8,7 +8,8 @@ thing by more than `TOUCH_MM`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, WorldSpec
 
@@ -30,10 +31,28 @@ NEAR_MM = 150.0
 SENSOR_HOUSING_MM = 15.0
 """A sensor's housing reaches so far to every side of its middle."""
 
-_HALVINGS = 30
+_HALVINGS = 22
 
 Box = tuple[float, float, float, float]
 """Left, lower, right and upper edge in mm."""
+
+PoseTuple = tuple[float, float, float]
+"""x and y in mm, heading in degrees."""
+
+Body = tuple[float, float, float, float, float, float, float, float]
+"""A body somewhere: its middle, its forward direction, half its length and width, half the upright box around it."""
+
+
+class Room(NamedTuple):
+    """How far the body can move from a pose without meeting anything, in mm."""
+
+    pose: PoseTuple
+    any_mm: float
+    """In any way: how far its fastest point may go."""
+    ahead_mm: float
+    """Straight on."""
+    behind_mm: float
+    """Straight back."""
 
 
 def front_mm(robot: RobotSpec) -> float:
@@ -56,6 +75,9 @@ def outline(robot: RobotSpec) -> tuple[tuple[float, float], ...]:
 class Solids:
     """The solid things of a world, for one robot.
 
+    Most of the time nothing is near, so how far every point of the body may move is worked
+    out once and used up tick by tick; only then are things looked at again.
+
     Args:
         world: Walls and obstacles.
         robot: Its outline counts.
@@ -64,30 +86,111 @@ class Solids:
     def __init__(self, world: WorldSpec, robot: RobotSpec) -> None:
         self._walls = world.walls
         self._boxes: list[Box] = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
-        self._half_width, self._front, self._back = half_width_mm(robot), front_mm(robot), robot.back_mm
-        self._reach = max(math.hypot(x, y) for x, y in outline(robot))
+        self._half_width, front, back = half_width_mm(robot), front_mm(robot), robot.back_mm
+        self._middle, self._half_length = (front + back) / 2, (front - back) / 2
+        self.reach_mm = max(math.hypot(x, y) for x, y in outline(robot))
+        """How far the body reaches from the middle of the axle."""
         self._near: list[Box] = []
         self._near_at = (math.inf, math.inf)
+        self._room = Room((math.inf, math.inf, 0.0), 0.0, 0.0, 0.0)
+        self._last_asked: tuple[float, ...] = ()
+        self._last_part = 1.0
 
-    def clearance_mm(self, x_mm: float, y_mm: float) -> float:
-        """Return how far the robot's middle can go in any direction without meeting anything, at least 0."""
-        gap = math.inf
-        if self._walls:
-            gap = min(x_mm, y_mm, FIELD_WIDTH_MM - x_mm, FIELD_HEIGHT_MM - y_mm)
-        for left, lower, right, upper in self._boxes_near(x_mm, y_mm):
-            across = max(left - x_mm, 0.0, x_mm - right)
-            up = max(lower - y_mm, 0.0, y_mm - upper)
-            gap = min(gap, math.hypot(across, up))
-        # Boxes that were left out are at least this far away.
-        beyond = NEAR_MM - math.dist((x_mm, y_mm), self._near_at) if self._boxes else math.inf
-        return max(0.0, min(gap - self._reach, beyond))
+    def free_way_mm(self, pose: PoseTuple, wanted_mm: float, straight: int = 0) -> float:
+        """Return how far every point of the body can move without meeting anything; may say less than there is.
 
-    def _boxes_near(self, x_mm: float, y_mm: float) -> list[Box]:
-        if not self._boxes:
-            return self._boxes
-        if math.dist((x_mm, y_mm), self._near_at) > NEAR_MM / 2:
+        Args:
+            pose: x and y in mm, heading in degrees.
+            wanted_mm: If so much is known to be free, nothing is looked at again.
+            straight: 1 or -1 for a robot that only moves forwards or backwards, 0 for any motion.
+        """
+        left = self._left_of_room(pose)
+        if left >= wanted_mm:
+            return left
+        self._room = room = self._look(pose)
+        return max(room.any_mm, room.ahead_mm if straight > 0 else room.behind_mm if straight < 0 else 0.0)
+
+    def _left_of_room(self, pose: PoseTuple) -> float:
+        """What is left of the room that was found last, after the way since then."""
+        x, y, heading = self._room.pose
+        turned = math.radians(abs(pose[2] - heading)) * self.reach_mm
+        return self._room.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
+
+    def free_part(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> float:
+        """Return which part of a tick's motion can be made, 0 … 1.
+
+        Args:
+            pose: x and y in mm, heading in degrees.
+            forward_mm: Way along the heading before the turn.
+            turn_deg: Turn, counter-clockwise.
+        """
+        way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
+        if self._left_of_room(pose) >= way:
+            return 1.0
+        asked = (*pose, forward_mm, turn_deg)
+        # A robot that pushes against something asks the same every tick.
+        if asked != self._last_asked:
+            self._last_asked, self._last_part = asked, self._part(pose, forward_mm, turn_deg, way)
+        return self._last_part
+
+    def _part(self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float) -> float:
+        self._room = self._look(pose)
+        if self._room.any_mm >= way_mm:
+            return 1.0
+        solid = self._things_within(pose, way_mm)
+        x_mm, y_mm, heading_deg = pose
+        heading = math.radians(heading_deg)
+        across, up = forward_mm * math.cos(heading), forward_mm * math.sin(heading)
+
+        def meets(part: float) -> bool:
+            there = self._body(x_mm + across * part, y_mm + up * part, heading_deg + turn_deg * part)
+            return any(gap < -TOUCH_MM for gap in self._gaps(there, solid))
+
+        steps = max(1, math.ceil(way_mm / STEP_MM))
+        for step in range(1, steps + 1):
+            if meets(step / steps):
+                return max(0.0, _last_clear(meets, (step - 1) / steps, step / steps) - BACK_OFF_MM / way_mm)
+        return 1.0
+
+    # Looking
+
+    def _things_within(self, pose: PoseTuple, way_mm: float) -> tuple[bool, list[Box]]:
+        """What a short way can meet. A thing that the robot was put into lets it leave."""
+        body = self._body(*pose)
+        boxes = [box for box in self._boxes_near(pose) if -INSIDE_MM <= _box_gap(body, box) <= way_mm]
+        return self._walls and _wall_gap(body) >= -INSIDE_MM, boxes
+
+    def _gaps(self, body: Body, solid: tuple[bool, list[Box]]) -> Iterator[float]:
+        walls, boxes = solid
+        if walls:
+            yield _wall_gap(body)
+        for box in boxes:
+            yield _box_gap(body, box)
+
+    def _look(self, pose: PoseTuple) -> Room:
+        body = self._body(*pose)
+        # Boxes that are not near are at least this far away.
+        boxes = self._boxes_near(pose)
+        beyond = NEAR_MM - math.dist(pose[:2], self._near_at) if self._boxes else math.inf
+        any_mm, ahead, behind = beyond, beyond, beyond
+        if self._walls and (gap := _wall_gap(body)) >= -INSIDE_MM:
+            any_mm = min(any_mm, gap)
+            ahead, behind = min(ahead, _way_to_wall(body, 1.0)), min(behind, _way_to_wall(body, -1.0))
+        for box in boxes:
+            gap = _box_gap(body, box)
+            if gap < -INSIDE_MM:
+                continue
+            any_mm = min(any_mm, gap)
+            along, aside, before = _box_beside(body, box)
+            if aside < 0.0:
+                ahead, behind = (min(ahead, along), behind) if before else (ahead, min(behind, along))
+        return Room(pose, max(0.0, any_mm), max(0.0, ahead), max(0.0, behind))
+
+    def _boxes_near(self, pose: PoseTuple) -> list[Box]:
+        x_mm, y_mm = pose[:2]
+        if self._boxes and math.dist((x_mm, y_mm), self._near_at) > NEAR_MM / 2:
             self._near_at = (x_mm, y_mm)
-            reach = self._reach + NEAR_MM
+            reach = self.reach_mm + NEAR_MM
             self._near = [
                 box
                 for box in self._boxes
@@ -95,67 +198,53 @@ class Solids:
             ]
         return self._near
 
-    def free_part(self, x_mm: float, y_mm: float, heading_deg: float, forward_mm: float, turn_deg: float) -> float:
-        """Return which part of a tick's motion can be made, 0 … 1.
-
-        Args:
-            x_mm: Where the middle of the axle is.
-            y_mm: The same.
-            heading_deg: Where the robot faces.
-            forward_mm: Way along the heading before the turn.
-            turn_deg: Turn, counter-clockwise.
-        """
-        solid = self._solid_now(x_mm, y_mm, heading_deg)
-        heading = math.radians(heading_deg)
-        across, up = forward_mm * math.cos(heading), forward_mm * math.sin(heading)
-
-        def meets(part: float) -> bool:
-            return self._meets(x_mm + across * part, y_mm + up * part, heading_deg + turn_deg * part, solid)
-
-        way = abs(forward_mm) + abs(math.radians(turn_deg)) * self._reach
-        steps = max(1, math.ceil(way / STEP_MM))
-        for step in range(1, steps + 1):
-            if meets(step / steps):
-                return max(0.0, _last_clear(meets, (step - 1) / steps, step / steps) - BACK_OFF_MM / way)
-        return 1.0
-
-    def _solid_now(self, x_mm: float, y_mm: float, heading_deg: float) -> tuple[bool, list[Box]]:
-        """What can be met: a thing that the robot already stands in lets it leave."""
-        boxes = self._boxes_near(x_mm, y_mm)
-        walls = self._walls and not self._meets(x_mm, y_mm, heading_deg, (True, []), INSIDE_MM)
-        return walls, [box for box in boxes if not self._meets(x_mm, y_mm, heading_deg, (False, [box]), INSIDE_MM)]
-
-    def _meets(
-        self,
-        x_mm: float,
-        y_mm: float,
-        heading_deg: float,
-        solid: tuple[bool, list[Box]],
-        allowed_mm: float = TOUCH_MM,
-    ) -> bool:
-        walls, boxes = solid
-        # The body's own axes: forward, and to the left.
+    def _body(self, x_mm: float, y_mm: float, heading_deg: float) -> Body:
         turn = math.radians(heading_deg)
         fx, fy = math.cos(turn), math.sin(turn)
-        middle, half_length = (self._front + self._back) / 2, (self._front - self._back) / 2
-        half_width = self._half_width
-        cx, cy = x_mm + fx * middle, y_mm + fy * middle
-        # Half the size of the upright box around the body.
-        wide = abs(fx) * half_length + abs(fy) * half_width - allowed_mm
-        high = abs(fy) * half_length + abs(fx) * half_width - allowed_mm
-        if walls and not (wide <= cx <= FIELD_WIDTH_MM - wide and high <= cy <= FIELD_HEIGHT_MM - high):
-            return True
-        for left, lower, right, upper in boxes:
-            if cx + wide <= left or cx - wide >= right or cy + high <= lower or cy - high >= upper:
-                continue
-            # Separating axes of the body: the box seen along them.
-            dx, dy = (left + right) / 2 - cx, (lower + upper) / 2 - cy
-            half_x, half_y = (right - left) / 2, (upper - lower) / 2
-            along = abs(dx * fx + dy * fy) - half_length - half_x * abs(fx) - half_y * abs(fy)
-            aside = abs(dy * fx - dx * fy) - half_width - half_x * abs(fy) - half_y * abs(fx)
-            if along < -allowed_mm and aside < -allowed_mm:
-                return True
-        return False
+        length, width = self._half_length, self._half_width
+        return (
+            x_mm + fx * self._middle, y_mm + fy * self._middle, fx, fy, length, width,
+            abs(fx) * length + abs(fy) * width, abs(fy) * length + abs(fx) * width,
+        )  # fmt: skip
+
+
+def _wall_gap(body: Body) -> float:
+    """How far the body is from the nearest wall, negative when it is in one."""
+    cx, cy, _, _, _, _, wide, high = body
+    return min(cx - wide, FIELD_WIDTH_MM - wide - cx, cy - high, FIELD_HEIGHT_MM - high - cy)
+
+
+def _way_to_wall(body: Body, direction: float) -> float:
+    """How far the body can move along its heading (direction 1) or against it (-1) before it meets a wall."""
+    cx, cy, fx, fy, _, _, wide, high = body
+    way = math.inf
+    for centre, half, end, step in ((cx, wide, FIELD_WIDTH_MM, fx), (cy, high, FIELD_HEIGHT_MM, fy)):
+        step *= direction
+        if abs(step) > 1e-12:
+            way = min(way, ((end - half - centre) if step > 0 else (centre - half)) / abs(step))
+    return way
+
+
+def _box_gap(body: Body, box: Box) -> float:
+    """How far body and box are apart along the axis that separates them best, negative when they overlap."""
+    cx, cy, _, _, _, _, wide, high = body
+    left, lower, right, upper = box
+    upright = max(left - cx, cx - right) - wide
+    level = max(lower - cy, cy - upper) - high
+    along, aside, _ = _box_beside(body, box)
+    return max(upright, level, along, aside)
+
+
+def _box_beside(body: Body, box: Box) -> tuple[float, float, bool]:
+    """Return how far a box is apart along the heading and across it, and whether it is in front."""
+    cx, cy, fx, fy, length, width, _, _ = body
+    left, lower, right, upper = box
+    dx, dy = (left + right) / 2 - cx, (lower + upper) / 2 - cy
+    half_x, half_y = (right - left) / 2, (upper - lower) / 2
+    forward, sideways = dx * fx + dy * fy, dy * fx - dx * fy
+    along = abs(forward) - length - half_x * abs(fx) - half_y * abs(fy)
+    aside = abs(sideways) - width - half_x * abs(fy) - half_y * abs(fx)
+    return along, aside, forward > 0
 
 
 def _last_clear(meets: Callable[[float], bool], clear: float, met: float) -> float:
