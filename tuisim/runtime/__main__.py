@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tuisim.runtime import real  # isort: skip - must come first: it keeps the real clock
+from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - its import is all that is wanted
 
 import os
 import sys

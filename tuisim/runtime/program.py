@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import gc
 import os
 import sys
 import types
@@ -96,6 +97,9 @@ class ProgramRunner:
         self._session.free += 1
         exec(compile_prelude(self._config.prelude), module.__dict__)
         self._session.free -= 1
+        # What is there now stays; the program's own garbage is looked for from here on.
+        gc.freeze()
+        gc.enable()
         exec(code, module.__dict__)
 
     # Ends

@@ -11,9 +11,9 @@ import sys
 import types
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from tuisim.core.field import Field
-from tuisim.core.marks import PenMarks
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S, Simulation
 from tuisim.datalog.records import SPEECH
@@ -22,6 +22,9 @@ from tuisim.runtime.channel import Channel
 from tuisim.runtime.halt import StopProgram
 from tuisim.runtime.output import Output
 from tuisim.runtime.steering import Steering
+
+if TYPE_CHECKING:
+    from tuisim.core.marks import PenMarks
 
 LIVE, ATTENTION, THREADS, STOPPING = 1, 2, 4, 8
 """Bits of `Session.slow`: paced or pausable, a command waits, more than one thread, unwinding."""
@@ -74,7 +77,12 @@ class Session:
     ) -> None:
         self.sim, self.output, self.channel, self.steering = sim, output, channel, steering
         self._field = field
-        self._pen = PenMarks(field, sim.spec) if sim.spec.world.pen_marks else None
+        self._pen: PenMarks | None = None
+        if sim.spec.world.pen_marks:
+            # Imported where it is wanted: most programs start sooner without it.
+            from tuisim.core.marks import PenMarks
+
+            self._pen = PenMarks(field, sim.spec)
         self.limits = limits
         self.program_file = program_file
         self.now = 0
