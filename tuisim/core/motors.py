@@ -84,7 +84,11 @@ class Motor:
 
     def run(self, speed_dps: float) -> None:
         """Run until told otherwise."""
-        self._begin(FOREVER, speed_dps, 1.0)
+        if self.mode == FOREVER and not (self.slowest_ramp_dps2 or self.blocked_ticks):
+            # A control loop steers like this a hundred times a second: only the speed is new.
+            self.target_dps = speed_dps
+        else:
+            self._begin(FOREVER, speed_dps, 1.0)
 
     def run_until(self, speed_dps: float, end_tick: int) -> None:
         """Run until a tick is over."""

@@ -12,6 +12,7 @@ from tuisim.shim.session import Session
 COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")
 STOP_ACTIONS = ("coast", "brake", "hold")
 POLARITIES = ("normal", "inversed")
+RAMPS = ("ramp_up_sp", "ramp_down_sp")
 COUNT_PER_ROT = 360
 LARGE_MOTOR_DRIVER = "lego-ev3-l-motor"
 MAX_RAMP_MS = 60_000
@@ -50,6 +51,8 @@ class TachoMotor:
         self._polarity, self._sign = "normal", 1
         self._last_goal: float | None = None
         self._holding = False
+        self._ramps = False
+        """Whether a ramp set point slows changes of speed down."""
 
     def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""
@@ -95,6 +98,8 @@ class TachoMotor:
             if not low <= value <= high:
                 raise refuse(str(value))
             numbers[name] = value
+            if name in RAMPS:
+                self._ramps = self._profile.motor_ramps and any(numbers[ramp] for ramp in RAMPS)
             if self._direct and name == "duty_cycle_sp" and self._motor.mode != STOPPED:
                 self._run_direct()
 
@@ -156,7 +161,8 @@ class TachoMotor:
         else:
             self._reset()
         self._last_goal = None
-        self._ramp()
+        if self._ramps:
+            self._ramp()
 
     def _run_direct(self) -> None:
         self._motor.run(self._profile.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign)
@@ -172,16 +178,15 @@ class TachoMotor:
             base = self._last_goal
         self._last_goal = base + delta
         self._motor.run_to(self._last_goal, speed, self._last_goal < self._motor.position_deg)
-        self._ramp()
+        if self._ramps:
+            self._ramp()
 
     def _ramp(self) -> None:
         """Hand the ramp set point of the change that was asked for to the motor."""
-        up_ms, down_ms = self._numbers["ramp_up_sp"], self._numbers["ramp_down_sp"]
-        if not (up_ms or down_ms):
-            return
         motor = self._motor
-        ramp_ms = up_ms if abs(motor.target_dps) > abs(motor.speed_dps) else down_ms
-        if ramp_ms and self._profile.motor_ramps:
+        faster = abs(motor.target_dps) > abs(motor.speed_dps)
+        ramp_ms = self._numbers["ramp_up_sp" if faster else "ramp_down_sp"]
+        if ramp_ms:
             motor.slowest_ramp_dps2 = self._profile.max_speed_dps / ramp_ms * 1000
 
     def _run_absolute(self, speed: float) -> None:
