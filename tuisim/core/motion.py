@@ -25,7 +25,7 @@ STALL_MS = 100
 ROOM_TICKS = 256
 """The sink is asked for room for so many records beyond those at hand."""
 
-LOOK_TICKS = 16
+LOOK_TICKS = 4
 """Solid things are looked at anew when the way known to be free is shorter than that of so many ticks."""
 
 FEW_TICKS = 3
@@ -48,9 +48,9 @@ class Motion:
     """
 
     __slots__ = (
-        "_buffer", "_hz", "_left_dps", "_mm_per_deg", "_ramp_step", "_right_dps", "_room_end", "_sink", "_solids",
-        "_spacing_mm", "_tick_s", "_whole", "actions", "changed", "gyro_zero_deg", "heading_deg", "left", "line",
-        "noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
+        "_buffer", "_hz", "_left_dps", "_longest_mm", "_mm_per_deg", "_ramp_step", "_right_dps", "_room_end", "_sink",
+        "_solids", "_spacing_mm", "_tick_s", "_whole", "actions", "changed", "gyro_zero_deg", "heading_deg", "left",
+        "line", "noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -63,6 +63,10 @@ class Motion:
         self._spacing_mm = spec.robot.wheel_spacing_mm
         self._whole = spec.profile.round_forward_speeds
         self._solids = Solids(spec.world, spec.robot) if spec.world.solid else None
+        if self._solids is not None:
+            # A wheel at full speed forwards and the other backwards.
+            farthest = spec.profile.max_speed_dps * self._tick_s * self._mm_per_deg
+            self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
         start = spec.world.start
         self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
@@ -125,7 +129,9 @@ class Motion:
         """Do one tick in full: the rule that the loops below abbreviate."""
         self.tick = tick = self.tick + 1
         left, right, tick_s, noise = self.left, self.right, self._tick_s, self.noise.motor
-        before = (left.state(), right.state()) if self._solids is not None else None
+        before = None
+        if self._solids is not None and self._solids.left_of_room_mm(self._pose()) < self._longest_mm:
+            before = left.state(), right.state()
         # A motor that just goes on needs only the ramp of the rules of `step`; most ticks are such.
         if left.mode == motors.FOREVER and not noise:
             if left.speed_dps != left.target_dps:
@@ -167,6 +173,8 @@ class Motion:
         if self._solids is None:
             return most
         left, right = self.left, self.right
+        if left.blocked_ticks or right.blocked_ticks:
+            return 0
         left_ends = (left.moving_dps, left.target_dps * left.sign if left.mode else 0.0)
         right_ends = (right.moving_dps, right.target_dps * right.sign if right.mode else 0.0)
         per_dps = self._tick_s * self._mm_per_deg
@@ -179,8 +187,11 @@ class Motion:
         way = fastest + turn * self._solids.reach_mm
         if way == 0.0:
             return most
-        pose = (self.x_mm, self.y_mm, self.heading_deg)
+        pose = self._pose()
         return min(most, int(self._solids.free_way_mm(pose, way * min(most, LOOK_TICKS), straight) / way))
+
+    def _pose(self) -> tuple[float, float, float]:
+        return self.x_mm, self.y_mm, self.heading_deg
 
     def _obstructed(
         self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
@@ -190,7 +201,7 @@ class Motion:
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return left_deg, right_deg
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
-        pose = (self.x_mm, self.y_mm, self.heading_deg)
+        pose = self._pose()
         part = self._solids.free_part(pose, (left_mm + right_mm) / 2, turn_deg)
         if part == 1.0:
             self.left.blocked_ticks = self.right.blocked_ticks = 0

@@ -7,6 +7,7 @@ second.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from dataclasses import dataclass
 from itertools import accumulate, repeat
@@ -61,7 +62,7 @@ class Motor:
     """One motor with its encoder."""
 
     __slots__ = (
-        "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "slowest_ramp_dps2",
+        "approach_dps2", "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "slowest_ramp_dps2",
         "speed_dps", "target_dps",
     )  # fmt: skip
 
@@ -77,6 +78,8 @@ class Motor:
         self.end_tick = 0
         self.slowest_ramp_dps2 = 0.0
         """Change of speed a second that the program asked for; 0 leaves it to the motor's weight."""
+        self.approach_dps2 = 0.0
+        """How it slows down before a goal or the end of its time; 0: it stops at once when it is there."""
         self.blocked_ticks = 0
         """For how many ticks something solid has kept the wheel from turning."""
         self.counts_on_dps = 0.0
@@ -105,7 +108,7 @@ class Motor:
             # The wheel keeps turning the way it turns: only the way it is written down changes.
             self.speed_dps = -self.speed_dps
         self.mode, self.target_dps, self.sign = mode, speed_dps, sign
-        self.slowest_ramp_dps2 = 0.0
+        self.slowest_ramp_dps2 = self.approach_dps2 = 0.0
         self.counts_on_dps = 0.0
         self.blocked_ticks = 0
 
@@ -185,6 +188,8 @@ class Motor:
             tick_s: Length of a tick in seconds.
             halved: Whether the encoder counts twice in a move to a position.
         """
+        if self.approach_dps2:
+            return 0
         if self.mode == TIMED:
             return max(0, self.end_tick - tick - 1)
         if self.mode == POSITION:
@@ -216,6 +221,8 @@ class Motor:
             return 0.0
         step = self.ramp_step(ramp_step, tick_s)
         self.speed_dps = ramped(self.speed_dps, self.target_dps, step, profile.round_forward_speeds)
+        if self.approach_dps2:
+            self._slow_down(tick, ramp_step, tick_s)
         speed = self._disturbed(profile, noise_dps) if noise_dps else self.speed_dps
         turned = speed * self.sign * tick_s
         if self.mode == POSITION:
@@ -224,6 +231,23 @@ class Motor:
         if self.mode == TIMED and tick == self.end_tick:
             self.stop(profile)
         return turned
+
+    def _slow_down(self, tick: int, weight_step: float, tick_s: float) -> None:
+        """Keep the speed so low that the motor can stand at its goal, or at the end of its time."""
+        change = self.ramp_down_step(weight_step, tick_s)
+        if self.mode == TIMED:
+            limit = change * max(0, self.end_tick - tick)
+        else:
+            left = max(0.0, (self.goal_deg - self.position_deg) * self.sign)
+            half = change / 2
+            limit = math.sqrt(half * half + 2 * change * left / tick_s) - half
+        if abs(self.speed_dps) > limit:
+            self.speed_dps = math.copysign(limit, self.speed_dps)
+
+    def ramp_down_step(self, weight_step: float, tick_s: float) -> float:
+        """Return by how much the speed falls in a tick while the motor slows down by itself."""
+        asked = self.approach_dps2 * tick_s
+        return min(weight_step, asked) if weight_step else asked
 
     def _step_to_goal(self, turned: float, profile: ProfileSpec) -> float:
         left = (self.goal_deg - self.position_deg) * self.sign

@@ -35,6 +35,8 @@ class ProfileSpec:
     """Large motor, no load (EV3 motor driver table)."""
     reflected_max: int = 255
     """What `reflected_light_intensity` gives on white."""
+    ambient_percent: int = 10
+    """What `ambient_light_intensity` gives on white: the light that a sensor close to the mat still gets."""
     round_forward_speeds: bool = False
     """Round a wheel speed of 0 or more to whole degrees per second each tick."""
     halve_position_moves: bool = False
@@ -73,6 +75,7 @@ NBEV3DEVSIM = ProfileSpec(
     tick_hz=30,
     attribute_read_ns=0,
     clock_read_ns=0,
+    ambient_percent=0,
     round_forward_speeds=True,
     halve_position_moves=True,
     keep_speed_when_stopped=True,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, float32
+from tuisim.core.motors import Motor
 from tuisim.core.state import TICK_RECORD, Instant
 
 NS_PER_S = 1_000_000_000
@@ -21,6 +22,9 @@ class Simulation(Motion):
     """
 
     __slots__ = ()
+
+    others: tuple[Motor, ...] = ()
+    """Motors that do not drive the robot, in the order of `RobotSpec.extra_motors`."""
 
     # Reading
 

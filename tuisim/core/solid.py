@@ -49,10 +49,10 @@ class Room(NamedTuple):
     pose: PoseTuple
     any_mm: float
     """In any way: how far its fastest point may go."""
-    ahead_mm: float
-    """Straight on."""
-    behind_mm: float
-    """Straight back."""
+    straight: int
+    """1 where the way straight on was looked at, -1 for straight back, 0 for neither."""
+    straight_mm: float
+    """How far that way is free."""
 
 
 def front_mm(robot: RobotSpec) -> float:
@@ -92,7 +92,7 @@ class Solids:
         """How far the body reaches from the middle of the axle."""
         self._near: list[Box] = []
         self._near_at = (math.inf, math.inf)
-        self._room = Room((math.inf, math.inf, 0.0), 0.0, 0.0, 0.0)
+        self._room = Room((math.inf, math.inf, 0.0), 0.0, 0, 0.0)
         self._last_asked: tuple[float, ...] = ()
         self._last_part = 1.0
 
@@ -104,13 +104,14 @@ class Solids:
             wanted_mm: If so much is known to be free, nothing is looked at again.
             straight: 1 or -1 for a robot that only moves forwards or backwards, 0 for any motion.
         """
-        left = self._left_of_room(pose)
+        left = self.left_of_room_mm(pose)
         if left >= wanted_mm:
             return left
-        self._room = room = self._look(pose)
-        return max(room.any_mm, room.ahead_mm if straight > 0 else room.behind_mm if straight < 0 else 0.0)
+        if self._room.pose != pose or self._room.straight != straight:
+            self._room = self._look(pose, straight)
+        return max(self._room.any_mm, self._room.straight_mm)
 
-    def _left_of_room(self, pose: PoseTuple) -> float:
+    def left_of_room_mm(self, pose: PoseTuple) -> float:
         """What is left of the room that was found last, after the way since then."""
         x, y, heading = self._room.pose
         turned = math.radians(abs(pose[2] - heading)) * self.reach_mm
@@ -125,7 +126,7 @@ class Solids:
             turn_deg: Turn, counter-clockwise.
         """
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
-        if self._left_of_room(pose) >= way:
+        if self.left_of_room_mm(pose) >= way:
             return 1.0
         asked = (*pose, forward_mm, turn_deg)
         # A robot that pushes against something asks the same every tick.
@@ -134,7 +135,8 @@ class Solids:
         return self._last_part
 
     def _part(self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float) -> float:
-        self._room = self._look(pose)
+        if self._room.pose != pose:
+            self._room = self._look(pose, 0)
         if self._room.any_mm >= way_mm:
             return 1.0
         solid = self._things_within(pose, way_mm)
@@ -167,24 +169,31 @@ class Solids:
         for box in boxes:
             yield _box_gap(body, box)
 
-    def _look(self, pose: PoseTuple) -> Room:
+    def _look(self, pose: PoseTuple, straight: int) -> Room:
         body = self._body(*pose)
         # Boxes that are not near are at least this far away.
         boxes = self._boxes_near(pose)
-        beyond = NEAR_MM - math.dist(pose[:2], self._near_at) if self._boxes else math.inf
-        any_mm, ahead, behind = beyond, beyond, beyond
+        any_mm = beyond = NEAR_MM - math.dist(pose[:2], self._near_at) if self._boxes else math.inf
+        on_mm = beyond if straight else 0.0
         if self._walls and (gap := _wall_gap(body)) >= -INSIDE_MM:
             any_mm = min(any_mm, gap)
-            ahead, behind = min(ahead, _way_to_wall(body, 1.0)), min(behind, _way_to_wall(body, -1.0))
+            on_mm = min(on_mm, _way_to_wall(body, straight)) if straight else 0.0
+        cx, cy, _, _, _, _, wide, high = body
         for box in boxes:
+            left, lower, right, upper = box
+            # The box's own axes first: they are quickly told, and mostly enough.
+            apart = max(left - cx - wide, cx - right - wide, lower - cy - high, cy - upper - high)
+            if apart >= any_mm and not straight:
+                continue
             gap = _box_gap(body, box)
             if gap < -INSIDE_MM:
                 continue
             any_mm = min(any_mm, gap)
-            along, aside, before = _box_beside(body, box)
-            if aside < 0.0:
-                ahead, behind = (min(ahead, along), behind) if before else (ahead, min(behind, along))
-        return Room(pose, max(0.0, any_mm), max(0.0, ahead), max(0.0, behind))
+            if straight:
+                along, aside, before = _box_beside(body, box)
+                if aside < 0.0 and before == (straight > 0):
+                    on_mm = min(on_mm, along)
+        return Room(pose, max(0.0, any_mm), straight, max(0.0, on_mm))
 
     def _boxes_near(self, pose: PoseTuple) -> list[Box]:
         x_mm, y_mm = pose[:2]
@@ -214,7 +223,7 @@ def _wall_gap(body: Body) -> float:
     return min(cx - wide, FIELD_WIDTH_MM - wide - cx, cy - high, FIELD_HEIGHT_MM - high - cy)
 
 
-def _way_to_wall(body: Body, direction: float) -> float:
+def _way_to_wall(body: Body, direction: int) -> float:
     """How far the body can move along its heading (direction 1) or against it (-1) before it meets a wall."""
     cx, cy, fx, fy, _, _, wide, high = body
     way = math.inf

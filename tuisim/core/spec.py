@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from tuisim.core.geometry import Pose
+from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import ProfileSpec
 from tuisim.errors import ObstacleError, RobotError
 
@@ -114,6 +115,10 @@ class GyroSpec:
         _require_port(self.port, INPUT_PORTS, f"{self.name}.port")
 
 
+SensorSpec = ColorSensorSpec | UltrasonicSpec | GyroSpec | TouchSpec | InfraredSpec
+"""Any sensor: each has a name and a port."""
+
+
 @dataclass(frozen=True, slots=True)
 class PenSpec:
     """The pen that draws the robot's trace."""
@@ -152,6 +157,18 @@ class RobotSpec:
     ultrasonic: UltrasonicSpec | None = field(default_factory=UltrasonicSpec)
     gyro: GyroSpec | None = field(default_factory=GyroSpec)
     pen: PenSpec = field(default_factory=PenSpec)
+    extra_motors: tuple[MotorSpec, ...] = ()
+    """Motors that do not drive the robot."""
+    extra_ultrasonics: tuple[UltrasonicSpec, ...] = ()
+    touch_sensors: tuple[TouchSpec, ...] = ()
+    infrared: InfraredSpec | None = None
+
+    @property
+    def sensors(self) -> tuple[SensorSpec, ...]:
+        """Every sensor that is mounted, in the order of the telemetry columns."""
+        usual = (*self.color_sensors, self.ultrasonic, self.gyro)
+        further = (*self.extra_ultrasonics, *self.touch_sensors, self.infrared)
+        return tuple(sensor for sensor in (*usual, *further) if sensor is not None)
 
     def __post_init__(self) -> None:
         _require(self.wheel_diameter_mm, 1, 500, "wheel_diameter_mm")
@@ -163,17 +180,24 @@ class RobotSpec:
             _require_port(getattr(self, key), OUTPUT_PORTS, key)
         if self.left_port == self.right_port:
             raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
-        used: set[str] = set()
-        for sensor in (*self.color_sensors, self.ultrasonic, self.gyro):
-            if sensor is not None and sensor.port in used:
+        used = {self.left_port, self.right_port}
+        for motor in self.extra_motors:
+            _require_port(motor.port, OUTPUT_PORTS, "extra_motors")
+            if motor.port in used:
+                raise RobotError(f"two motors are on {motor.port}", "give each its own port", key="extra_motors")
+            used.add(motor.port)
+        for sensor in self.sensors:
+            _require_port(sensor.port, INPUT_PORTS, f"{sensor.name}.port")
+            if sensor.port in used:
                 raise RobotError(
                     f"two sensors are on {sensor.port}", "give each its own port", key=f"{sensor.name}.port"
                 )
-            if sensor is not None:
-                used.add(sensor.port)
+            used.add(sensor.port)
         names = [sensor.name for sensor in self.color_sensors]
         if len(set(names)) < len(names):
             raise RobotError("two colour sensors have the same name", "give each its own", key="color_sensors")
+        if len({sensor.name for sensor in self.sensors}) < len(self.sensors):
+            raise RobotError("two sensors have the same name", "give each its own", key="sensors")
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,6 +253,10 @@ class WorldSpec:
     """Whether the pen marks the mat that the sensors see."""
     start: Pose = Pose(100.0, 800.0, 0.0)
     noise: NoiseSpec = field(default_factory=NoiseSpec)
+    beacon: BeaconSpec | None = None
+    """An infrared beacon."""
+    remote: tuple[RemotePress, ...] = ()
+    """What is pressed on the infrared remote control, and when."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,12 +284,25 @@ def from_plain(data: Mapping[str, Any]) -> RunSpec:
     robot, world = dict(data["robot"]), dict(data["world"])
     robot["color_sensors"] = tuple(ColorSensorSpec(**sensor) for sensor in robot["color_sensors"])
     if robot["ultrasonic"] is not None:
-        angles = tuple(robot["ultrasonic"]["ray_angles_deg"])
-        robot["ultrasonic"] = UltrasonicSpec(**{**robot["ultrasonic"], "ray_angles_deg": angles})
+        robot["ultrasonic"] = _plain_ultrasonic(robot["ultrasonic"])
     if robot["gyro"] is not None:
         robot["gyro"] = GyroSpec(**robot["gyro"])
     robot["pen"] = PenSpec(**robot["pen"])
+    robot["extra_motors"] = tuple(MotorSpec(**motor) for motor in robot.get("extra_motors", ()))
+    robot["extra_ultrasonics"] = tuple(map(_plain_ultrasonic, robot.get("extra_ultrasonics", ())))
+    robot["touch_sensors"] = tuple(TouchSpec(**sensor) for sensor in robot.get("touch_sensors", ()))
+    if robot.get("infrared") is not None:
+        robot["infrared"] = InfraredSpec(**robot["infrared"])
     world["obstacles"] = tuple(Obstacle(**obstacle) for obstacle in world["obstacles"])
     world["start"] = Pose(**world["start"])
     world["noise"] = NoiseSpec(**world["noise"])
+    if world.get("beacon") is not None:
+        world["beacon"] = BeaconSpec(**world["beacon"])
+    world["remote"] = tuple(
+        RemotePress(**{**press, "buttons": tuple(press["buttons"])}) for press in world.get("remote", ())
+    )
     return RunSpec(RobotSpec(**robot), WorldSpec(**world), ProfileSpec(**data["profile"]), int(data["seed"]))
+
+
+def _plain_ultrasonic(data: Mapping[str, Any]) -> UltrasonicSpec:
+    return UltrasonicSpec(**{**data, "ray_angles_deg": tuple(data["ray_angles_deg"])})

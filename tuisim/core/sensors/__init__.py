@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from tuisim.core.field import Field
-from tuisim.core.sensors import color, gyro, ultrasonic
+from tuisim.core.parts import InfraredSpec, TouchSpec
+from tuisim.core.sensors import color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, RunSpec, UltrasonicSpec
 from tuisim.core.state import Instant
 
@@ -34,15 +35,13 @@ SENSORS: Mapping[str, SensorKind] = {
     "color": SensorKind("lego-ev3-color", ColorSensorSpec, color.columns, color.measure),
     "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, ultrasonic.columns, ultrasonic.measure),
     "gyro": SensorKind("lego-ev3-gyro", GyroSpec, gyro.columns, gyro.measure),
+    "touch": SensorKind("lego-ev3-touch", TouchSpec, touch.columns, touch.measure),
+    "infrared": SensorKind("lego-ev3-ir", InfraredSpec, infrared.columns, infrared.measure),
 }
 """Every kind of sensor, in the order of the telemetry columns."""
 
 
 def mounted(robot: RobotSpec) -> list[tuple[SensorKind, Any]]:
     """Return the robot's sensors as (kind, spec), in the order of the telemetry columns."""
-    found: list[tuple[SensorKind, Any]] = [(SENSORS["color"], sensor) for sensor in robot.color_sensors]
-    if robot.ultrasonic is not None:
-        found.append((SENSORS["ultrasonic"], robot.ultrasonic))
-    if robot.gyro is not None:
-        found.append((SENSORS["gyro"], robot.gyro))
-    return found
+    kinds = {kind.spec: kind for kind in SENSORS.values()}
+    return [(kinds[type(sensor)], sensor) for sensor in robot.sensors]

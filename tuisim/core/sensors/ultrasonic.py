@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
-from functools import lru_cache
 
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
@@ -32,9 +31,19 @@ class Surfaces:
     level_at: tuple[float, ...]
 
 
-@lru_cache(maxsize=8)
 def surfaces(world: WorldSpec) -> Surfaces:
     """Return every edge that can echo: the four walls and the sides of the obstacles."""
+    # Remembered by identity: hashing a world with many obstacles would cost more than the rays.
+    global _last_asked
+    if _last_asked is None or _last_asked[0] is not world:
+        _last_asked = (world, _sorted_surfaces(world))
+    return _last_asked[1]
+
+
+_last_asked: tuple[WorldSpec, Surfaces] | None = None
+
+
+def _sorted_surfaces(world: WorldSpec) -> Surfaces:
     boxes = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
     if world.walls:
         boxes.append((0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM)))
@@ -48,7 +57,7 @@ def _echoes(edge_deg: float, heading_deg: float) -> bool:
     return MIN_ECHO_DEG < abs(edge_deg - heading_deg) % 180.0 < MAX_ECHO_DEG
 
 
-def _first_hit_mm(
+def first_hit_mm(
     edges: tuple[Edge, ...],
     places: tuple[float, ...],
     start: tuple[float, float],
@@ -84,26 +93,31 @@ def _first_hit_mm(
 
 def rays_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> list[tuple[float, float]]:
     """Return each ray as (world angle in degrees, length in mm); the length is at most the range."""
-    x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
-    facing = pose.heading_deg + spec.angle_deg
-    found = surfaces(world)
-    see_upright, see_level = _echoes(90.0, facing), _echoes(0.0, facing)
-    rays = []
-    for ray_deg in spec.ray_angles_deg:
-        angle = math.radians(facing + ray_deg)
-        cos, sin = math.cos(angle), math.sin(angle)
-        way = spec.max_range_mm
-        if see_upright:
-            way = _first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), way)
-        if see_level:
-            way = _first_hit_mm(found.level, found.level_at, (y_mm, x_mm), (sin, cos), way)
-        rays.append((facing + ray_deg, way))
-    return rays
+    start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
+    angles = [facing + ray_deg for ray_deg in spec.ray_angles_deg]
+    return [(angle, _ray_mm(start, angle, facing, surfaces(world), spec.max_range_mm)) for angle in angles]
+
+
+def _ray_mm(start: tuple[float, float], angle_deg: float, facing_deg: float, found: Surfaces, most: float) -> float:
+    """Return how far one ray goes before it meets a surface that echoes, at most `most`."""
+    x_mm, y_mm = start
+    angle = math.radians(angle_deg)
+    cos, sin = math.cos(angle), math.sin(angle)
+    if _echoes(90.0, facing_deg):
+        most = first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), most)
+    if _echoes(0.0, facing_deg):
+        most = first_hit_mm(found.level, found.level_at, (y_mm, x_mm), (sin, cos), most)
+    return most
 
 
 def distance_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> int:
     """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none, without noise."""
-    return round(min(length for _, length in rays_mm(pose, spec, world)))
+    start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
+    found, nearest = surfaces(world), spec.max_range_mm
+    for ray_deg in spec.ray_angles_deg:
+        # A ray need not be followed further than the nearest echo so far.
+        nearest = _ray_mm(start, facing + ray_deg, facing, found, nearest)
+    return round(nearest)
 
 
 def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:

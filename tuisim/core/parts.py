@@ -1,0 +1,141 @@
+"""Parts that a robot or a world may have besides the usual ones: further motors, touch, infrared, a remote control.
+
+Lengths in mm in the robot's own frame (x right, y forward) unless said otherwise, times in
+simulated seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from tuisim.errors import ConfigError, ObstacleError, RobotError
+
+MOTOR_KINDS = ("large", "medium")
+"""Kinds of motors, for `MotorSpec.kind`."""
+
+REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
+"""Buttons of the remote control, as ev3dev2 names them."""
+
+REMOTE_CHANNELS = (1, 2, 3, 4)
+"""Channels that a remote control or beacon can be set to."""
+
+
+def _check(value: float, low: float, high: float, key: str, error: type[ConfigError] = RobotError) -> None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise error(f"must be a number, got {value!r}", key=key)
+    if not low <= value <= high:
+        raise error(f"must be from {low:g} to {high:g}, got {value!r}", key=key)
+
+
+def _check_channel(channel: int, key: str) -> None:
+    if channel not in REMOTE_CHANNELS or isinstance(channel, bool):
+        raise ObstacleError(f"no such channel {channel!r}", "1, 2, 3 or 4", key=key)
+
+
+@dataclass(frozen=True, slots=True)
+class MotorSpec:
+    """A motor that moves something on the robot, not the robot."""
+
+    port: str
+    kind: str = "medium"
+    """One of `MOTOR_KINDS`."""
+
+    def __post_init__(self) -> None:
+        if self.kind not in MOTOR_KINDS:
+            raise RobotError(
+                f"no such kind of motor {self.kind!r}", f"one of {', '.join(MOTOR_KINDS)}", key="extra_motors"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class TouchSpec:
+    """A touch sensor: pressed while its bumper meets something solid."""
+
+    name: str = "touch"
+    port: str = "in1"
+    x_mm: float = 0.0
+    y_mm: float = 45.0
+    width_mm: float = 20.0
+    """Width of the bumper, across the robot."""
+
+    def __post_init__(self) -> None:
+        _check(self.x_mm, -500, 500, f"{self.name}.x_mm")
+        _check(self.y_mm, -500, 500, f"{self.name}.y_mm")
+        _check(self.width_mm, 1, 500, f"{self.name}.width_mm")
+
+
+@dataclass(frozen=True, slots=True)
+class InfraredSpec:
+    """The infrared sensor: proximity, the way to a beacon, buttons of a remote control."""
+
+    name: str = "infrared"
+    port: str = "in4"
+    x_mm: float = 0.0
+    y_mm: float = 20.0
+    angle_deg: float = 0.0
+    """Where it looks, counter-clockwise from straight ahead."""
+
+    def __post_init__(self) -> None:
+        _check(self.x_mm, -500, 500, f"{self.name}.x_mm")
+        _check(self.y_mm, -500, 500, f"{self.name}.y_mm")
+        _check(self.angle_deg, -360, 360, f"{self.name}.angle_deg")
+
+
+@dataclass(frozen=True, slots=True)
+class BeaconSpec:
+    """An infrared beacon that lies on the field, in world coordinates."""
+
+    x_mm: float
+    y_mm: float
+    channel: int = 1
+
+    def __post_init__(self) -> None:
+        _check(self.x_mm, -10_000, 10_000, "beacon.x_mm", ObstacleError)
+        _check(self.y_mm, -10_000, 10_000, "beacon.y_mm", ObstacleError)
+        _check_channel(self.channel, "beacon.channel")
+
+
+@dataclass(frozen=True, slots=True)
+class RemotePress:
+    """Somebody holds buttons of the remote control for a while."""
+
+    buttons: tuple[str, ...]
+    """One or two of `REMOTE_BUTTONS`; `beacon` only alone, as the sensor can tell no others apart."""
+    from_s: float = 0.0
+    until_s: float = 1e9
+    channel: int = 1
+
+    def __post_init__(self) -> None:
+        if frozenset(self.buttons) not in REMOTE_CODES:
+            raise ObstacleError(
+                f"the sensor cannot tell {', '.join(self.buttons) or 'no button'}",
+                f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
+                key="remote.buttons",
+            )
+        if not self.from_s <= self.until_s:
+            raise ObstacleError("ends before it begins", key="remote.until_s")
+        _check_channel(self.channel, "remote.channel")
+
+
+REMOTE_CODES = {
+    frozenset(buttons): code
+    for code, buttons in enumerate(
+        (
+            (),
+            ("top_left",),
+            ("bottom_left",),
+            ("top_right",),
+            ("bottom_right",),
+            ("top_left", "top_right"),
+            ("top_left", "bottom_right"),
+            ("bottom_left", "top_right"),
+            ("bottom_left", "bottom_right"),
+            ("beacon",),
+            ("top_left", "bottom_left"),
+            ("top_right", "bottom_right"),
+        )
+    )
+    if buttons
+}
+"""What the sensor gives for each set of buttons; 0 is none."""

@@ -1,0 +1,91 @@
+"""Infrared sensor: how near something is, the way to a beacon, buttons of a remote control."""
+
+from __future__ import annotations
+
+import math
+
+from tuisim.core.field import Field
+from tuisim.core.geometry import Pose, world_point
+from tuisim.core.parts import REMOTE_CODES, InfraredSpec
+from tuisim.core.sensors.ultrasonic import first_hit_mm, surfaces
+from tuisim.core.spec import RunSpec, WorldSpec
+from tuisim.core.state import Instant
+
+PROXIMITY_RANGE_MM = 700.0
+"""What 100 % of proximity is."""
+RAY_ANGLES_DEG = (-10.0, -5.0, 0.0, 5.0, 10.0)
+"""Light is thrown and looked for in a narrow cone."""
+SEEK_RANGE_MM = 2000.0
+"""What 100 % of a beacon's distance is; further away it is not found."""
+SEEK_ANGLE_DEG = 100.0
+"""A beacon further aside is not found."""
+SEEK_STEPS = 25
+"""Heading of a beacon at `SEEK_ANGLE_DEG`."""
+NOT_FOUND = (0, -128)
+"""Heading and distance where there is no beacon."""
+
+_REM_A_NONE = 262
+_REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_right": 128}
+
+
+def _way_mm(place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float) -> float:
+    """How far light goes before it meets a surface, at most `most_mm`."""
+    found, angle = surfaces(world), math.radians(angle_deg)
+    (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
+    way = first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), most_mm)
+    return first_hit_mm(found.level, found.level_at, (y_mm, x_mm), (sin, cos), way)
+
+
+def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
+    """Return how far the nearest surface ahead is, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
+    place, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
+    nearest = min(_way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM) for ray_deg in RAY_ANGLES_DEG)
+    return round(100 * nearest / PROXIMITY_RANGE_MM)
+
+
+def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
+    """Return heading (-25 … 25, positive to the right) and distance (0 … 100, or -128) for channels 1 to 4."""
+    beacon = world.beacon
+    if beacon is None:
+        return NOT_FOUND * 4
+    x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
+    way_mm = math.hypot(beacon.x_mm - x_mm, beacon.y_mm - y_mm)
+    bearing_deg = math.degrees(math.atan2(beacon.y_mm - y_mm, beacon.x_mm - x_mm))
+    aside_deg = (pose.heading_deg + spec.angle_deg - bearing_deg + 180.0) % 360.0 - 180.0
+    seen = NOT_FOUND
+    if (
+        way_mm <= SEEK_RANGE_MM
+        and abs(aside_deg) <= SEEK_ANGLE_DEG
+        and _way_mm((x_mm, y_mm), bearing_deg, world, way_mm) >= way_mm - 1e-9
+    ):
+        seen = (round(SEEK_STEPS * aside_deg / SEEK_ANGLE_DEG), round(100 * way_mm / SEEK_RANGE_MM))
+    return NOT_FOUND * (beacon.channel - 1) + seen + NOT_FOUND * (4 - beacon.channel)
+
+
+def _held(channel: int, time_s: float, world: WorldSpec) -> frozenset[str]:
+    """The buttons held on a channel; of two presses at once the later in the list counts."""
+    for press in reversed(world.remote):
+        if press.channel == channel and press.from_s <= time_s < press.until_s:
+            return frozenset(press.buttons)
+    return frozenset()
+
+
+def remote(time_s: float, world: WorldSpec) -> tuple[int, int, int, int]:
+    """Return the code of the buttons that are held, for channels 1 to 4; 0 is none."""
+    one, two, three, four = (REMOTE_CODES.get(_held(channel, time_s, world), 0) for channel in range(1, 5))
+    return one, two, three, four
+
+
+def remote_bits(time_s: float, world: WorldSpec) -> int:
+    """Return the buttons held on channel 1 as bits."""
+    return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in _held(1, time_s, world))
+
+
+def columns(spec: InfraredSpec) -> tuple[str, ...]:
+    """Return the telemetry columns of an infrared sensor."""
+    return (f"{spec.name}_proximity",)
+
+
+def measure(spec: InfraredSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+    """Return the value of `columns`, 0 … 100."""
+    return (float(proximity(instant.pose, spec, run.world)),)

@@ -1,0 +1,39 @@
+"""Touch sensor: pressed while its bumper meets an obstacle or a wall."""
+
+from __future__ import annotations
+
+from tuisim.core.field import Field
+from tuisim.core.geometry import Pose, world_point
+from tuisim.core.parts import TouchSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, WorldSpec
+from tuisim.core.state import Instant
+
+REACH_MM = 2.0
+"""The bumper feels what is so near: it gives way before the robot is stopped."""
+
+
+def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:
+    """Return whether either end or the middle of the bumper meets something."""
+    half = spec.width_mm / 2
+    return any(_meets(*world_point(pose, spec.x_mm + aside, spec.y_mm), world) for aside in (-half, 0.0, half))
+
+
+def _meets(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
+    near = REACH_MM
+    if world.walls and not (near < x_mm < FIELD_WIDTH_MM - near and near < y_mm < FIELD_HEIGHT_MM - near):
+        return True
+    return any(
+        box.x_mm - near <= x_mm <= box.x_mm + box.width_mm + near
+        and box.y_mm - near <= y_mm <= box.y_mm + box.height_mm + near
+        for box in world.obstacles
+    )
+
+
+def columns(spec: TouchSpec) -> tuple[str, ...]:
+    """Return the telemetry columns of a touch sensor."""
+    return (f"{spec.name}_pressed",)
+
+
+def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+    """Return the value of `columns`: 1 pressed, 0 not."""
+    return (float(pressed(instant.pose, spec, run.world)),)
