@@ -135,7 +135,7 @@ class Motion:
         # A motor that just goes on needs only the ramp of the rules of `step`; most ticks are such.
         if left.mode == motors.FOREVER and not noise:
             if left.speed_dps != left.target_dps:
-                step = left.ramp_step(self._ramp_step, tick_s)
+                step = left.ramp_step(self._ramp_step, tick_s) if left.slowest_ramp_dps2 else self._ramp_step
                 left.speed_dps = ramped(left.speed_dps, left.target_dps, step, self._whole)
             left_deg = left.speed_dps * left.sign * tick_s
             left.position_deg += left_deg
@@ -143,7 +143,7 @@ class Motion:
             left_deg = self._step(left, 0)
         if right.mode == motors.FOREVER and not noise:
             if right.speed_dps != right.target_dps:
-                step = right.ramp_step(self._ramp_step, tick_s)
+                step = right.ramp_step(self._ramp_step, tick_s) if right.slowest_ramp_dps2 else self._ramp_step
                 right.speed_dps = ramped(right.speed_dps, right.target_dps, step, self._whole)
             right_deg = right.speed_dps * right.sign * tick_s
             right.position_deg += right_deg

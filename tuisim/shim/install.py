@@ -84,7 +84,7 @@ def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
     """
     brick, colors = build_brick(session)
     finishers: dict[str, Finish] = {
-        "ev3dev2.motor": lambda module: patch_motor_module(session, module),
+        "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
         "ev3dev2.sound": lambda module: patch_sound_module(session, module),

@@ -163,9 +163,31 @@ def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[.
     return wrapper
 
 
-def patch_motor_module(session: Session, module: types.ModuleType) -> None:
+def _set_directly(motor_class: Any, brick: Brick) -> None:
+    """Shorten the way of the two attributes that a control loop sets in every turn."""
+    devices = brick.by_path
+
+    def set_speed(self: Any, value: Any) -> None:
+        number = int(value)
+        try:
+            devices[self._path].number_writers["speed_sp"](number)
+        except OSError as error:
+            self._raise_friendly_access_error(error, "speed_sp", str(number))
+
+    def give_command(self: Any, text: Any) -> None:
+        try:
+            devices[self._path].writers["command"](text if isinstance(text, str) else text.decode("latin-1"))
+        except OSError as error:
+            self._raise_friendly_access_error(error, "command", text)
+
+    motor_class.speed_sp = motor_class.speed_sp.setter(set_speed)
+    motor_class.command = motor_class.command.setter(give_command)
+
+
+def patch_motor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
     """Finish `ev3dev2.motor` after its import."""
     motor: Any = module
+    _set_directly(motor.Motor, brick)
     patience = Patience()
     motor.select = types.SimpleNamespace(poll=lambda: MotorPoll(session, patience), POLLPRI=select.POLLPRI)
     motor.Motor.wait_until_not_moving = patience.patient(motor.Motor.wait_until_not_moving)
