@@ -39,6 +39,7 @@ SOURCES: Mapping[str, str] = {
     "clock_read_ns": f"{_NEW}, so that loops on the clock end; {_OLD}: nothing",
     "max_speed_dps": "EV3 motor driver table: large motor without a load",
     "reflected_max": "ev3dev2 library: 100; the course and the old simulator: 255",
+    "ambient_percent": f"{_NEW}: a sensor close to the mat is in its own shade; {_OLD}: always 0",
     "round_forward_speeds": _OLD,
     "halve_position_moves": f"{_OLD}: its encoder counts such a move twice",
     "keep_speed_when_stopped": _OLD,

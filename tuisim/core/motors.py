@@ -62,8 +62,8 @@ class Motor:
     """One motor with its encoder."""
 
     __slots__ = (
-        "approach_dps2", "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign", "slowest_ramp_dps2",
-        "speed_dps", "target_dps",
+        "approach_dps2", "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign",
+        "slowest_ramp_dps2", "speed_dps", "target_dps",
     )  # fmt: skip
 
     def __init__(self) -> None:

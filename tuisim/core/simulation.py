@@ -28,6 +28,11 @@ class Simulation(Motion):
 
     # Reading
 
+    @property
+    def weight_step(self) -> float:
+        """By how much a motor's speed can change in a tick, in degrees per second; 0 is at once."""
+        return self._ramp_step
+
     def due_ns(self, tick: int) -> int:
         """Return when a tick falls due, in ns from the start: ceil(tick · 10⁹ / f)."""
         return -(-tick * NS_PER_S // self._hz)

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import NoReturn
 
 from tuisim import protocol
-from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.core.extra_motors import simulation_of
+from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.lock import hold
 from tuisim.datalog.records import OutputWriter, TelemetryWriter
 from tuisim.fields import open_field
@@ -50,7 +51,7 @@ class Child:
     def __init__(self, folder: Path, config: RunConfig, channel: Channel) -> None:
         self._folder, self._config, self._channel = folder, config, channel
         self._telemetry = TelemetryWriter(folder)
-        self._sim = Simulation(config.spec, self._telemetry)
+        self._sim = simulation_of(config.spec, self._telemetry)
         self._output = Output(OutputWriter(folder))
         steering = Steering(channel, folder, config.live, config.speed, config.start_paused)
         limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)

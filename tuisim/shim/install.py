@@ -1,4 +1,4 @@
-"""Builds the brick of a robot and hooks the library's modules as the program imports them."""
+"""Hooks the library's modules as the program imports them."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
 
-from tuisim.shim.devices import Brick
-from tuisim.shim.lego_sensors import ColorDevice, gyro_sensor, ultrasonic_sensor
+from tuisim.shim.building import build_brick
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.overlay import glue_module, patch_lego_module
 from tuisim.shim.refused import REFUSED, refuse_classes
 from tuisim.shim.session import Session
 from tuisim.shim.sound import patch_sound_module
-from tuisim.shim.tacho import TachoMotor
 
 Finish = Callable[[types.ModuleType], None]
 
@@ -47,32 +45,6 @@ class FinishingFinder:
 
         spec.loader.exec_module = load_and_finish  # type: ignore[method-assign]
         return spec
-
-
-def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
-    """Plug the robot's motors and sensors in.
-
-    Returns:
-        The brick, and its colour sensors by device path.
-    """
-    brick, robot, sim = Brick(), session.sim.spec.robot, session.sim
-    # Listed by port, so that a class asked for without an address finds the first port.
-    for port, motor in sorted(((robot.left_port, sim.left), (robot.right_port, sim.right)), key=lambda pair: pair[0]):
-        brick.add("tacho-motor", f"motor{len(brick.by_path)}", TachoMotor(session, motor, port).device())
-    colors: dict[str, ColorDevice] = {}
-    count = 0
-    for spec in sorted(robot.color_sensors, key=lambda sensor: sensor.port):
-        sensor = ColorDevice(session, spec)
-        brick.add("lego-sensor", f"sensor{count}", sensor.device())
-        colors[f"/sys/class/lego-sensor/sensor{count}"] = sensor
-        count += 1
-    if robot.ultrasonic is not None:
-        brick.add("lego-sensor", f"sensor{count}", ultrasonic_sensor(session, robot.ultrasonic).device())
-        count += 1
-    if robot.gyro is not None:
-        device, writers = gyro_sensor(session, robot.gyro)
-        brick.add("lego-sensor", f"sensor{count}", device.device(writers))
-    return brick, colors
 
 
 def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import errno
+import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NoReturn
 
-from tuisim.core.sensors import SENSORS, color, gyro, ultrasonic
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
+from tuisim.core.sensors import SENSORS, color
+from tuisim.core.spec import ColorSensorSpec
 from tuisim.shim.devices import SimDevice, Writer, refuse
 from tuisim.shim.session import Session
 
 RAW_WHITE = 300
 """What the raw channels give on white; the library scales by it until it is calibrated."""
+
+
+FORMS = {"s8": "b", "s16": "h"}
+"""Formats of binary values, by the driver's name and by that of `struct`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +29,13 @@ class Mode:
     cost_ns: int
     decimals: int = 0
     units: str = ""
+    form: str = "s8"
+    """Format of a value in `bin_data`, one of `FORMS`."""
+
+
+def _no_commands(_text: str = "") -> NoReturn:
+    """Fail as the driver of a sensor without commands does."""
+    raise OSError(errno.EOPNOTSUPP, "this sensor has no commands")
 
 
 class LegoSensor:
@@ -49,17 +63,20 @@ class LegoSensor:
             "driver_name": lambda: self._driver_name,
             "modes": lambda: " ".join(self.modes),
             "mode": lambda: self.mode,
-            "commands": lambda: "",
+            "commands": _no_commands,
             "decimals": lambda: self.modes[self.mode].decimals,
             "units": lambda: self.modes[self.mode].units,
             "num_values": lambda: len(self.modes[self.mode].measure()),
+            "bin_data_format": lambda: self.modes[self.mode].form,
+            "bin_data": self._binary,
         }
-        costs = {}
+        # Values charge for themselves: only the first of a measurement costs.
+        costs = {"bin_data": 0}
         for n in range(8):
             readers[f"value{n}"] = lambda n=n: self._value(n)  # type: ignore[misc]
-            # A value charges for itself: only the first of a measurement costs.
             costs[f"value{n}"] = 0
-        return SimDevice(session, readers, {"mode": self.set_mode, **(extra_writers or {})}, costs)
+        writers: dict[str, Writer] = {"mode": self.set_mode, "command": _no_commands, **(extra_writers or {})}
+        return SimDevice(session, readers, writers, costs)
 
     def set_mode(self, text: str) -> None:
         """Switch the mode; costs nothing."""
@@ -74,6 +91,10 @@ class LegoSensor:
         if not session.free:
             session.charge(chosen.cost_ns)
         return chosen.measure()
+
+    def _binary(self) -> bytes:
+        values = self.measure(self.mode)
+        return struct.pack(f"<{len(values)}{FORMS[self.modes[self.mode].form]}", *values)
 
     def _value(self, n: int) -> int:
         now = self._session.now
@@ -100,12 +121,16 @@ class ColorDevice(LegoSensor):
             red, green, blue = self.channels()
             return -(-red * RAW_WHITE // 255), -(-green * RAW_WHITE // 255), -(-blue * RAW_WHITE // 255)
 
+        def ambient() -> tuple[int]:
+            return (sum(self.channels()) * profile.ambient_percent // (3 * color.WHITE),)
+
         modes = {
             "COL-REFLECT": Mode(reflected, read, units="pct"),
-            "COL-AMBIENT": Mode(lambda: (0,), read, units="pct"),
+            "COL-AMBIENT": Mode(ambient, read, units="pct"),
             "COL-COLOR": Mode(lambda: (color.color_code(*self.channels()),), profile.color_code_read_ns, units="col"),
-            "REF-RAW": Mode(lambda: (raw()[0], 0), read),
-            "RGB-RAW": Mode(raw, read),
+            "REF-RAW": Mode(lambda: (raw()[0], 0), read, form="s16"),
+            "RGB-RAW": Mode(raw, read, form="s16"),
+            "COL-CAL": Mode(lambda: (*raw(), 0), read, form="s16"),
         }
         super().__init__(session, spec.port, SENSORS["color"].driver_name, modes, "COL-REFLECT")
         self._spec = spec
@@ -131,55 +156,3 @@ class ColorDevice(LegoSensor):
         if not session.free:
             session.spend(self._read_ns)
         return self.channels()
-
-
-def ultrasonic_sensor(session: Session, spec: UltrasonicSpec) -> LegoSensor:
-    """Return an ultrasonic sensor."""
-    sim = session.sim
-    read, period = sim.spec.profile.ultrasonic_read_ns, sim.spec.profile.ultrasonic_period_ticks
-    last = (-1, -1, 0)
-
-    def distance_mm() -> int:
-        nonlocal last
-        ping = sim.tick // period
-        if last[:2] != (ping, sim.actions):
-            last = (ping, sim.actions, ultrasonic.reading_mm(spec, sim.instant(), sim.spec.world))
-        return last[2]
-
-    def inches() -> tuple[int]:
-        return (round(distance_mm() / 2.54),)
-
-    modes = {
-        "US-DIST-CM": Mode(lambda: (distance_mm(),), read, 1, "cm"),
-        "US-DIST-IN": Mode(inches, read, 1, "in"),
-        "US-LISTEN": Mode(lambda: (0,), read),
-        "US-SI-CM": Mode(lambda: (distance_mm(),), read, 1, "cm"),
-        "US-SI-IN": Mode(inches, read, 1, "in"),
-    }
-    return LegoSensor(session, spec.port, SENSORS["ultrasonic"].driver_name, modes, "US-DIST-CM")
-
-
-def gyro_sensor(session: Session, spec: GyroSpec) -> tuple[LegoSensor, dict[str, Writer]]:
-    """Return a gyro and the attribute through which it is reset."""
-    sim = session.sim
-    read = sim.spec.profile.gyro_read_ns
-
-    def angle() -> int:
-        return gyro.angle_deg(sim.instant())
-
-    def rate() -> int:
-        return gyro.rate_dps(sim.instant())
-
-    modes = {
-        "GYRO-ANG": Mode(lambda: (angle(),), read, units="deg"),
-        "GYRO-RATE": Mode(lambda: (rate(),), read, units="d/s"),
-        "GYRO-FAS": Mode(lambda: (rate(),), read),
-        "GYRO-G&A": Mode(lambda: (angle(), rate()), read),
-        "GYRO-CAL": Mode(lambda: (0,), read),
-        "TILT-ANG": Mode(lambda: (0,), read, units="deg"),
-        "TILT-RATE": Mode(lambda: (0,), read, units="d/s"),
-    }
-    return (
-        LegoSensor(session, spec.port, SENSORS["gyro"].driver_name, modes, "GYRO-ANG"),
-        {"direct": lambda _text: sim.reset_gyro()},
-    )

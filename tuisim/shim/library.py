@@ -10,6 +10,7 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS
+from tuisim.shim.building import ports_hint
 from tuisim.shim.devices import Brick
 from tuisim.shim.session import Session
 
@@ -28,7 +29,8 @@ class OpenAttribute:
 
     def read(self, _size: int = -1) -> bytes:
         """Return the attribute's value."""
-        return str(self._device.read(self._name)).encode()
+        value = self._device.read(self._name)
+        return value if isinstance(value, bytes) else str(value).encode()
 
     def write(self, text: bytes | str) -> None:
         """Set the attribute."""
@@ -71,7 +73,10 @@ class MotorPoll:
     def poll(self, timeout_ms: float | None = None) -> list[Any]:
         """Wait until a motor ends a move, at most so long."""
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
-        self._session.wait_for_motor(timeout_ns, again=self._patience.until_motors_stop > 0)
+        sim = self._session.sim
+        # One that is told to stand never ends its move: it is noticed as stalled by looking again.
+        told_to_stand = any(motor.mode and not motor.target_dps for motor in (sim.left, sim.right, *sim.others))
+        self._session.wait_for_motor(timeout_ns, again=self._patience.until_motors_stop > 0 and not told_to_stand)
         return []
 
 
@@ -87,6 +92,24 @@ def connect(session: Session, brick: Brick) -> None:
     ev3dev2.get_current_platform = lambda: "ev3"
     ev3dev2.list_device_names = _device_lister(brick)
     _patch_device(ev3dev2.Device, brick)
+    _patch_look_up(session, ev3dev2)
+
+
+def _patch_look_up(session: Session, library: Any) -> None:
+    """Let the error about a device that is not there also say what is."""
+    look_up = library.Device.__init__
+
+    @wraps(look_up)
+    def __init__(self: Any, class_name: str, *args: Any, **kwargs: Any) -> None:  # noqa: N807
+        try:
+            look_up(self, class_name, *args, **kwargs)
+        except library.DeviceNotFound as error:
+            hint = ports_hint(session, class_name)
+            if hint:
+                error.args = (f"{error} {hint}",)
+            raise
+
+    library.Device.__init__ = __init__
 
 
 def _device_lister(brick: Brick) -> Callable[..., Iterator[str]]:

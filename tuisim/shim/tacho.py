@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from functools import partial
 
-from tuisim.core.motors import STOPPED, Motor
+from tuisim.core.motors import POSITION, STOPPED, TIMED, Motor
 from tuisim.core.profile import MS, ProfileSpec
 from tuisim.shim.devices import NumberWriter, Reader, SimDevice, refuse
 from tuisim.shim.session import Session
@@ -14,9 +16,24 @@ STOP_ACTIONS = ("coast", "brake", "hold")
 POLARITIES = ("normal", "inversed")
 RAMPS = ("ramp_up_sp", "ramp_down_sp")
 COUNT_PER_ROT = 360
-LARGE_MOTOR_DRIVER = "lego-ev3-l-motor"
 MAX_RAMP_MS = 60_000
 MAX_SET_POINT = 2**31 - 1
+
+
+@dataclass(frozen=True, slots=True)
+class MotorKind:
+    """What the driver knows of one kind of motor."""
+
+    driver_name: str
+    max_speed_dps: int
+    hold_kp: int
+
+
+KINDS = {
+    "large": MotorKind("lego-ev3-l-motor", 1050, 80_000),
+    "medium": MotorKind("lego-ev3-m-motor", 1560, 160_000),
+}
+"""By `MotorSpec.kind`."""
 
 
 def _same(value: object) -> object:
@@ -24,28 +41,32 @@ def _same(value: object) -> object:
 
 
 class TachoMotor:
-    """One large motor on an output port.
+    """One motor on an output port.
 
     Args:
         session: Clock and simulation.
         motor: The simulated motor.
         port: Such as `outB`.
+        kind: One of `KINDS`.
     """
 
-    def __init__(self, session: Session, motor: Motor, port: str) -> None:
+    def __init__(self, session: Session, motor: Motor, port: str, kind: str = "large") -> None:
+        self._kind = KINDS[kind]
         self._session = session
         self._motor = motor
         self._profile: ProfileSpec = session.sim.spec.profile
         self._port = port
         self._numbers: dict[str, int] = {}
         self._direct = False
+        self._stands_tick = 0
+        """With speed 0 asked for, the tick at which the motor comes to stand."""
         self._set_defaults()
 
     def _set_defaults(self) -> None:
         self._numbers |= {
             "speed_sp": 0, "position_sp": 0, "time_sp": 0, "duty_cycle_sp": 0, "ramp_up_sp": 0, "ramp_down_sp": 0,
             "speed_pid/Kp": 1000, "speed_pid/Ki": 60, "speed_pid/Kd": 0,
-            "hold_pid/Kp": 80000, "hold_pid/Ki": 0, "hold_pid/Kd": 0,
+            "hold_pid/Kp": self._kind.hold_kp, "hold_pid/Ki": 0, "hold_pid/Kd": 0,
         }  # fmt: skip
         self._stop_action = "coast"
         self._polarity, self._sign = "normal", 1
@@ -58,24 +79,24 @@ class TachoMotor:
         """Return the device that the library reads and writes."""
         fixed = {
             "address": f"ev3-ports:{self._port}",
-            "driver_name": LARGE_MOTOR_DRIVER,
+            "driver_name": self._kind.driver_name,
             "commands": " ".join(COMMANDS),
             "stop_actions": " ".join(STOP_ACTIONS),
             "count_per_rot": COUNT_PER_ROT,
-            "max_speed": int(self._profile.max_speed_dps),
+            "max_speed": self._kind.max_speed_dps,
         }
         readers: dict[str, Reader] = {name: partial(_same, value) for name, value in fixed.items()}
         readers |= {name: partial(self._numbers.__getitem__, name) for name in self._numbers}
         readers |= {
             "position": lambda: round(self._motor.position_deg) * self._sign,
             "speed": self._speed,
-            "duty_cycle": lambda: round(100 * self._speed() / self._profile.max_speed_dps),
+            "duty_cycle": lambda: round(100 * self._speed() / self._kind.max_speed_dps),
             "state": self.state,
             "stop_action": lambda: self._stop_action,
             "polarity": lambda: self._polarity,
         }
         limits = dict.fromkeys(self._numbers, (0, MAX_SET_POINT))
-        max_speed = int(self._profile.max_speed_dps)
+        max_speed = self._kind.max_speed_dps
         limits |= {
             "speed_sp": (-max_speed, max_speed),
             "duty_cycle_sp": (-100, 100),
@@ -117,8 +138,11 @@ class TachoMotor:
             return "holding" if self._holding and not self._profile.plain_state else ""
         if self._profile.plain_state:
             return "running"
-        if motor.blocked_ticks >= self._session.sim.stall_ticks:
+        sim = self._session.sim
+        if motor.blocked_ticks >= sim.stall_ticks:
             return "running overloaded stalled"
+        if motor.target_dps == 0.0 and sim.tick >= self._stands_tick + sim.stall_ticks:
+            return "running stalled"
         return "running ramping" if motor.speed_dps != motor.target_dps else "running"
 
     def _set_position(self, value: int) -> None:
@@ -157,37 +181,66 @@ class TachoMotor:
         elif text == "run-direct":
             self._run_direct()
         elif text == "stop":
-            motor.stop(self._profile)
+            self._stop()
+            return
         else:
             self._reset()
         self._last_goal = None
-        if self._ramps:
+        self._begun()
+
+    def _begun(self) -> None:
+        """See to what hardly any move needs: ramps, and a motor that is told to stand."""
+        if self._ramps or self._motor.target_dps == 0.0:
             self._ramp()
 
+    def _stop(self) -> None:
+        """Stop, slowing down first where a ramp is asked for."""
+        self._last_goal = None
+        motor, sim, down = self._motor, self._session.sim, self._ramp_dps2("ramp_down_sp")
+        if not down or not motor.moving_dps:
+            motor.stop(self._profile)
+            return
+        if motor.mode == TIMED and motor.target_dps == 0.0:
+            # It is slowing down already.
+            return
+        motor.slowest_ramp_dps2 = down
+        change = motor.ramp_step(sim.weight_step, 1 / self._profile.tick_hz)
+        self._stands_tick = sim.tick + math.ceil(abs(motor.speed_dps) / change)
+        motor.run_until(0.0, self._stands_tick)
+        motor.slowest_ramp_dps2 = down
+
     def _run_direct(self) -> None:
-        self._motor.run(self._profile.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign)
+        self._motor.run(self._kind.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign)
+        self._begun()
 
     def _run_relative(self, speed: float) -> None:
         delta = self._numbers["position_sp"] * self._sign
         if delta == 0:
-            self._motor.stop(self._profile)
-            self._last_goal = None
+            self._stop()
             return
         base = self._motor.position_deg
         if self._last_goal is not None and self._profile.chain_relative_moves:
             base = self._last_goal
         self._last_goal = base + delta
         self._motor.run_to(self._last_goal, speed, self._last_goal < self._motor.position_deg)
-        if self._ramps:
-            self._ramp()
+        self._begun()
+
+    def _ramp_dps2(self, name: str) -> float:
+        """The change of speed that a ramp set point allows, 0 for none."""
+        ramp_ms = self._numbers[name]
+        return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms and self._profile.motor_ramps else 0.0
 
     def _ramp(self) -> None:
-        """Hand the ramp set point of the change that was asked for to the motor."""
-        motor = self._motor
-        faster = abs(motor.target_dps) > abs(motor.speed_dps)
-        ramp_ms = self._numbers["ramp_up_sp" if faster else "ramp_down_sp"]
-        if ramp_ms:
-            motor.slowest_ramp_dps2 = self._profile.max_speed_dps / ramp_ms * 1000
+        """Hand the ramp set points to the motor, and note when one that is told to stand stands."""
+        motor, sim = self._motor, self._session.sim
+        if self._numbers["ramp_up_sp"] or self._numbers["ramp_down_sp"]:
+            faster = abs(motor.target_dps) > abs(motor.speed_dps)
+            motor.slowest_ramp_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
+            if motor.mode in (TIMED, POSITION):
+                motor.approach_dps2 = self._ramp_dps2("ramp_down_sp")
+        if motor.target_dps == 0.0:
+            step = motor.ramp_step(sim.weight_step, 1 / self._profile.tick_hz)
+            self._stands_tick = sim.tick + (math.ceil(abs(motor.speed_dps) / step) if step else 0)
 
     def _run_absolute(self, speed: float) -> None:
         goal = float(self._numbers["position_sp"] * self._sign)

@@ -1,0 +1,72 @@
+"""Builds the brick of a robot: which simulated device is on which port."""
+
+from __future__ import annotations
+
+from tuisim.core.motors import Motor
+from tuisim.core.parts import InfraredSpec, TouchSpec
+from tuisim.core.sensors import mounted
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, SensorSpec, UltrasonicSpec
+from tuisim.shim.devices import Brick, SimDevice
+from tuisim.shim.lego_sensors import ColorDevice, LegoSensor
+from tuisim.shim.range_sensors import GyroDevice, infrared_sensor, touch_sensor, ultrasonic_sensor
+from tuisim.shim.session import Session
+from tuisim.shim.tacho import KINDS, TachoMotor
+
+MOTOR_CLASS, SENSOR_CLASS = "tacho-motor", "lego-sensor"
+"""Classes of devices, as the kernel names them."""
+
+
+def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
+    """Plug the robot's motors and sensors in.
+
+    Returns:
+        The brick, and its colour sensors by device path.
+    """
+    brick, robot, sim = Brick(), session.sim.spec.robot, session.sim
+    motors: list[tuple[str, Motor, str]] = [
+        (robot.left_port, sim.left, "large"),
+        (robot.right_port, sim.right, "large"),
+        *((spec.port, motor, spec.kind) for spec, motor in zip(robot.extra_motors, sim.others, strict=True)),
+    ]
+    # Listed by port, so that a class asked for without an address finds the first port.
+    for at, (port, motor, kind) in enumerate(sorted(motors, key=lambda found: found[0])):
+        brick.add(MOTOR_CLASS, f"motor{at}", TachoMotor(session, motor, port, kind).device())
+    colors: dict[str, ColorDevice] = {}
+    sonars: list[LegoSensor] = []
+    for at, sensor in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
+        brick.add(SENSOR_CLASS, f"sensor{at}", _sensor_device(session, sensor, at, colors, sonars))
+    return brick, colors
+
+
+def _sensor_device(
+    session: Session, spec: SensorSpec, at: int, colors: dict[str, ColorDevice], sonars: list[LegoSensor]
+) -> SimDevice:
+    match spec:
+        case ColorSensorSpec():
+            color = colors[f"/sys/class/{SENSOR_CLASS}/sensor{at}"] = ColorDevice(session, spec)
+            return color.device()
+        case UltrasonicSpec():
+            sonars.append(ultrasonic_sensor(session, spec, sonars))
+            return sonars[-1].device()
+        case GyroSpec():
+            gyro = GyroDevice(session, spec)
+            return gyro.device(gyro.resets)
+        case TouchSpec():
+            return touch_sensor(session, spec).device()
+        case InfraredSpec():
+            return infrared_sensor(session, spec).device()
+
+
+def ports_hint(session: Session, class_name: str) -> str:
+    """Return what is on which port, for a program that looked for something else; empty for other classes."""
+    robot = session.sim.spec.robot
+    if class_name == MOTOR_CLASS:
+        drivers = [(robot.left_port, "large"), (robot.right_port, "large")]
+        drivers += [(motor.port, motor.kind) for motor in robot.extra_motors]
+        found = [(port, KINDS[kind].driver_name) for port, kind in drivers]
+    elif class_name == SENSOR_CLASS:
+        found = [(sensor.port, kind.driver_name) for kind, sensor in mounted(robot)]
+    else:
+        return ""
+    parts = [f"{port} {name}" for port, name in sorted(found)]
+    return f"This robot has: {', '.join(parts) or 'nothing of the kind'}."
