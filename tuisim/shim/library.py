@@ -90,9 +90,16 @@ def connect(session: Session, brick: Brick) -> None:
     import ev3dev2
 
     ev3dev2.get_current_platform = lambda: "ev3"
-    ev3dev2.list_device_names = _device_lister(brick)
+    ev3dev2.list_device_names = _in_place_of(ev3dev2.list_device_names, _device_lister(brick))
     _patch_device(ev3dev2.Device, brick)
     _patch_look_up(session, ev3dev2)
+
+
+def _in_place_of(original: Callable[..., Any], replacement: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a copy of `replacement` with the name and signature of what it replaces."""
+    code: Any = replacement
+    copy = types.FunctionType(code.__code__, code.__globals__, original.__name__, None, code.__closure__)
+    return wraps(original)(copy)
 
 
 def _patch_look_up(session: Session, library: Any) -> None:
@@ -161,14 +168,14 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
             self._raise_friendly_access_error(error, name, str(number))
         return attribute
 
-    device_class.get_attr_int = get_attr_int
-    device_class.set_attr_int = set_attr_int
-    device_class.get_attr_string = get_attribute
-    device_class.get_attr_line = get_attribute
-    device_class._get_attribute = get_attribute
-    device_class._set_attribute = set_attribute
-    device_class.set_attr_string = set_attribute
-    device_class.set_attr_raw = set_attribute
+    for replacement, names in (
+        (get_attr_int, ("get_attr_int",)),
+        (set_attr_int, ("set_attr_int",)),
+        (get_attribute, ("get_attr_string", "get_attr_line", "_get_attribute")),
+        (set_attribute, ("_set_attribute", "set_attr_string", "set_attr_raw")),
+    ):
+        for name in names:
+            setattr(device_class, name, _in_place_of(getattr(device_class, name), replacement))
     device_class._attribute_file_open = lambda self, name: OpenAttribute(brick, self._path, name)
 
 

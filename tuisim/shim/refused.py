@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Mapping
+from functools import wraps
 from typing import Any, NoReturn
 
 from tuisim.errors import NotSimulated
@@ -12,7 +13,6 @@ REFUSED: Mapping[str, tuple[str, ...]] = {
     "ev3dev2.button": ("Button",),
     "ev3dev2.console": ("Console",),
     "ev3dev2.control.GyroBalancer": ("GyroBalancer",),
-    "ev3dev2.control.rc_tank": ("RemoteControlledTank",),
     "ev3dev2.control.webserver": ("WebControlledTank",),
     "ev3dev2.display": ("Display",),
     "ev3dev2.led": ("Led", "Leds"),
@@ -27,7 +27,7 @@ def refuse_classes(module: types.ModuleType) -> None:
     for name in REFUSED[module.__name__]:
         found: Any = getattr(module, name, None)
         if found is not None:
-            found.__init__ = _refusal(f"{module.__name__}.{name}")
+            found.__init__ = wraps(found.__init__)(_refusal(f"{module.__name__}.{name}"))
 
 
 def _refusal(name: str) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import types
+from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS
@@ -75,9 +76,11 @@ def patch_sound_module(session: Session, module: types.ModuleType) -> None:
             session.spend(max(duration_ns, MS))
         return None if waits else PlayedSound()
 
+    @wraps(sound.Sound.set_volume)
     def set_volume(self: Any, pct: int, channel: str | None = None) -> None:
         self._simulated_volume = int(pct)
 
+    @wraps(sound.Sound.get_volume)
     def get_volume(self: Any, channel: str | None = None) -> int:
         return int(getattr(self, "_simulated_volume", 100))
 
