@@ -140,6 +140,8 @@ class RunHandle:
         """
         if self.ended is not None:
             return []
+        # Asked before reading: whatever a child that is gone had to say is in the pipe then.
+        gone = self._process.poll() is not None
         events = self._read_events()
         for event in events:
             match event:
@@ -160,7 +162,7 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         self._press_on()
-        final = self._final_event()
+        final = self._final_event(gone)
         kept = [event for event in events if not isinstance(event, Ended)]
         if final is None:
             return kept
@@ -183,8 +185,7 @@ class RunHandle:
             self.kill()
             raise
 
-    def _final_event(self) -> Ended | None:
-        gone = self._process.poll() is not None
+    def _final_event(self, gone: bool) -> Ended | None:
         if self._announced is not None:
             if not gone and time.monotonic() - self._announced_at > ENDED_CHILD_S:
                 self._kill_group()
@@ -232,9 +233,13 @@ class RunHandle:
         """
         until = None if timeout_s is None else time.monotonic() + timeout_s
         while self.ended is None:
-            rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - time.monotonic())
+            now = time.monotonic()
+            rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - now)
             if rest <= 0:
                 break
+            if self._stop_at is not None and now < self._stop_at + STUCK_AFTER_S:
+                # A child that is stuck is killed on the dot.
+                rest = min(rest, self._stop_at + STUCK_AFTER_S - now)
             self.wait_for_event(rest)
             self.pump()
         return self.ended

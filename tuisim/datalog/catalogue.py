@@ -198,6 +198,8 @@ def _open(path: Path) -> sqlite3.Connection:
     # Read-write without create: a missing file is made under the lock, filled from the folders.
     connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, timeout=_BUSY_S, isolation_level=None)
     try:
+        # Waiting for the disk would delay the end of every run; what a power cut could damage is made again.
+        connection.execute("PRAGMA synchronous = OFF")
         version = connection.execute("PRAGMA user_version").fetchone()[0]
         if version != _SCHEMA_VERSION:
             raise _ForeignFile(f"version {version}")

@@ -1,0 +1,25 @@
+"""What a child says right before it goes is heard."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.runtime.conftest import Start
+from tuisim.host import RunHandle
+from tuisim.protocol import Message
+
+
+def test_a_child_that_goes_while_its_events_are_read_has_not_crashed(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read = RunHandle._read_events
+
+    def read_then_let_it_end(run: RunHandle) -> list[Message]:
+        events = read(run)
+        run._process.wait()
+        return events
+
+    monkeypatch.setattr(RunHandle, "_read_events", read_then_let_it_end)
+    ended = start("print('bye')").wait(20.0)
+    assert ended is not None
+    assert ended.end == "finished"
