@@ -5,12 +5,14 @@ To add a command: write its file in `commands/`, and add a line to `COMMANDS`.
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from argparse import Namespace, RawDescriptionHelpFormatter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
+from pathlib import Path
 
 from tuisim import __version__
 from tuisim.errors import ConfigError, TuisimError
@@ -122,20 +124,35 @@ def _silence_stdout() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _flushed() -> bool:
+    """Write what is still to be written; say so if that is not possible."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        _silence_stdout()
+        print(f"tuisim: cannot write to stdout: {error.strerror or error}", file=sys.stderr)
+        return False
+    return True
+
+
 def run_command(words: Sequence[str]) -> int:
     """Run one command and return its exit code; expected errors become one line on stderr.
 
     Args:
         words: The command line without the program's own name.
     """
+    # A shell may close them: then nobody reads what is written.
+    sys.stdout = sys.stdout or Path(os.devnull).open("w")  # noqa: SIM115 - lasts as long as the process
+    sys.stderr = sys.stderr or Path(os.devnull).open("w")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         # A terminal without UTF-8 must not turn a program's output into an error of ours.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     try:
         code = _dispatch(words)
-        sys.stdout.flush()
-        return code
+        return code if _flushed() else max(code, TuisimError.exit_code)
     except TuisimError as error:
         print("tuisim:", " ".join(str(error).split("\n")), file=sys.stderr)
         return error.exit_code
@@ -146,6 +163,10 @@ def run_command(words: Sequence[str]) -> int:
         return EXIT_INTERRUPTED
     # A mistake of ours is no news to the user beyond one line; whoever mends it asks for more.
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EIO):
+            _silence_stdout()
+            print(f"tuisim: cannot write: {error.strerror}", file=sys.stderr)
+            return TuisimError.exit_code
         if os.environ.get("TUISIM_DEBUG"):
             raise
         text = " ".join(f"{type(error).__name__}: {error}".split("\n"))

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from tests.runtime.conftest import Done
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.host import Program, RunOptions, start_run
 
 Run = Callable[..., Done]
 
@@ -119,3 +123,66 @@ def test_speech_is_shown(run: Run) -> None:
     done = run('say("it\'s black", wait=True)\nprint(get_clock() > 0.5)')
     assert done.lines == ["it's black", "True"]
     assert [row.text for row in done.run.output.all_rows() if row.stream == 3] == ["it\u2019s black"]
+
+
+def test_an_error_in_a_module_beside_the_program_shows_its_place(tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("def bad():\n    return {}['k']\n")
+    program = tmp_path / "main.py"
+    program.write_text("import helper\nprint('A: 1', end='')\nhelper.bad()\n")
+    spec = RunSpec(RobotSpec(), WorldSpec(background="Grey_bands"), ROBOLAB)
+    run = start_run(Program("main.py", program.read_text(), path=str(program)), spec, RunOptions())
+    ended = run.wait(20.0)
+    assert ended is not None
+    texts = [row.text for row in run.output.all_rows()]
+    assert texts[0] == "A: 1"
+    assert any("helper.py" in text for text in texts)
+    assert (ended.error_line, ended.summary) == (3, "KeyError: 'k' (line 3)")
+
+
+def test_the_end_of_a_program_closes_what_it_left_open(run: Run, tmp_path: Path) -> None:
+    target = tmp_path / "log.csv"
+    done = run(
+        f"import atexit\nf = open({str(target)!r}, 'w')\nf.write('hello')\natexit.register(lambda: print('at exit'))\n"
+        "class Thing:\n    def __del__(self): print('gone')\nthing = Thing()\n1 / 0"
+    )
+    assert target.read_text() == "hello"
+    assert done.lines == ["at exit", "gone"]
+
+
+SUMMARIES = {
+    "several lines": ("raise RuntimeError('one\\ntwo')", "RuntimeError: one (line 1)"),
+    "group": (
+        "raise ExceptionGroup('both', [ValueError(1), KeyError(2)])",
+        "ExceptionGroup: both (2 sub-exceptions) (line 1)",
+    ),
+    "syntax": ("x = = 3", "SyntaxError: invalid syntax (line 1)"),
+    "no message": ("raise ValueError", "ValueError (line 1)"),
+}
+
+
+@pytest.mark.parametrize(("text", "summary"), SUMMARIES.values(), ids=SUMMARIES)
+def test_summary_of_an_error_is_one_line(run: Run, text: str, summary: str) -> None:
+    assert run(text).ended.summary == summary
+
+
+CHANCE = (
+    "import random, uuid, secrets, os\nrandom.seed()\n"
+    "print(random.random(), random.Random().random(), random.SystemRandom().random(), uuid.uuid4(),"
+    " secrets.token_hex(4), os.urandom(3))"
+)
+
+
+def test_every_kind_of_chance_comes_from_the_seed(run: Run) -> None:
+    assert run(CHANCE).lines == run(CHANCE).lines
+    assert run(CHANCE, seed=1).lines != run(CHANCE, seed=2).lines
+
+
+def test_pandas_and_a_thread_pool_work_in_programs(run: Run) -> None:
+    done = run(
+        "import datetime, time\nimport pandas as pd\nfrom multiprocessing.pool import ThreadPool\n"
+        "print(pd.DataFrame({'a': [1, 2]}).a.sum(), datetime.datetime.now().year)\n"
+        "print(isinstance(datetime.datetime.now() + datetime.timedelta(1), datetime.date))\n"
+        "def f(x):\n    time.sleep(0.1)\n    return x * x\n"
+        "with ThreadPool(3) as pool: print(pool.map(f, range(5)))"
+    )
+    assert done.lines == ["3 2020", "True", "[0, 1, 4, 9, 16]"]

@@ -6,6 +6,7 @@ import signal
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from itertools import groupby
 from types import FrameType
 from typing import TextIO
 
@@ -13,6 +14,9 @@ from tuisim.commands.outcome import EXIT_BROKEN_PIPE
 from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow
 from tuisim.host import RunHandle
 from tuisim.protocol import Ended
+
+_ERROR_FORMS = {STDERR: "{}\n", SPEECH: "says: {}\n"}
+"""By stream, how a row is shown on stderr; the others are not."""
 
 POLL_S = 0.05
 """How long a printed line may wait before it is passed on."""
@@ -30,6 +34,8 @@ class Follower:
         self._handle = handle
         self._out = out
         self._cut = 0
+        self.lost = ""
+        """Why printed lines could not be passed on, empty if they were."""
 
     def to_the_end(self) -> tuple[Ended, int]:
         """Wait until the run has ended.
@@ -69,18 +75,23 @@ class Follower:
         self._handle.stop()
 
     def _pass_on(self, rows: Iterable[OutputRow]) -> None:
-        if self._cut == EXIT_BROKEN_PIPE:
+        """Write rows in the order in which they came, also where some go to stdout and some to stderr."""
+        for to_stdout, group in groupby(rows, key=lambda row: row.stream == STDOUT):
+            if to_stdout:
+                self._write("".join(row.text + "\n" for row in group))
+            else:
+                sys.stderr.write(
+                    "".join(_ERROR_FORMS[row.stream].format(row.text) for row in group if row.stream in _ERROR_FORMS)
+                )
+
+    def _write(self, text: str) -> None:
+        if self._cut == EXIT_BROKEN_PIPE or self.lost:
             return
-        out: list[str] = []
-        for row in rows:
-            if row.stream == STDOUT:
-                out.append(row.text + "\n")
-            elif row.stream == STDERR:
-                sys.stderr.write(row.text + "\n")
-            elif row.stream == SPEECH:
-                sys.stderr.write(f"says: {row.text}\n")
         try:
-            self._out.write("".join(out))
+            self._out.write(text)
             self._out.flush()
         except BrokenPipeError:
             self._stop(EXIT_BROKEN_PIPE)
+        except OSError as error:
+            # The run and its recording are worth more than its echo here.
+            self.lost = f"cannot write to stdout: {error.strerror or error}"

@@ -11,7 +11,7 @@ from tuisim.datalog.runfile import RunEnd, StoredRun
 from tuisim.datalog.samples import parse_sample
 from tuisim.protocol import Ended
 
-EXIT_RAISED, EXIT_LIMIT = 1, 3
+EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
 EXIT_BROKEN_PIPE = 141
 """What a shell shows for a program that SIGPIPE has ended."""
 SIGNALLED = 128
@@ -65,7 +65,7 @@ def describe(run: StoredRun) -> dict[str, Any]:
 def last_state(facts: dict[str, Any]) -> str:
     """Return the line that a run ends with, from what `describe` returned."""
     state = facts["state"].replace("_", " ")
-    what = f"{state}: {facts['summary']}" if facts["summary"] and facts["state"] != "finished" else state
+    what = f"{state}: {facts['summary']}" if facts["summary"] else state
     samples = f"{facts['samples']} sample{'s' * (facts['samples'] != 1)}"
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "

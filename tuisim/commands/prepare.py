@@ -32,6 +32,10 @@ class Prepared:
 def _find(word: str) -> Path:
     """The file that a word means: a path, else the name of an example program."""
     path = Path(word)
+    try:
+        path.exists()
+    except OSError as error:
+        raise ConfigError(f"cannot read {word}: {error.strerror or error}") from error
     if not path.name or path.parent != Path() or path.exists():
         return path
     from tuisim.assets import programs_folder

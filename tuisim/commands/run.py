@@ -60,6 +60,10 @@ def execute(arguments: Namespace) -> int:
     for target in (*arguments.export, telemetry):
         if target is not None:
             check_target(target)
+    targets = [os.path.realpath(target) for target in (*arguments.export, telemetry) if target is not None]
+    for target in targets:
+        if targets.count(target) > 1:
+            raise ConfigError(f"{target} is named twice", "give each export its own file", key="--export")
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
     store = RunStore()
@@ -101,4 +105,7 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int,
         ended, cut = follower.to_the_end()
     finally:
         handle.close()
-    return cut or outcome.exit_code_of(ended), handle.run_id
+    if follower.lost:
+        print(f"tuisim: {follower.lost} (run {handle.number} has every line)", file=sys.stderr)
+    code = cut or outcome.exit_code_of(ended)
+    return max(code, outcome.EXIT_BAD_OUTPUT) if follower.lost else code, handle.run_id

@@ -16,8 +16,9 @@ from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.lock import hold
 from tuisim.datalog.records import OutputWriter, TelemetryWriter
 from tuisim.fields import open_field
+from tuisim.runtime.chance import finish_random, patch_urandom
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.clock import finish_datetime, finish_random, finish_selectors, loop_hook, patch_time
+from tuisim.runtime.clock import finish_selectors, loop_hook, patch_datetime, patch_time
 from tuisim.runtime.config import RunConfig, read_config
 from tuisim.runtime.guard import limit_memory, refuse_processes, refuse_subprocess
 from tuisim.runtime.interrupts import Interrupts, die_with_host
@@ -78,14 +79,15 @@ class Child:
         interrupts = Interrupts(session, frozenset({turn.__code__}))
         baton = Baton(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
         patch_time(session)
+        patch_datetime(session, session.program_file)
+        patch_urandom(self._config.spec.seed)
         patch_threads(baton)
         refuse_processes()
         limit_memory()
         install(
             session,
             {
-                "datetime": lambda module: finish_datetime(session, module),
-                "random": lambda module: finish_random(session, module),
+                "random": lambda module: finish_random(self._config.spec.seed, module),
                 "selectors": lambda module: finish_selectors(session, module),
                 "subprocess": refuse_subprocess,
             },

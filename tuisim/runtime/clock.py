@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import builtins
+import os
 import time
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from tuisim.core.simulation import NS_PER_S
@@ -55,8 +57,41 @@ def patch_time(session: Session) -> None:
     module.strftime = lambda form, when=None: real_strftime(form, module.localtime() if when is None else when)
 
 
-def finish_datetime(session: Session, module: types.ModuleType) -> None:
-    """Let `datetime.now`, `utcnow` and `today` tell simulated time."""
+def patch_datetime(session: Session, program_file: str) -> None:
+    """Give the program, the modules beside it and the library a `datetime` that tells simulated time.
+
+    Everybody else keeps the real module: compiled ones, such as those of pandas, build on
+    the real classes and crash on others.
+    """
+    real_import = builtins.__import__
+    folder = os.path.dirname(os.path.abspath(program_file))
+    shadow: list[types.ModuleType] = []
+
+    def wants_simulated(importer: Mapping[str, Any]) -> bool:
+        name = str(importer.get("__name__", ""))
+        if name == "__main__" or name.partition(".")[0] == "ev3dev2":
+            return True
+        return os.path.dirname(os.path.abspath(str(importer.get("__file__") or "/"))) == folder
+
+    def import_module(
+        name: str,
+        globals: Any = None,  # noqa: A002 - the names of the real function
+        locals: Any = None,  # noqa: A002
+        fromlist: Any = (),
+        level: int = 0,
+    ) -> Any:
+        found = real_import(name, globals, locals, fromlist, level)
+        if name != "datetime" or level or globals is None or not wants_simulated(globals):
+            return found
+        if not shadow:
+            shadow.append(_simulated_datetime(session, found))
+        return shadow[0]
+
+    builtins.__import__ = import_module
+
+
+def _simulated_datetime(session: Session, module: types.ModuleType) -> types.ModuleType:
+    """Return a copy of `datetime` whose `now`, `utcnow` and `today` tell simulated time."""
     cost = session.sim.spec.profile.clock_read_ns
     real_datetime, real_date = module.datetime, module.date
 
@@ -64,7 +99,14 @@ def finish_datetime(session: Session, module: types.ModuleType) -> None:
         session.charge(cost)
         return EPOCH_S + session.now / NS_PER_S
 
-    class datetime(real_datetime):  # type: ignore[misc,valid-type]  # noqa: N801
+    class LikeTheReal(type):
+        def __instancecheck__(cls, instance: object) -> bool:
+            return isinstance(instance, cls.__mro__[1])
+
+        def __subclasscheck__(cls, subclass: type) -> bool:
+            return issubclass(subclass, cls.__mro__[1])
+
+    class datetime(real_datetime, metaclass=LikeTheReal):  # type: ignore[misc,valid-type]  # noqa: N801
         @classmethod
         def now(cls, tz: Any = None) -> Any:
             return cls.fromtimestamp(seconds(), tz)
@@ -77,44 +119,45 @@ def finish_datetime(session: Session, module: types.ModuleType) -> None:
         def today(cls) -> Any:
             return cls.fromtimestamp(seconds())
 
-    class date(real_date):  # type: ignore[misc,valid-type]  # noqa: N801
+    class date(real_date, metaclass=LikeTheReal):  # type: ignore[misc,valid-type]  # noqa: N801
         @classmethod
         def today(cls) -> Any:
             return cls.fromtimestamp(seconds())
 
+    shadow = types.ModuleType("datetime", module.__doc__)
+    vars(shadow).update(vars(module))
     for replacement in (datetime, date):
         replacement.__module__ = "datetime"
         replacement.__qualname__ = replacement.__name__
-        setattr(module, replacement.__name__, replacement)
-
-
-def finish_random(session: Session, module: types.ModuleType) -> None:
-    """Seed the program's random numbers with the run's seed."""
-    module.seed(session.sim.spec.seed)
+        setattr(shadow, replacement.__name__, replacement)
+    return shadow
 
 
 def finish_selectors(session: Session, module: types.ModuleType) -> None:
-    """Let event loops wait in simulated time."""
-    selectors: Any = module
-    real_selector = selectors.DefaultSelector
+    """Let everything that waits for files wait in simulated time."""
+    for name in ("SelectSelector", "PollSelector", "EpollSelector", "KqueueSelector", "DevpollSelector"):
+        found = getattr(module, name, None)
+        if found is not None:
+            found.select = _simulated_select(session, found.select)
 
-    class SimulatedSelector(real_selector):  # type: ignore[misc,valid-type]
-        """Looks at the real files without waiting, and waits on the simulated clock."""
 
-        def select(self, timeout: float | None = None) -> Any:
-            ready = super().select(0)
-            if ready or (timeout is not None and timeout <= 0):
-                if not ready:
-                    session.command()
-                return ready
-            until = None if timeout is None else session.now + round(timeout * NS_PER_S)
-            while not ready and (until is None or session.now < until):
-                rest = POLL_NS if until is None else until - session.now
-                session.spend(min(rest, POLL_NS) if session.slow & THREADS else rest)
-                ready = super().select(0)
+def _simulated_select(session: Session, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
+    """Return a `select` that looks at the real files without waiting, and waits on the simulated clock."""
+
+    def select(self: Any, timeout: float | None = None) -> Any:
+        ready = look(self, 0)
+        if ready or (timeout is not None and timeout <= 0):
+            if not ready:
+                session.command()
             return ready
+        until = None if timeout is None else session.now + round(timeout * NS_PER_S)
+        while not ready and (until is None or session.now < until):
+            rest = POLL_NS if until is None else until - session.now
+            session.spend(min(rest, POLL_NS) if session.slow & THREADS else rest)
+            ready = look(self, 0)
+        return ready
 
-    selectors.DefaultSelector = SimulatedSelector
+    return select
 
 
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from typing import Any
 
 from tuisim.datalog.records import STDOUT, OutputWriter
 
@@ -51,6 +52,14 @@ class LineStream(io.TextIOBase):
         """As the real stream has it."""
         return "<stdout>" if self._stream == STDOUT else "<stderr>"
 
+    @property
+    def buffer(self) -> ByteStream:
+        """For programs that write bytes."""
+        return ByteStream(self)
+
+    def reconfigure(self, **_settings: object) -> None:
+        """Lines are written at once and in UTF-8 whatever is asked for."""
+
     def writable(self) -> bool:
         """Always."""
         return True
@@ -83,3 +92,24 @@ class LineStream(io.TextIOBase):
         """Return what has no newline yet, as written elsewhere from now on."""
         part, self._part = self._part, ""
         return part
+
+
+class ByteStream(io.RawIOBase):
+    """The bytes below a line stream.
+
+    Args:
+        stream: Takes the text.
+    """
+
+    def __init__(self, stream: LineStream) -> None:
+        self._stream = stream
+
+    def writable(self) -> bool:
+        """Always."""
+        return True
+
+    def write(self, data: Any) -> int:
+        """Take bytes; they are shown as UTF-8."""
+        taken = bytes(data)
+        self._stream.write(taken.decode("utf-8", "replace"))
+        return len(taken)

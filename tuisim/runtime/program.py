@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import builtins
 import gc
 import os
@@ -60,6 +61,7 @@ class ProgramRunner:
         self._leave = leave
         self._answers = list(config.answers)
         self.stdout, self.stderr = LineStream(output), LineStream(output, STDERR)
+        self._module = types.ModuleType("__main__")
         self._builtins: Any = builtins
         setattr(builtins, LOOP_HOOK, loop_hook)
 
@@ -69,12 +71,22 @@ class ProgramRunner:
             self._prepare()
             self._execute()
             self._baton.join_all()
+            outcome = Outcome("finished")
         except BaseException as error:  # whatever a program lets escape is an outcome, not an error of ours
-            return self._outcome_of(error)
-        finally:
-            self.stdout.finish()
-            self.stderr.finish()
-        return Outcome("finished")
+            outcome = self._outcome_of(error)
+        self._wind_up()
+        self.stdout.finish()
+        self.stderr.finish()
+        return outcome
+
+    def _wind_up(self) -> None:
+        """Do what Python does at the end of a program: exit functions, open files, what is left of objects."""
+        try:
+            atexit._run_exitfuncs()
+            self._module.__dict__.clear()
+            gc.collect()
+        except BaseException as error:  # the program is over: what still goes wrong in it is only told
+            self._thread_error(type(error), error, None)
 
     def _prepare(self) -> None:
         file = self._session.program_file
@@ -90,7 +102,7 @@ class ProgramRunner:
 
     def _execute(self) -> None:
         code = compile_program(self._config.text, self._session.program_file)
-        module = types.ModuleType("__main__")
+        module = self._module
         module.__dict__.update(__file__=self._session.program_file, __builtins__=builtins)
         sys.modules["__main__"] = module
         # What is prepared for the program costs it nothing.
@@ -118,6 +130,7 @@ class ProgramRunner:
         return self._raised(error, error.__traceback__)
 
     def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
+        self.stdout.finish()
         report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
         for line in report.text.rstrip("\n").split("\n"):
             self._output.row(line, STDERR)
