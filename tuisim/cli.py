@@ -82,6 +82,8 @@ def _open(arguments: Namespace) -> int:
     settings = prepared.settings
     app_settings = AppSettings(
         spec=prepared.spec,
+        settings=settings,
+        world_file=prepared.world.path if prepared.world else None,
         program=prepared.program,
         background=prepared.spec.world.background,
         panels_on=frozenset(settings.panels_on),

@@ -230,7 +230,7 @@ async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
 async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
     async with Lab(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.open_program(str(tmp_path / "none.py"))
+        app.loading.open_file(str(tmp_path / "none.py"))
         await pilot.pause()
         assert "there is no such program" in notices(app)[0]
         assert app.bridge.program is None

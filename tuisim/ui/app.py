@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import constants, events
@@ -20,18 +19,19 @@ from tuisim.ui.bridge import ROWS_A_POLL, Bridge, News
 from tuisim.ui.desk import Desk
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
+from tuisim.ui.loading import Loading
 from tuisim.ui.pacer import Pacer
 from tuisim.ui.session import AppSettings
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.speech import Voice
 from tuisim.ui.verbs import end_label, speed_label
+from tuisim.ui.watch import PERIOD_S
 
 if TYPE_CHECKING:
-    from tuisim.core.spec import RunSpec
-    from tuisim.ui.mat import Mat
     from tuisim.ui.panels.chart import Chart
     from tuisim.ui.panels.output import Output
     from tuisim.ui.panels.world import World
+    from tuisim.ui.render.mat import Pixels
 
 AFTER_FIRST_PAINT_S = 0.05
 """The screen is painted more than once at the start; what is large is sent after that."""
@@ -70,6 +70,7 @@ class Lab(App[None]):
         self.voice = Voice(settings.quiet)
         self._feed: Feed | None = None
         self._drawn: object = None
+        self.loading = Loading(self)
         self._run_when_ready = settings.autorun
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
@@ -90,73 +91,32 @@ class Lab(App[None]):
 
     def _begin(self) -> None:
         self.desk.ensure("world", "output", "chart")
-        self._prepare_mat()
+        self.loading.prepare_mat()
+        self.loading.begin()
         self.set_interval(1 / self.settings.fps, self._beat)
+        self.set_interval(PERIOD_S, self.loading.look)
 
     def on_unmount(self) -> None:
         """Leave no child behind."""
         self.bridge.close()
         self.voice.hush()
 
-    # The mat
+    # The world
 
-    def _prepare_mat(self) -> None:
-        self.run_worker(
-            partial(self._prepare_mat_in_thread, self.bridge.spec), thread=True, group="mat", exclusive=True
-        )
-
-    def _prepare_mat_in_thread(self, spec: RunSpec) -> None:
-        from tuisim.ui.mat import prepare_mat
-
-        try:
-            mat = prepare_mat(spec)
-        except TuisimError as error:
-            self.call_from_thread(self.complain, error)
-            return
-        self.call_from_thread(self._mat_ready, mat)
-
-    def _mat_ready(self, mat: Mat) -> None:
-        if mat.name != self.bridge.spec.world.background:
-            return
-        self.bridge.mat = mat
-        if world := self.desk.world:
-            world.set_mat(mat.pixels)
+    def mat_ready(self, pixels: Pixels | None) -> None:
+        """The mat has been prepared; its picture, unless it lies there already."""
+        if pixels is not None and (world := self.desk.world):
+            world.set_mat(pixels)
         self.draw(force=True)
         if self._run_when_ready:
             self._run_when_ready = False
             if self.bridge.program:
                 self.start_run()
 
-    def change_mat(self, name: str) -> None:
-        """Lay out another mat; the robot goes to its start."""
-        from tuisim.ui.opening import with_mat
-
-        try:
-            self._load(with_mat(self.bridge.spec, name))
-        except TuisimError as error:
-            self.complain(error)
-
-    def open_program(self, path: str) -> None:
-        """Open a program, with the world it asks for."""
-        from tuisim.ui.opening import open_program
-
-        try:
-            program, spec = open_program(path, self.bridge.spec)
-        except TuisimError as error:
-            self.complain(error)
-            return
-        self.bridge.load(spec, program)
-        self._load(spec)
-        self.say(f"{program.name} is open: R runs it")
-
-    def _load(self, spec: RunSpec) -> None:
-        self.bridge.load(spec, self.bridge.program)
-        if world := self.desk.world:
-            world.clear_trace()
-        if self.bridge.mat is None or self.bridge.mat.name != spec.world.background:
-            self.bridge.mat = None
-            self._prepare_mat()
+    def plan_changed(self) -> None:
+        """Show that the next run will be another."""
         self._introduce_program()
+        self.desk.show_plan(self.bridge.plan)
         self.situation_changed()
         self.draw(force=True)
 
@@ -164,7 +124,7 @@ class Lab(App[None]):
 
     def start_run(self) -> None:
         """Start the program, as soon as the mat is ready."""
-        if self.bridge.mat is None:
+        if not self.loading.mat_is_ready:
             self._run_when_ready = True
             self.say("The mat is being prepared; the program starts at once after that")
             return
@@ -174,7 +134,7 @@ class Lab(App[None]):
             self.complain(error)
             return
         assert self.bridge.run is not None
-        self._feed = Feed(self.bridge.run)
+        self._feed = Feed(self.bridge.run, self.bridge.noise_at)
         self._last_words = ""
         if self.desk.output:
             self.desk.output.clear()
@@ -238,13 +198,17 @@ class Lab(App[None]):
         known = ended.end in ("finished", "raised")
         self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
         self.situation_changed()
+        self.loading.look()
 
     # The picture
 
     def draw(self, force: bool = False) -> None:
         """Show the newest moment in every panel, if it is not what they show already."""
         snapshot = self.bridge.snapshot()
-        now = (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, id(snapshot.spec))
+        now = (
+            (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
+            (snapshot.spec, snapshot.next_spec),
+        )
         if now == self._drawn and not force:
             return
         self._drawn = now
@@ -260,7 +224,7 @@ class Lab(App[None]):
         if world := self.desk.world:
             xs, ys = self._feed.trace_points()
             if xs:
-                world.extend_trace(xs, ys)
+                world.extend_trace(xs, ys, self._feed.run.spec.robot.pen)
         if self.desk.shown("chart"):
             self._append(self._feed.chart_series(self.bridge.mat))
 
@@ -300,6 +264,7 @@ class Lab(App[None]):
                 world.focus()
         if message.panel in ("code", "controls"):
             self._introduce_program()
+        self.desk.show_plan(self.bridge.plan)
         self.call_after_refresh(self.draw, force=True)
 
     def on_desk_rearranged(self) -> None:

@@ -10,7 +10,8 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.ui.layout import arrange, size_class
-from tuisim.ui.panels import PANELS, Panel
+from tuisim.ui.panels import PANELS, Panel, PlanPanel
+from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -129,6 +130,12 @@ class Desk(Container):
             self.mount(widget)
             self.post_message(self.Added(panel))
         return self.panels[panel]
+
+    def show_plan(self, plan: Plan) -> None:
+        """Let the panels that edit the plan of the next run show it, on the screen or not."""
+        for panel in ("settings", "obstacles"):
+            if widget := self.panels.get(panel):
+                cast(PlanPanel, widget).show_plan(plan)
 
     def ensure(self, *panels: str) -> None:
         """Make panels that are to be fed from the start, shown or not."""

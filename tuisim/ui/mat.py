@@ -13,14 +13,29 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+MatKey = tuple[str, str, frozenset[int]]
+"""Name, how an own image fits, and the diameters of the discs that are prepared."""
+
+
+def mat_key(spec: RunSpec) -> MatKey:
+    """Return what has to be prepared for a run."""
+    diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
+    return spec.world.background, spec.world.background_fit, diameters
+
+
 @dataclass(frozen=True, slots=True)
 class Mat:
     """A mat ready to be read and drawn."""
 
-    name: str
+    key: MatKey
     field: Field
     pixels: NDArray[np.uint8]
     """Shape (height, width, 3), rows from the top."""
+
+    @property
+    def name(self) -> str:
+        """As a specification calls it."""
+        return self.key[0]
 
 
 def prepare_mat(spec: RunSpec) -> Mat:
@@ -32,6 +47,6 @@ def prepare_mat(spec: RunSpec) -> Mat:
     from tuisim import assets, fields
 
     image = assets.background(spec.world.background).image
-    diameters = {sensor.diameter_mm for sensor in spec.robot.color_sensors}
-    files = fields.prepare(image, diameters, fit=spec.world.background_fit)
-    return Mat(spec.world.background, fields.open_field(files), fields.mat_pixels(files))
+    key = mat_key(spec)
+    files = fields.prepare(image, key[2], fit=key[1])
+    return Mat(key, fields.open_field(files), fields.mat_pixels(files))

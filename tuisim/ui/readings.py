@@ -19,6 +19,8 @@ def snapshot_of(
     line: int,
     speed: float,
     pen_down: bool,
+    stalled: tuple[bool, bool] = (False, False),
+    next_spec: RunSpec | None = None,
 ) -> Snapshot:
     """Return the picture of one moment, every sensor measured."""
     sonar = spec.robot.ultrasonic
@@ -39,6 +41,8 @@ def snapshot_of(
         gyro_deg=gyro.angle_deg(instant) if has_gyro else 0,
         gyro_rate_dps=gyro.rate_dps(instant) if has_gyro else 0,
         pen_down=pen_down,
+        stalled=stalled,
+        next_spec=next_spec,
     )
 
 

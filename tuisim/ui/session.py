@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from tuisim.core.spec import RunSpec
 from tuisim.host import Program
+from tuisim.switches import Settings
 
 DEFAULT_FPS = 20
 
@@ -15,6 +17,10 @@ class AppSettings:
     """Everything the command line decides about the app."""
 
     spec: RunSpec
+    settings: Settings | None = None
+    """The choices that `spec` was built from; None if they are not known."""
+    world_file: Path | None = None
+    """The world file that was opened, to be watched and saved again."""
     program: Program | None = None
     """None opens the app without a program."""
     background: str = "Empty_Map"

@@ -39,3 +39,12 @@ class Snapshot:
     gyro_rate_dps: int
     pen_down: bool
     notice: str = ""
+    stalled: tuple[bool, bool] = (False, False)
+    """Whether the left and the right motor are told to run but cannot turn."""
+    next_spec: RunSpec | None = None
+    """What the next run will be; differs from `spec` in what was changed during the run. None: the same."""
+
+    @property
+    def planned(self) -> RunSpec:
+        """What the next run will be."""
+        return self.next_spec or self.spec

@@ -129,7 +129,7 @@ def choose_mat(lab: Lab) -> None:
 
     def lay(name: str | None) -> None:
         if name:
-            lab.change_mat(name)
+            lab.loading.change_mat(name)
 
     lab.push_screen(MatPicker(lab.bridge.spec.world.background), lay)
 
@@ -140,7 +140,7 @@ def open_program(lab: Lab) -> None:
 
     def take(path: str | None) -> None:
         if path:
-            lab.open_program(path)
+            lab.loading.open_file(path)
 
     lab.push_screen(ProgramPicker(), take)
 

@@ -10,8 +10,9 @@ import pytest
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle, PenSpec, RobotSpec
 from tuisim.ui.render.mat import Pixels
+from tuisim.ui.render.pentrace import PenTrace, pen_rgb
 from tuisim.ui.render.robot import COLORED, draw_robot, shape_of
-from tuisim.ui.render.scene import ScenePainter, SceneState, pen_rgb
+from tuisim.ui.render.scene import ScenePainter, SceneState
 from tuisim.ui.render.viewport import Viewport, whole_field
 
 MAT = np.full((1143, 2362, 3), 255, np.uint8)
@@ -21,7 +22,7 @@ HERE = Pose(1000.0, 500.0, 0.0)
 
 
 def painter() -> ScenePainter:
-    return ScenePainter(MAT, (9, 9, 9))
+    return ScenePainter(MAT, (9, 9, 9), PenTrace())
 
 
 def at(picture: Pixels, x_mm: float, y_mm: float, view: Viewport = VIEW) -> tuple[int, ...]:
@@ -56,9 +57,9 @@ def test_a_robot_off_the_picture_is_left_out() -> None:
 def test_the_trace_is_drawn_and_goes_on() -> None:
     made = painter()
     scene = SceneState(ROBOT, Pose(2000, 1000, 0))
-    made.extend_trace(np.array([200.0, 300.0]), np.array([300.0, 300.0]))
+    made.trace.add(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen)
     made.paint(VIEW, scene)
-    made.extend_trace(np.array([400.0]), np.array([300.0]))
+    made.trace.add(np.array([400.0]), np.array([300.0]), ROBOT.pen)
 
     picture = made.paint(VIEW, scene)
 
@@ -68,7 +69,8 @@ def test_the_trace_is_drawn_and_goes_on() -> None:
 
 def test_a_lifted_pen_leaves_a_gap() -> None:
     made = painter()
-    made.extend_trace(np.array([200.0, np.nan, 400.0, 500.0]), np.array([300.0, np.nan, 300.0, 300.0]))
+    xs, ys = np.array([200.0, np.nan, 400.0, 500.0]), np.array([300.0, np.nan, 300.0, 300.0])
+    made.trace.add(xs, ys, ROBOT.pen)
 
     picture = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
 
@@ -76,20 +78,36 @@ def test_a_lifted_pen_leaves_a_gap() -> None:
     assert at(picture, 450, 300) == pen_rgb("red")
 
 
-def test_a_cleared_trace_is_gone_and_a_new_colour_repaints_it() -> None:
-    made = painter()
-    made.extend_trace(np.array([200.0, 300.0]), np.array([300.0, 300.0]))
-    red = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
-    green_pen = replace(ROBOT, pen=PenSpec(color="green"))
-    green = made.paint(VIEW, SceneState(green_pen, Pose(2000, 1000, 0)))
-    made.clear_trace()
-    gone = made.paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0)))
+def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
+    made, scene = painter(), SceneState(ROBOT, Pose(2000, 1000, 0))
+    made.trace.add(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen)
+    made.trace.add(
+        np.array([np.nan, 200.0, 300.0]), np.array([np.nan, 600.0, 600.0]), PenSpec(color="teal", width_mm=90)
+    )
 
-    assert [at(picture, 250, 300) for picture in (red, green, gone)] == [
+    drawn = made.paint(VIEW, scene)
+    again = made.paint(whole_field(80, 38), scene)
+    made.trace.wipe()
+    gone = made.paint(VIEW, scene)
+
+    assert [at(drawn, 250, y) for y in (300, 340, 600, 640)] == [
         pen_rgb("red"),
-        pen_rgb("green"),
         (255, 255, 255),
+        pen_rgb("teal"),
+        pen_rgb("teal"),
     ]
+    assert at(again, 250, 600, whole_field(80, 38)) == pen_rgb("teal")
+    assert at(gone, 250, 300) == at(gone, 250, 600) == (255, 255, 255)
+
+
+def test_the_obstacle_at_hand_has_another_edge() -> None:
+    boxes = (Obstacle(300, 200, 200, 300), Obstacle(900, 200, 200, 300))
+    plain = painter().paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes))
+    marked = painter().paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes, marked=1))
+
+    assert at(plain, 305, 350) == at(marked, 305, 350) != (255, 255, 255)
+    assert at(plain, 905, 350) != at(marked, 905, 350)
+    assert at(plain, 1000, 350) == at(marked, 1000, 350)
 
 
 def test_rays_end_at_their_length_and_at_the_field() -> None:
@@ -118,7 +136,7 @@ def test_the_ghost_is_drawn_below_the_robot() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "rgb"), [("orange", (255, 135, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (215, 0, 0))]
+    ("name", "rgb"), [("orange", (255, 165, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (255, 0, 0))]
 )
 def test_pen_colours(name: str, rgb: tuple[int, int, int]) -> None:
     assert pen_rgb(name) == rgb

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import ClassVar, Protocol, cast
 
+from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import Snapshot
 
 SMALL, MEDIUM, LARGE = "small", "medium", "large"
@@ -29,6 +30,13 @@ class Panel(Protocol):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment; nearly free if nothing changed."""
+
+
+class PlanPanel(Protocol):
+    """What a panel has besides that edits the plan of the next run."""
+
+    def show_plan(self, plan: Plan) -> None:
+        """Show a plan."""
 
 
 @dataclass(frozen=True, slots=True)

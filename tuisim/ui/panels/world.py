@@ -14,9 +14,10 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec
 from tuisim.ui.cellview import PixelView
 from tuisim.ui.render.mat import Pixels
+from tuisim.ui.render.pentrace import PenTrace
 from tuisim.ui.render.robot import drawn_scale, shape_of
 from tuisim.ui.render.scene import ScenePainter, SceneState
 from tuisim.ui.render.viewport import ZOOMS, Viewport, following
@@ -105,9 +106,9 @@ class World(Widget, can_focus=True):
         """Lay out a mat: shape (1143, 2362, 3), one pixel a mm. Until then the panel is blank."""
         self._view.set_mat(pixels)
 
-    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float]) -> None:
-        """Add points that the pen drew, joined to those before; NaN lifts the pen."""
-        self._view.extend_trace(xs_mm, ys_mm)
+    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = PenSpec()) -> None:
+        """Add points that a pen drew, joined to those before; NaN lifts it."""
+        self._view.trace.add(np.array(xs_mm), np.array(ys_mm), pen)
 
     def clear_trace(self) -> None:
         """Forget the trace."""
@@ -137,9 +138,8 @@ class WorldView(PixelView):
         self.ghost: Pose | None = None
         self._tell = dragged
         self._mat: Pixels | None = None
-        self._trace_xs: list[float] = []
-        self._trace_ys: list[float] = []
-        self._trace_new = 0
+        self.trace = PenTrace()
+        self._trace_drawn = 0
         self._painter: ScenePainter | None = None
         self._port: Viewport | None = None
         self._snapshot: Snapshot | None = None
@@ -162,18 +162,9 @@ class WorldView(PixelView):
         self._painter = None
         self.repaint_scene()
 
-    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float]) -> None:
-        """Add points of the pen; they are drawn with the next moment."""
-        self._trace_xs += xs_mm
-        self._trace_ys += ys_mm
-
     def clear_trace(self) -> None:
         """Forget the trace."""
-        self._trace_xs.clear()
-        self._trace_ys.clear()
-        self._trace_new = 0
-        if self._painter:
-            self._painter.clear_trace()
+        self.trace.wipe()
         self.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:
@@ -196,15 +187,10 @@ class WorldView(PixelView):
         scene = self._scene_of(self._snapshot)
         port = following(self.size.width, 2 * self.size.height, self.zoom, scene.pose, self._port)
         if self._painter is None:
-            self._painter = ScenePainter(self._mat, self.ground_rgb, self.color_mode.grey)
-            self._trace_new = 0
-        if scene == self._scene and port == self._port and self._trace_new == len(self._trace_xs):
+            self._painter = ScenePainter(self._mat, self.ground_rgb, self.trace, self.color_mode.grey)
+        if scene == self._scene and port == self._port and self._trace_drawn == self.trace.count:
             return
-        if self._trace_new < len(self._trace_xs):
-            xs, ys = self._trace_xs[self._trace_new :], self._trace_ys[self._trace_new :]
-            self._painter.extend_trace(np.array(xs), np.array(ys))
-            self._trace_new = len(self._trace_xs)
-        self._scene, self._port = scene, port
+        self._scene, self._port, self._trace_drawn = scene, port, self.trace.count
         self.set_picture(self._painter.paint(port, scene))
 
     def _scene_of(self, snapshot: Snapshot) -> SceneState:

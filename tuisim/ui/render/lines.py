@@ -16,6 +16,8 @@ FloatArray = npt.NDArray[np.float64]
 
 OBSTACLE_RGB = (175, 95, 0)
 OBSTACLE_EDGE_RGB = (135, 0, 0)
+MARKED_RGB = (255, 215, 0)
+"""Edge of the obstacle that is at hand."""
 RAY_RGB = (0, 175, 175)
 _RAY_OPACITY = 0.55
 
@@ -95,14 +97,21 @@ def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: S
     picture[covered] = np.rint(mixed).astype(np.uint8)
 
 
-def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle]) -> None:
-    """Paint the boxes that stand on the field, each at least one pixel wide and high."""
-    for box in obstacles:
+def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None) -> None:
+    """Paint the boxes that stand on the field, each at least one pixel wide and high.
+
+    Args:
+        picture: Written in place.
+        view: What the picture shows.
+        obstacles: The boxes.
+        marked: Index of the one that is at hand.
+    """
+    for index, box in enumerate(obstacles):
         left, bottom = view.to_px(box.x_mm, box.y_mm)
         right, top = view.to_px(box.x_mm + box.width_mm, box.y_mm + box.height_mm)
         rows = _span(top, bottom, view.height_px)
         cols = _span(left, right, view.width_px)
-        picture[rows, cols] = OBSTACLE_EDGE_RGB
+        picture[rows, cols] = MARKED_RGB if index == marked else OBSTACLE_EDGE_RGB
         if rows.stop - rows.start > 2 and cols.stop - cols.start > 2:
             picture[rows.start + 1 : rows.stop - 1, cols.start + 1 : cols.stop - 1] = OBSTACLE_RGB
 

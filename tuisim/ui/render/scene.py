@@ -4,28 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import Obstacle, RobotSpec
-from tuisim.ui.render.lines import FloatArray, draw_obstacles, draw_rays, trace_pixels
+from tuisim.ui.render.lines import draw_obstacles, draw_rays, trace_pixels
 from tuisim.ui.render.mat import MatPictures, Pixels
+from tuisim.ui.render.pentrace import PenTrace, Rgb
 from tuisim.ui.render.robot import COLORED, GHOST, GREY, GREY_GHOST, RobotShape, draw_robot, shape_of
 from tuisim.ui.render.viewport import Viewport
 
 _GHOST_OPACITY = 0.75
-
-PEN_RGB = {
-    "red": (215, 0, 0),
-    "orange": (255, 135, 0),
-    "green": (0, 175, 0),
-    "blue": (0, 0, 255),
-    "black": (0, 0, 0),
-    "white": (255, 255, 255),
-    "yellow": (255, 215, 0),
-    "purple": (135, 0, 175),
-}
-"""Pen colours by name; `#rrggbb` works too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,17 +28,8 @@ class SceneState:
     """Where the robot was when `rays` were cast; None for `pose`."""
     ghost: Pose | None = None
     """A second robot, shown where it was read."""
-
-
-def pen_rgb(name: str) -> tuple[int, int, int]:
-    """Return the colour of a pen: a name of `PEN_RGB` or `#rrggbb`; red for anything else."""
-    if name.startswith("#") and len(name) == 7:
-        try:
-            value = int(name[1:], 16)
-        except ValueError:
-            return PEN_RGB["red"]
-        return value >> 16, value >> 8 & 255, value & 255
-    return PEN_RGB.get(name.lower(), PEN_RGB["red"])
+    marked: int | None = None
+    """Index of the obstacle that is at hand."""
 
 
 class ScenePainter:
@@ -60,31 +38,19 @@ class ScenePainter:
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
         outside_rgb: Colour of what lies off the mat.
+        trace: What the pen has drawn; it may grow.
         grey: Draw the robot for a terminal without colours.
     """
 
-    def __init__(self, mat: Pixels, outside_rgb: tuple[int, int, int], grey: bool = False) -> None:
+    def __init__(self, mat: Pixels, outside_rgb: Rgb, trace: PenTrace, grey: bool = False) -> None:
+        self.trace = trace
         self._mat = MatPictures(mat, outside_rgb)
         self._robot_colors = GREY if grey else COLORED
         self._ghost_colors = GREY_GHOST if grey else GHOST
-        self._trace: list[tuple[FloatArray, FloatArray]] = []
         self._ground: Pixels | None = None
         self._ground_key: object = None
-        self._traces_drawn = 0
+        self._pieces_drawn = 0
         self._shape: tuple[RobotSpec, RobotShape] | None = None
-
-    def extend_trace(self, xs_mm: FloatArray, ys_mm: FloatArray) -> None:
-        """Add points that the pen has drawn, joined to the last ones; NaN lifts the pen."""
-        if self._trace and len(xs_mm):
-            last_x, last_y = self._trace[-1]
-            xs_mm, ys_mm = np.concatenate((last_x[-1:], xs_mm)), np.concatenate((last_y[-1:], ys_mm))
-        if len(xs_mm):
-            self._trace.append((xs_mm, ys_mm))
-
-    def clear_trace(self) -> None:
-        """Forget what the pen has drawn."""
-        self._trace.clear()
-        self._ground_key = None
 
     def paint(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return the picture, shape (view.height_px, view.width_px, 3)."""
@@ -101,25 +67,18 @@ class ScenePainter:
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return mat, obstacles and trace."""
-        pen = scene.robot.pen
-        key = (view, scene.obstacles, pen.color, pen.width_mm)
+        key = (view, scene.obstacles, scene.marked, self.trace.wiped)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
-            draw_obstacles(self._ground, view, scene.obstacles)
+            draw_obstacles(self._ground, view, scene.obstacles, scene.marked)
             self._ground_key = key
-            self._traces_drawn = 0
-            self._join_trace()
-        for xs_mm, ys_mm in self._trace[self._traces_drawn :]:
-            rows, cols = trace_pixels(view, xs_mm, ys_mm, pen.width_mm)
-            self._ground[rows, cols] = pen_rgb(pen.color)
-        self._traces_drawn = len(self._trace)
+            self._pieces_drawn = 0
+            self.trace.join()
+        for piece in self.trace.pieces(self._pieces_drawn):
+            rows, cols = trace_pixels(view, piece.xs_mm, piece.ys_mm, piece.width_mm)
+            self._ground[rows, cols] = piece.rgb
+        self._pieces_drawn = len(self.trace)
         return self._ground
-
-    def _join_trace(self) -> None:
-        """Make one piece of the trace, so that drawing it anew is one step."""
-        if len(self._trace) > 1:
-            xs, ys = zip(*self._trace, strict=True)
-            self._trace = [(np.concatenate(xs), np.concatenate(ys))]
 
     def _shape_of(self, robot: RobotSpec) -> RobotShape:
         if self._shape is None or self._shape[0] is not robot:

@@ -1,0 +1,295 @@
+"""Mats, programs, robots and worlds on their way into the app, and again when their files change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.errors import TuisimError
+from tuisim.switches import Settings
+from tuisim.ui import plan as plans
+from tuisim.ui.mat import mat_key
+from tuisim.ui.plan import Plan
+from tuisim.ui.watch import Watch
+
+if TYPE_CHECKING:
+    from tuisim.core.spec import RunSpec
+    from tuisim.host import Program
+    from tuisim.ui.app import Lab
+    from tuisim.ui.mat import Mat
+
+NOT_NOW = "Not during a run: S stops it"
+
+
+class Loading:
+    """What brings things into one app.
+
+    Args:
+        lab: The app.
+    """
+
+    def __init__(self, lab: Lab) -> None:
+        self._lab = lab
+        self._watch = Watch()
+        self.world_file: Path | None = lab.settings.world_file
+        """The world file that was opened or saved last."""
+        self._world_said: Mapping[str, Any] = {}
+        self._world_refers: tuple[Path, ...] = ()
+        self._magic_said: Mapping[str, Any] = {}
+        """What world file and magic line said when they were last read, to tell what changes in them."""
+        self._prelude_said = ""
+        """The prelude that the program's file asks for; the command line may have chosen another."""
+        self._later: list[Path] = []
+        """Files that changed during the run."""
+
+    def begin(self) -> None:
+        """Learn what the command line has opened already, and watch it."""
+        program = self._lab.bridge.program
+        try:
+            if self.world_file is not None:
+                self._read_world(self.world_file)
+            if program and program.path:
+                self._note_program(*_read_program(program.path))
+        except TuisimError:
+            # It was read a moment ago and is wrong now: looking for changes will tell.
+            pass
+        self._follow()
+
+    # The mat
+
+    @property
+    def mat_is_ready(self) -> bool:
+        """Whether the mat lies there, prepared for the robot's sensors."""
+        mat = self._lab.bridge.mat
+        return mat is not None and mat.key == mat_key(self._lab.bridge.plan.spec)
+
+    def prepare_mat(self) -> None:
+        """Prepare the mat off the event loop; `Lab.mat_ready` follows."""
+        work = partial(self._prepare_in_thread, self._lab.bridge.plan.spec)
+        self._lab.run_worker(work, thread=True, group="mat", exclusive=True)
+
+    def _prepare_in_thread(self, spec: RunSpec) -> None:
+        from tuisim.ui.mat import prepare_mat
+
+        try:
+            mat = prepare_mat(spec)
+        except TuisimError as error:
+            self._lab.call_from_thread(self._lab.complain, error)
+            return
+        self._lab.call_from_thread(self._prepared, mat)
+
+    def _prepared(self, mat: Mat) -> None:
+        bridge = self._lab.bridge
+        if mat.key == mat_key(bridge.plan.spec):
+            same_picture = bridge.mat is not None and bridge.mat.key[:2] == mat.key[:2]
+            bridge.mat = mat
+            self._lab.mat_ready(None if same_picture else mat.pixels)
+
+    # What the user chooses
+
+    def attempt(self, make: Callable[[Plan], Plan]) -> bool:
+        """Change the plan, or say what is wrong; the robot stays where it is. Returns whether it was changed."""
+        try:
+            self.take(self.change(make))
+        except TuisimError as error:
+            self._lab.complain(error)
+            return False
+        return True
+
+    def change(self, make: Callable[[Plan], Plan]) -> Plan:
+        """Return what a change makes of the plan.
+
+        Raises:
+            TuisimError: there is a run, or the change is impossible.
+        """
+        if self._lab.bridge.in_run:
+            raise TuisimError(NOT_NOW)
+        return make(self._lab.bridge.plan)
+
+    def take(self, plan: Plan) -> None:
+        """Take a plan that differs in other things than the start."""
+        self._lab.bridge.change(plan)
+        self._loaded()
+
+    def change_mat(self, name: str) -> None:
+        """Lay out another mat; the robot goes to its start."""
+        try:
+            self._load(plans.with_mat(self._lab.bridge.plan, name), self._lab.bridge.program)
+        except TuisimError as error:
+            self._lab.complain(error)
+
+    def open_file(self, path: str) -> None:
+        """Open a program, with the world that it asks for, or a world, with the program that it names."""
+        from tuisim.config import means_world
+
+        opened = self._open_world if means_world(path) else self._open_program
+        try:
+            opened(str(Path(path).expanduser()))
+        except TuisimError as error:
+            self._lab.complain(error)
+
+    def _open_program(self, path: str) -> None:
+        program, said = _read_program(path)
+        plan = plans.with_choices(self._lab.bridge.plan, said)
+        self._note_program(program, said)
+        self._load(plan, program)
+        self._lab.say(f"{program.name} is open: R runs it")
+
+    def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
+        self._magic_said, self._prelude_said = said, program.prelude if program else ""
+
+    def _open_world(self, path: str) -> None:
+        lab = self._lab
+        before = self.world_file, self._world_said, self._world_refers
+        try:
+            named = self._read_world(Path(path))
+            program, magic = _read_program(named) if named else (lab.bridge.program, {})
+            # A world is a whole: what was chosen before does not show through it.
+            fresh = plans.with_choices(plans.plan_of(Settings()), magic)
+            plan = plans.with_choices(fresh, self._world_said)
+        except TuisimError:
+            self.world_file, self._world_said, self._world_refers = before
+            raise
+        self._note_program(program, magic)
+        self._load(plan, program)
+        lab.say(f"{Path(path).name} is open" + (": R runs its program" if named else ""))
+
+    def _read_world(self, path: Path) -> str | None:
+        """Read a world file and keep what it said; returns the path of its program."""
+        from tuisim.config import load_world
+
+        world = load_world(path)
+        self.world_file, self._world_said, self._world_refers = path, world.settings, world.files
+        return _program_path(world.program) if world.program is not None else None
+
+    def _load(self, plan: Plan, program: Program | None) -> None:
+        self._lab.bridge.load(plan, program)
+        if world := self._lab.desk.world:
+            world.clear_trace()
+        self._loaded()
+
+    def _loaded(self) -> None:
+        lab = self._lab
+        self._follow()
+        if not self.mat_is_ready:
+            mat = lab.bridge.mat
+            if mat is not None and mat.key[:2] != mat_key(lab.bridge.plan.spec)[:2]:
+                lab.bridge.mat = None
+            self.prepare_mat()
+        lab.plan_changed()
+
+    # Files that change on the disk
+
+    def _follow(self) -> None:
+        bridge, words = self._lab.bridge, self._lab.bridge.plan.words
+        paths = [Path(bridge.program.path)] if bridge.program and bridge.program.path else []
+        paths += [self.world_file, *self._world_refers] if self.world_file else []
+        paths += [Path(word).expanduser() for word in words.values() if _is_file_word(word)]
+        self._watch.follow(dict.fromkeys(paths))
+
+    def saved(self, path: Path) -> None:
+        """A file was written from here: that is no change to tell of."""
+        self._watch.note(path)
+
+    def saved_world(self, path: Path) -> None:
+        """The world was written to a file, which is followed from now on."""
+        try:
+            self._read_world(path)
+        except TuisimError as error:
+            self._lab.complain(error)
+        self._follow()
+        self._watch.note(path)
+
+    def look(self) -> None:
+        """Take in what has changed on the disk; during a run, at its end."""
+        changed = self._watch.changed()
+        if self._lab.bridge.in_run:
+            for path in changed:
+                if path not in self._later:
+                    self._later.append(path)
+                    self._lab.say(f"{path.name} changed on disk: reloaded when the run ends")
+            return
+        changed, self._later = [*self._later, *(path for path in changed if path not in self._later)], []
+        for path in changed:
+            self._reload(path)
+
+    def _reload(self, path: Path) -> None:
+        lab = self._lab
+        try:
+            known = self._reread(path)
+        except TuisimError as error:
+            lab.complain(error)
+            return
+        if known:
+            lab.say(f"{path.name} changed on disk: reloaded")
+
+    def _reread(self, path: Path) -> bool:
+        """Read a file again; returns whether it still plays a part."""
+        lab, plan = self._lab, self._lab.bridge.plan
+        program = lab.bridge.program
+        if program and program.path and Path(program.path) == path:
+            new, said = _read_program(program.path)
+            as_said = new.prelude if new.prelude != self._prelude_said else program.prelude
+            self._take_said(_differences(self._magic_said, said), replace(new, prelude=as_said))
+            self._note_program(new, said)
+            return True
+        if path == self.world_file:
+            before = self._world_said
+            self._read_world(path)
+            self._take_said(_differences(before, self._world_said), program)
+            return True
+        fields = [
+            field for field, word in plan.words.items() if _is_file_word(word) and Path(word).expanduser() == path
+        ]
+        for field in fields:
+            self.take(plans.with_choices(plan, {field: plan.words[field]}))
+        if path in self._world_refers and str(path) == plan.spec.world.background:
+            lab.bridge.mat = None
+            self._loaded()
+            return True
+        return bool(fields)
+
+    def _take_said(self, differences: Mapping[str, Any], program: Program | None) -> None:
+        """Take what a file says anew; what it says as before stays as the user has made it since."""
+        lab = self._lab
+        plan = plans.with_choices(lab.bridge.plan, differences)
+        if differences.keys() & {"background", *plans.POSE_FIELDS}:
+            self._load(plan, program)
+        else:
+            lab.bridge.program = program
+            self.take(plan)
+
+
+def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
+    """Read a program; returns it and what its magic line says."""
+    from tuisim.host import Program
+    from tuisim.programfile import read_program
+
+    file = read_program(Path(path).expanduser())
+    return Program(name=file.name, text=file.text, prelude=file.prelude, path=file.path), file.switches
+
+
+def _program_path(word: str) -> str:
+    """The path of a program that a world file names: a path, or an example by its name."""
+    from tuisim.assets import programs
+
+    examples = {name: path for name, path, _ in programs()}
+    if Path(word).exists():
+        return word
+    return str(examples.get(word) or examples.get(f"{word}.py") or word)
+
+
+def _is_file_word(word: str) -> bool:
+    from tuisim.config.reading import means_file
+
+    return means_file(word)
+
+
+def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
+    """What a file says now and did not say before; what it says no longer is as without it."""
+    bare = Settings()
+    gone = {field: getattr(bare, field) for field in before.keys() - now.keys() if field in plans.WORLD_FIELDS}
+    return gone | {field: value for field, value in now.items() if field not in before or before[field] != value}

@@ -1,0 +1,191 @@
+"""The plan of the next run: choices, from which its specification is built anew after each change.
+
+Choices stay as they were made: a robot as it is listed or in its file, not as the mat of the moment has
+changed it. So what one mat or preset decides is gone with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
+from tuisim.switches import RobotChoice, Settings, settings_of
+
+POSE_FIELDS = ("x_mm", "y_mm", "heading_deg")
+WORLD_FIELDS = (
+    "background", "background_fit", "robot", "obstacles", "walls", "solid", *POSE_FIELDS, "light_noise",
+    "motor_noise", "pen_down", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
+)  # fmt: skip
+"""Fields of `Settings` that a run is made of."""
+
+_OF_THE_MAT: Mapping[str, Any] = {**dict.fromkeys(("obstacles", *POSE_FIELDS)), "background_fit": "stretch"}
+"""What another mat brings with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What the next run is made of."""
+
+    settings: Settings
+    """The choices. Robot, obstacles and profile are themselves, so that no later change depends on a file."""
+    spec: RunSpec
+    words: Mapping[str, str]
+    """By field of `Settings`: the name or the file that robot, obstacles and profile came from, as far as known."""
+    robot: RobotChoice
+    """The robot as it was chosen, before anything was edited."""
+
+    @property
+    def robot_is_edited(self) -> bool:
+        """Whether the robot is another than the chosen one."""
+        return self.settings.robot != self.robot
+
+    @property
+    def robot_choice(self) -> RobotChoice:
+        """The robot with its edits, not as the mat changes it."""
+        assert isinstance(self.settings.robot, RobotChoice)
+        return self.settings.robot
+
+
+def plan_of(settings: Settings) -> Plan:
+    """Return the plan that settings make.
+
+    Raises:
+        ConfigError: they name what is not there, or a file that is wrong.
+    """
+    from tuisim.config import build_run_spec
+
+    world, words = _resolved({field: getattr(settings, field) for field in WORLD_FIELDS})
+    settings = replace(settings, **world)
+    return Plan(settings, build_run_spec(settings), words, world["robot"])
+
+
+def plan_of_spec(spec: RunSpec) -> Plan:
+    """Return the plan of a run of which nothing else is known."""
+    from tuisim.config import settings_from
+
+    return replace(plan_of(settings_of(settings_from(spec))), spec=spec)
+
+
+def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
+    """Robot, obstacles and profile as themselves, and the words that stood for them."""
+    from tuisim.config import load_obstacles, load_profile
+    from tuisim.config.robots import choose_robot
+
+    found, words = dict(choices), {}
+    for field, load in (("robot", choose_robot), ("obstacles", load_obstacles), ("profile", load_profile)):
+        if isinstance(word := found.get(field), str):
+            found[field], words[field] = load(word), word
+    return found, words
+
+
+def _built(plan: Plan, **changes: Any) -> Plan:
+    from tuisim.config import build_run_spec
+
+    settings = replace(plan.settings, **changes)
+    return replace(plan, settings=settings, spec=build_run_spec(settings))
+
+
+def with_choices(plan: Plan, choices: Mapping[str, Any]) -> Plan:
+    """Return the plan with what a program's magic line or a world file says; the rest stays.
+
+    Args:
+        plan: The plan so far.
+        choices: By field of `Settings`; what has nothing to do with the world is left out.
+
+    Raises:
+        ConfigError: they name what is not there, or a file that is wrong.
+    """
+    said, words = _resolved({field: value for field, value in choices.items() if field in WORLD_FIELDS})
+    if "background" in said:
+        said = {**_OF_THE_MAT, **said}
+    elif said.keys() & set(POSE_FIELDS):
+        said = {**dict.fromkeys(POSE_FIELDS), **said}
+    kept = {field: word for field, word in plan.words.items() if field not in said}
+    return replace(_built(plan, **said), words=kept | words, robot=said.get("robot", plan.robot))
+
+
+def with_mat(plan: Plan, name: str) -> Plan:
+    """Return the plan on another mat, with its start pose, its obstacles and its sensor places.
+
+    Raises:
+        BackgroundError: there is no such mat.
+    """
+    return with_choices(plan, {"background": name})
+
+
+def with_robot(plan: Plan, word: str) -> Plan:
+    """Return the plan with another robot, by name or from a file.
+
+    Raises:
+        RobotError: there is none of that name, or the file is wrong.
+    """
+    return with_choices(plan, {"robot": word})
+
+
+def with_robot_as_chosen(plan: Plan) -> Plan:
+    """Return the plan with every edit of the robot undone."""
+    return _built(plan, robot=plan.robot)
+
+
+def with_robot_edited(plan: Plan, robot: RobotSpec, moved: bool = False) -> Plan:
+    """Return the plan with an edited robot.
+
+    Args:
+        plan: The plan so far.
+        robot: What `plan.robot_choice.spec` has become.
+        moved: Whether a colour sensor was given a place: then the mat's places no longer apply to any.
+
+    Raises:
+        ConfigError: the mat is gone.
+    """
+    choice = plan.robot_choice
+    return _built(plan, robot=replace(choice, spec=robot, own_places=choice.own_places or moved))
+
+
+def with_obstacles(plan: Plan, obstacles: tuple[Obstacle, ...]) -> Plan:
+    """Return the plan with these obstacles."""
+    settings = replace(plan.settings, obstacles=obstacles)
+    words = {field: word for field, word in plan.words.items() if field != "obstacles"}
+    spec = replace(plan.spec, world=replace(plan.spec.world, obstacles=obstacles))
+    return replace(plan, settings=settings, spec=spec, words=words)
+
+
+def with_values(plan: Plan, **values: Any) -> Plan:
+    """Return the plan with some fields of `Settings` changed that need no file.
+
+    Raises:
+        ConfigError: the mat is gone, or a value is impossible.
+    """
+    return _built(plan, **values)
+
+
+# These come many times a second while something is dragged: the specification is changed, not built anew.
+
+
+def at_pose(plan: Plan, pose: Pose) -> Plan:
+    """Return the plan with another start."""
+    settings = replace(plan.settings, x_mm=pose.x_mm, y_mm=pose.y_mm, heading_deg=pose.heading_deg)
+    return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, start=pose)))
+
+
+def with_noise(plan: Plan, noise: NoiseSpec) -> Plan:
+    """Return the plan with other noise."""
+    # A robot file may say how far its motors stray: that holds until the user says it.
+    kept = noise.motor == plan.spec.world.noise.motor
+    motor = plan.settings.motor_noise if kept else noise.motor
+    settings = replace(plan.settings, light_noise=noise.light, motor_noise=motor)
+    return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, noise=noise)))
+
+
+def with_seed(plan: Plan, seed: int) -> Plan:
+    """Return the plan with another seed."""
+    return replace(plan, settings=replace(plan.settings, seed=seed), spec=replace(plan.spec, seed=seed))
+
+
+def with_pen(plan: Plan, down: bool) -> Plan:
+    """Return the plan with the pen down or up at the start."""
+    robot = replace(plan.spec.robot, pen=replace(plan.spec.robot.pen, down=down))
+    return replace(plan, settings=replace(plan.settings, pen_down=down), spec=replace(plan.spec, robot=robot))
