@@ -5,7 +5,7 @@
 | reflected_light_intensity | int(red), 0 … 255, where the profile says so (the library: 0 … 100) |
 | reflected_light_intensity_pc | 100 · int(red) / 255 |
 | full_reflected_light_intensity | 100 · (int(red) + int(green) + int(blue)) / 765 |
-| red, green, blue | whole channels, 0 … 255 |
+| red, green, blue | whole channels, 0 … 255, where the profile says so (the library: 0 … 1020, 300 on white) |
 """
 
 from __future__ import annotations
@@ -40,6 +40,7 @@ def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, 
 
     if session.sim.spec.profile.reflected_max == WHITE:
         color_sensor.reflected_light_intensity = property(reflected)
+        color_sensor.red, color_sensor.green, color_sensor.blue = channel(0), channel(1), channel(2)
 
     def red_percent(self: Any) -> float:
         return percent(colors[self._path].read("COL-REFLECT")[0], WHITE)
@@ -49,7 +50,6 @@ def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, 
 
     color_sensor.reflected_light_intensity_pc = property(red_percent)
     color_sensor.full_reflected_light_intensity = property(mean_percent)
-    color_sensor.red, color_sensor.green, color_sensor.blue = channel(0), channel(1), channel(2)
     # The library's constructor reads the angle to remember where it began.
     lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)
 

@@ -1,0 +1,135 @@
+"""Programs on robots with every part, in real child processes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import pytest
+
+from tuisim.core.geometry import Pose
+from tuisim.core.parts import REMOTE_CHANNELS, REMOTE_CODES, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
+from tuisim.core.profile import PROFILES
+from tuisim.core.spec import GyroSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.host import Program, RunHandle, RunOptions, start_run
+from tuisim.protocol import Ended
+
+START = Pose(500.0, 571.5, 0.0)
+SQUARE = RobotSpec(wheel_spacing_mm=168.0)
+"""A quarter turn on the spot is 270 whole counts, so that a move can be exact."""
+
+PLAIN = replace(SQUARE, weight=0.0)
+"""The same without inertia, so that times can be told by hand."""
+
+EYES = RobotSpec(
+    color_sensors=(),
+    ultrasonic=UltrasonicSpec(),
+    gyro=GyroSpec(),
+    extra_motors=(MotorSpec("outA"), MotorSpec("outD", "large")),
+    touch_sensors=(TouchSpec(port="in2"),),
+    infrared=InfraredSpec(port="in3"),
+    weight=0.0,
+)
+"""Everything but colour sensors, and two motors that do not drive."""
+
+FAR_WALL = WorldSpec(background="Empty_Map", start=START)
+FURNISHED = WorldSpec(
+    background="Empty_Map",
+    start=START,
+    solid=True,
+    obstacles=(Obstacle(900.0, 400.0, 50.0, 343.0),),
+    beacon=BeaconSpec(520.0, 171.5, channel=2),
+    remote=(
+        RemotePress(("top_left",), 0.0, 1e9, channel=4),
+        RemotePress(("top_left",), 0.0, 1.0, channel=1),
+        RemotePress(("bottom_right",), 1.0, 2.0, channel=1),
+    ),
+)
+"""An obstacle 400 mm ahead, a beacon to the right, and somebody with a remote control."""
+
+CODES = [set(buttons) for buttons, _ in sorted(REMOTE_CODES.items(), key=lambda found: found[1])]
+
+REMOTE = WorldSpec(
+    background="Empty_Map",
+    start=START,
+    remote=(
+        *(
+            RemotePress(tuple(sorted(buttons)), second, second + 1.0, channel)
+            for channel in REMOTE_CHANNELS
+            for second, buttons in enumerate(CODES)
+        ),
+        RemotePress(("bottom_left",), 20.0, 21.0),
+        RemotePress(("top_left",), 20.0, 21.0, channel=2),
+        RemotePress(("beacon",), 21.0, 22.0),
+        RemotePress(("top_left",), 30.0, 31.0),
+    ),
+)
+"""Somebody holds every set of buttons for a second, on all channels at once."""
+
+ROBOTS = {"square": SQUARE, "plain": PLAIN, "eyes": EYES, "default": RobotSpec()}
+WORLDS = {
+    "empty": FAR_WALL,
+    "furnished": FURNISHED,
+    "remote": REMOTE,
+    "red": WorldSpec(background="Radial_red", start=Pose(900, 500, 0)),
+    "lollipop": WorldSpec(background="Lollipop", start=Pose(750, 375, 180)),
+}
+
+
+@dataclass(frozen=True)
+class Done:
+    """A run that is over."""
+
+    run: RunHandle
+    ended: Ended
+
+    @property
+    def lines(self) -> list[str]:
+        """What was printed."""
+        return [row.text for row in self.run.output.all_rows() if row.stream == 1]
+
+    @property
+    def errors(self) -> list[str]:
+        """Lines of error text."""
+        return [row.text for row in self.run.output.all_rows() if row.stream == 2]
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Where the robot came to stand: x and y in mm, heading in degrees."""
+        last = self.run.telemetry.last()
+        assert last is not None
+        return last.x_mm, last.y_mm, last.heading_deg
+
+    @property
+    def recording(self) -> tuple[bytes, ...]:
+        """Everything the run recorded."""
+        return tuple((self.run.folder / name).read_bytes() for name in ("telemetry.bin", "output.bin"))
+
+
+RunOn = Callable[..., Done]
+
+
+@pytest.fixture
+def run_on() -> Iterator[RunOn]:
+    """`run_on(text, robot="plain", world="empty", profile="ev3", live=False)`: run a program to its end."""
+    handles: list[RunHandle] = []
+
+    def finish(
+        text: str,
+        robot: str = "plain",
+        world: str = "empty",
+        profile: str = "ev3",
+        live: bool = False,
+        start: Pose | None = None,
+    ) -> Done:
+        place = WORLDS[world] if start is None else WorldSpec(background=WORLDS[world].background, start=start)
+        spec = RunSpec(ROBOTS[robot], place, PROFILES[profile])
+        options = RunOptions(live=live, speed=0.0, time_limit_s=900.0)
+        handles.append(start_run(Program("program.py", text, "none"), spec, options))
+        ended = handles[-1].wait(60.0)
+        assert ended is not None
+        return Done(handles[-1], ended)
+
+    yield finish
+    for handle in handles:
+        handle.close()
