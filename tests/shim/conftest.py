@@ -32,6 +32,14 @@ EYES = RobotSpec(
 )
 """Everything but colour sensors, and two motors that do not drive."""
 
+PAIRS = RobotSpec(
+    color_sensors=(),
+    ultrasonic=UltrasonicSpec(y_mm=60.0),
+    gyro=None,
+    extra_ultrasonics=(UltrasonicSpec("behind", "in2", y_mm=0.0, angle_deg=180.0),),
+    touch_sensors=(TouchSpec("touch_left", "in3", x_mm=-40.0), TouchSpec("touch_right", "in4", x_mm=40.0)),
+)
+
 FAR_WALL = WorldSpec(background="Empty_Map", start=START)
 FURNISHED = WorldSpec(
     background="Empty_Map",
@@ -66,7 +74,7 @@ REMOTE = WorldSpec(
 )
 """Somebody holds every set of buttons for a second, on all channels at once."""
 
-ROBOTS = {"square": SQUARE, "plain": PLAIN, "eyes": EYES, "default": RobotSpec()}
+ROBOTS = {"square": SQUARE, "plain": PLAIN, "eyes": EYES, "pairs": PAIRS, "default": RobotSpec()}
 WORLDS = {
     "empty": FAR_WALL,
     "furnished": FURNISHED,

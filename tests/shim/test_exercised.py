@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.shim import table_groups, table_motor, table_pure, table_sensors, test_driving
+from tests.shim import table_groups, table_motor, table_pure, table_reference, table_sensors, test_driving
 from tests.shim.checking import Table, differences
 from tests.shim.conftest import RunOn
 
@@ -27,6 +27,9 @@ TABLES: dict[str, tuple[Table, str, str]] = {
     "ultrasonic and gyro": (table_sensors.RANGE, "default", "empty"),
     "touch and infrared": (table_sensors.EYES, "eyes", "furnished"),
     "remote control": (table_sensors.REMOTE, "eyes", "remote"),
+    "devices": (table_reference.DEVICES, "eyes", "empty"),
+    "moves": (table_reference.MOVES, "square", "empty"),
+    "several of a kind": (table_reference.SEVERAL, "pairs", "furnished"),
 }
 """By name: table, robot, world."""
 

@@ -1,0 +1,132 @@
+"""Parts that only some robots and worlds have: checked when made, kept when written down, deterministic."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from tests.core.memory_sink import MemorySink
+from tuisim.core.extra_motors import simulation_of
+from tuisim.core.geometry import Pose
+from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
+from tuisim.core.profile import PROFILES
+from tuisim.core.sensors import infrared, touch
+from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec, from_plain, to_plain
+from tuisim.errors import ConfigError
+
+ROBOT = RobotSpec(
+    color_sensors=(),
+    gyro=None,
+    extra_motors=(MotorSpec("outA"), MotorSpec("outD", "large")),
+    extra_ultrasonics=(UltrasonicSpec("behind", "in2", angle_deg=180.0),),
+    touch_sensors=(TouchSpec(port="in3"),),
+    infrared=InfraredSpec(port="in4"),
+)
+WORLD = WorldSpec(beacon=BeaconSpec(900.0, 500.0, 3), remote=(RemotePress(("top_left", "top_right"), 1.0, 2.0, 2),))
+RUN = RunSpec(ROBOT, WORLD, PROFILES["ev3"])
+
+MISTAKES: dict[str, Callable[[], Any]] = {
+    "kind of motor": lambda: MotorSpec("outA", "tiny"),
+    "motor on a wheel's port": lambda: RobotSpec(extra_motors=(MotorSpec("outB"),)),
+    "motor on no port": lambda: RobotSpec(extra_motors=(MotorSpec("outX"),)),
+    "two motors on a port": lambda: RobotSpec(extra_motors=(MotorSpec("outA"), MotorSpec("outA"))),
+    "two sensors on a port": lambda: RobotSpec(touch_sensors=(TouchSpec(port="in2"),)),
+    "sensor on no port": lambda: RobotSpec(gyro=None, infrared=InfraredSpec(port="in9")),
+    "two sensors of a name": lambda: replace(ROBOT, touch_sensors=(TouchSpec("behind", "in3"),)),
+    "sensor far away": lambda: TouchSpec(y_mm=9999.0),
+    "no number": lambda: InfraredSpec(x_mm=float("nan")),
+    "channel": lambda: BeaconSpec(0.0, 0.0, 5),
+    "three buttons": lambda: RemotePress(("top_left", "bottom_left", "top_right")),
+    "no button": lambda: RemotePress(()),
+    "ends before it begins": lambda: RemotePress(("beacon",), 2.0, 1.0),
+}
+
+
+@pytest.mark.parametrize("make", MISTAKES.values(), ids=MISTAKES)
+def test_impossible_parts_are_refused(make: Callable[[], Any]) -> None:
+    with pytest.raises(ConfigError):
+        make()
+
+
+def test_parts_are_kept_when_a_run_is_written_down() -> None:
+    assert from_plain(json.loads(json.dumps(to_plain(RUN)))) == RUN
+
+
+def test_a_run_written_before_there_were_such_parts_can_be_read() -> None:
+    run = RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"])
+    plain = to_plain(run)
+    for key in ("extra_motors", "extra_ultrasonics", "touch_sensors", "infrared"):
+        del plain["robot"][key]
+    for key in ("beacon", "remote"):
+        del plain["world"][key]
+    assert from_plain(plain) == run
+
+
+@pytest.mark.parametrize("chunk", [1, 3, 7, 50, 1000])
+def test_further_motors_go_the_same_way_however_the_ticks_are_divided(chunk: int) -> None:
+    sim = simulation_of(RUN, MemorySink())
+    arm, other = sim.others
+    sim.left.run(300.0)
+    arm.run_to(123.0, 400.0, backwards=False)
+    other.run_until(-200.0, 77)
+    ends = []
+    while sim.tick < 300:
+        sim.changed = False
+        sim.advance(min(chunk, 300 - sim.tick), until_change=True)
+        if sim.changed:
+            ends.append(sim.tick)
+    assert (arm.position_deg, arm.mode, other.mode, ends) == (123.0, 0, 0, [55, 77])
+    assert (sim.x_mm, sim.heading_deg) == pytest.approx(_alone(), abs=0.0)
+
+
+def _alone() -> tuple[float, float]:
+    """Where the same robot gets to while no further motor runs."""
+    sim = simulation_of(RUN, MemorySink())
+    sim.left.run(300.0)
+    sim.advance(300)
+    return sim.x_mm, sim.heading_deg
+
+
+BOX = replace(WORLD, obstacles=(Obstacle(600.0, 400.0, 100.0, 200.0),))
+TOUCHES = {
+    "far": (500.0, 500.0, 0.0, False),
+    "just not": (552.0, 500.0, 0.0, False),
+    "at it": (554.0, 500.0, 0.0, True),
+    "left end of the bumper": (556.0, 391.0, 0.0, True),
+    "past it": (556.0, 380.0, 0.0, False),
+    "behind it": (746.0, 500.0, 180.0, True),
+    "wall": (2316.0, 900.0, 0.0, True),
+}
+
+
+@pytest.mark.parametrize(("x_mm", "y_mm", "heading_deg", "pressed"), TOUCHES.values(), ids=TOUCHES)
+def test_touch(x_mm: float, y_mm: float, heading_deg: float, pressed: bool) -> None:
+    assert touch.pressed(Pose(x_mm, y_mm, heading_deg), TouchSpec(), BOX) is pressed
+
+
+SEEN = {
+    "ahead": (500.0, 500.0, 0.0, (0, 19)),
+    "to the right": (900.0, 980.0, 0.0, (23, 24)),
+    "to the left": (900.0, 100.0, 0.0, (-23, 20)),
+    "behind": (1300.0, 500.0, 0.0, (0, -128)),
+}
+
+
+@pytest.mark.parametrize(("x_mm", "y_mm", "heading_deg", "seen"), SEEN.values(), ids=SEEN)
+def test_beacon(x_mm: float, y_mm: float, heading_deg: float, seen: tuple[int, int]) -> None:
+    values = infrared.seek(Pose(x_mm, y_mm, heading_deg), InfraredSpec(), WORLD)
+    assert values == (0, -128, 0, -128, *seen, 0, -128)
+
+
+def test_a_beacon_behind_an_obstacle_is_not_found() -> None:
+    assert infrared.seek(Pose(500.0, 500.0, 0.0), InfraredSpec(), BOX) == infrared.NOT_FOUND * 4
+
+
+def test_proximity_is_the_nearest_surface_in_percent_of_70_cm() -> None:
+    values = [infrared.proximity(Pose(x_mm, 500.0, 0.0), InfraredSpec(), BOX) for x_mm in (510.0, 230.0)]
+    assert values == [10, 50]
+    assert infrared.proximity(Pose(1000.0, 500.0, 0.0), InfraredSpec(), BOX) == 100
