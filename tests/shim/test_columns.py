@@ -1,0 +1,29 @@
+"""What further sensors showed is told tick by tick, the same as the program saw."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.shim.conftest import RunOn
+from tuisim.datalog.sensor_columns import sensor_columns
+from tuisim.fields import open_field
+
+PROGRAM = """
+from ev3dev2.motor import *
+from ev3dev2.sensor.lego import *
+tank, touch, eye = MoveTank('outB', 'outC'), TouchSensor(), InfraredSensor()
+tank.on(20, 20)
+touch.wait_for_pressed()
+print(touch.is_pressed, eye.proximity)
+"""
+
+
+@pytest.mark.parametrize("profile", ["ev3", "robolab"])
+def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
+    done = run_on(PROGRAM, "eyes", "furnished", profile)
+    columns = sensor_columns(done.run.telemetry.array(), done.run.spec, [], open_field(done.run.field))
+    assert list(columns)[-2:] == ["touch_pressed", "infrared_proximity"]
+    pressed, proximity = columns["touch_pressed"], columns["infrared_proximity"]
+    assert (pressed[0], pressed[-1]) == (0, 1)
+    assert proximity[0] == 54
+    assert done.lines == [f"1 {proximity[-1]:.0f}"]
