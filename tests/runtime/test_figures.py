@@ -65,7 +65,7 @@ MOVES = {
         (TURN_MM * 2, 0, 720),
     ),
     "from 500 to 100": Move(
-        "m = tank_drive.left_motor\nm.position = 500\nm.on_to_position(20, 100)", (0, 0, 500.93), (-79.765, 62.22, 100)
+        "m = tank_drive.left_motor\nm.position = 500\nm.on_to_position(20, 100)", (0, 0, 500.93), (-79.629, 62.22, 100)
     ),
     "brake and coast": Move(
         "import time\ntank_drive.on(50, 50)\ntime.sleep(1)\ntank_drive.off(brake=False)\ntime.sleep(1)",

@@ -72,6 +72,24 @@ def test_odometry_agrees_after_ten_metres(run_on: RunOn) -> None:
     assert (heading_deg - true_deg + 180) % 360 - 180 == pytest.approx(0.0, abs=0.1)
 
 
+ARC = """
+import time
+from math import degrees
+time.sleep(0.1)
+drive.odometry_start(theta_degrees_start=0, x_pos_start=500, y_pos_start=571.5)
+drive.on_arc_right(30, 250, 10_000)
+time.sleep(0.1)
+print(drive.x_pos_mm, drive.y_pos_mm, degrees(drive.theta))
+drive.odometry_stop()
+"""
+
+
+def test_odometry_agrees_after_ten_metres_on_an_arc(run_on: RunOn) -> None:
+    done = run_on(DRIVE.format(spacing=168) + ARC, "square")
+    x_mm, y_mm, _ = map(float, done.lines[0].split())
+    assert math.hypot(x_mm - done.pose[0], y_mm - done.pose[1]) < 1.0
+
+
 FOLLOW = """
 from ev3dev2.motor import *
 from ev3dev2.sensor.lego import ColorSensor

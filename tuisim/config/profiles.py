@@ -48,6 +48,7 @@ SOURCES: Mapping[str, str] = {
     "motor_ramps": "ev3dev2 library: ramp_up_sp and ramp_down_sp; the old simulator has none",
     "chain_relative_moves": "EV3 motor driver: a move counts from where the last was to end",
     "pair_tail_ns": f"{_OLD}: the wait for the second motor times out",
+    "halfway_heading": f"{_NEW}, so that arcs are round; {_OLD}: the heading before the turn",
     "forward_noise_only": _OLD,
     "ultrasonic_period_ticks": _OLD,
     "solid": "on a real field things are solid; in the old simulator nothing is",

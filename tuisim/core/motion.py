@@ -48,9 +48,9 @@ class Motion:
     """
 
     __slots__ = (
-        "_buffer", "_hz", "_left_dps", "_longest_mm", "_mm_per_deg", "_ramp_step", "_right_dps", "_room_end", "_sink",
-        "_solids", "_spacing_mm", "_tick_s", "_whole", "actions", "changed", "gyro_zero_deg", "heading_deg", "left",
-        "line", "noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
+        "_buffer", "_early", "_hz", "_left_dps", "_longest_mm", "_mm_per_deg", "_ramp_step", "_right_dps", "_room_end",
+        "_sink", "_solids", "_spacing_mm", "_tick_s", "_whole", "actions", "changed", "gyro_zero_deg", "heading_deg",
+        "left", "line", "noise", "pen_down", "right", "spec", "tick", "x_mm", "y_mm",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -62,7 +62,9 @@ class Motion:
         self._ramp_step = 5000.0 / spec.robot.weight / self._hz if spec.robot.weight else 0.0
         self._spacing_mm = spec.robot.wheel_spacing_mm
         self._whole = spec.profile.round_forward_speeds
-        self._solids = Solids(spec.world, spec.robot) if spec.world.solid else None
+        self._early = 0.5 if spec.profile.halfway_heading else 0.0
+        """Which part of a tick's turn counts already for the way of that tick."""
+        self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
         if self._solids is not None:
             # A wheel at full speed forwards and the other backwards.
             farthest = spec.profile.max_speed_dps * self._tick_s * self._mm_per_deg
@@ -152,11 +154,12 @@ class Motion:
         if before is not None:
             left_deg, right_deg = self._obstructed(before, left_deg, right_deg)
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
-        heading = radians(self.heading_deg)
+        turned = degrees((right_mm - left_mm) / self._spacing_mm)
+        heading = radians(self.heading_deg + turned * self._early)
         forward = (left_mm + right_mm) / 2
         self.x_mm += forward * cos(heading)
         self.y_mm += forward * sin(heading)
-        self.heading_deg += degrees((right_mm - left_mm) / self._spacing_mm)
+        self.heading_deg += turned
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         count = self._sink.count
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
@@ -278,8 +281,8 @@ class Motion:
         line, zero, flags, actions = self.line, self.gyro_zero_deg, self._flags(), self.actions & 0xFFFF
         x, y, heading, hz = self.x_mm, self.y_mm, self.heading_deg, self._hz
         pack_into = TICK_RECORD.pack_into
-        turn = radians(heading)
-        across, up = cos(turn), sin(turn)
+        across = up = 0.0
+        faced, early = False, self._early
         sink = self._sink
         buffer, at = self._make_room(ticks), 64 + 64 * sink.count
         left_deg = right_deg = 0.0
@@ -291,12 +294,19 @@ class Motion:
             right_at += right_deg if right_counts is None else right_counts * right_deg + right.counts_on_dps * tick_s
             left_mm, right_mm = left_deg * mm_per_deg, right_deg * mm_per_deg
             forward = (left_mm + right_mm) / 2
-            x += forward * across
-            y += forward * up
             if left_mm != right_mm:
-                heading += degrees((right_mm - left_mm) / spacing)
-                turn = radians(heading)
-                across, up = cos(turn), sin(turn)
+                turned = degrees((right_mm - left_mm) / spacing)
+                turn = radians(heading + turned * early)
+                x += forward * cos(turn)
+                y += forward * sin(turn)
+                heading += turned
+                faced = False
+            else:
+                if not faced:
+                    turn = radians(heading)
+                    across, up, faced = cos(turn), sin(turn), True
+                x += forward * across
+                y += forward * up
             pack_into(
                 buffer, at, tick, line, x, y, heading, left_at, right_at, left_deg * hz, right_deg * hz,
                 zero, flags, actions,
@@ -340,7 +350,9 @@ class Motion:
         pack_into = TICK_RECORD.pack_into
         sink = self._sink
         buffer, at = self._make_room(ticks), 64 + 64 * sink.count
-        across, up = forward * cos(radians(heading)), forward * sin(radians(heading))
+        early = turned * self._early
+        turn = radians(heading + early)
+        across, up = forward * cos(turn), forward * sin(turn)
         for tick in range(self.tick + 1, self.tick + ticks + 1):
             left_at += left_count
             right_at += right_count
@@ -348,7 +360,7 @@ class Motion:
             y += up
             if turned:
                 heading += turned
-                turn = radians(heading)
+                turn = radians(heading + early)
                 across, up = forward * cos(turn), forward * sin(turn)
             pack_into(
                 buffer, at, tick, line, x, y, heading, left_at, right_at, left_dps, right_dps, zero, flags, actions

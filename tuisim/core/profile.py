@@ -53,6 +53,8 @@ class ProfileSpec:
     """A relative move that follows another counts from the other's target, not from the position."""
     pair_tail_ns: int = 0
     """How long a blocking call on two motors stands still after the move."""
+    halfway_heading: bool = True
+    """A tick moves the robot along the heading it has halfway through its turn, not along that before it."""
     forward_noise_only: bool = False
     """Motor noise works on speeds of 0 or more only, also on a wheel that stands."""
     ultrasonic_period_ticks: int = 1
@@ -76,6 +78,7 @@ NBEV3DEVSIM = ProfileSpec(
     attribute_read_ns=0,
     clock_read_ns=0,
     ambient_percent=0,
+    halfway_heading=False,
     round_forward_speeds=True,
     halve_position_moves=True,
     keep_speed_when_stopped=True,

@@ -81,9 +81,11 @@ class Solids:
     Args:
         world: Walls and obstacles.
         robot: Its outline counts.
+        early: Which part of a tick's turn counts already for the way of that tick.
     """
 
-    def __init__(self, world: WorldSpec, robot: RobotSpec) -> None:
+    def __init__(self, world: WorldSpec, robot: RobotSpec, early: float = 0.0) -> None:
+        self._early = early
         self._walls = world.walls
         self._boxes: list[Box] = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
         self._half_width, front, back = half_width_mm(robot), front_mm(robot), robot.back_mm
@@ -122,7 +124,7 @@ class Solids:
 
         Args:
             pose: x and y in mm, heading in degrees.
-            forward_mm: Way along the heading before the turn.
+            forward_mm: Way of the tick.
             turn_deg: Turn, counter-clockwise.
         """
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
@@ -141,11 +143,12 @@ class Solids:
             return 1.0
         solid = self._things_within(pose, way_mm)
         x_mm, y_mm, heading_deg = pose
-        heading = math.radians(heading_deg)
-        across, up = forward_mm * math.cos(heading), forward_mm * math.sin(heading)
+        early_deg = turn_deg * self._early
 
         def meets(part: float) -> bool:
-            there = self._body(x_mm + across * part, y_mm + up * part, heading_deg + turn_deg * part)
+            heading, way = math.radians(heading_deg + early_deg * part), forward_mm * part
+            x, y = x_mm + way * math.cos(heading), y_mm + way * math.sin(heading)
+            there = self._body(x, y, heading_deg + turn_deg * part)
             return any(gap < -TOUCH_MM for gap in self._gaps(there, solid))
 
         steps = max(1, math.ceil(way_mm / STEP_MM))
