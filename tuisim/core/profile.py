@@ -35,7 +35,7 @@ class ProfileSpec:
     """Large motor, no load (EV3 motor driver table)."""
     reflected_max: int = 255
     """What `reflected_light_intensity` gives on white."""
-    ambient_percent: int = 10
+    ambient_percent: int = 0
     """What `ambient_light_intensity` gives on white: the light that a sensor close to the mat still gets."""
     round_forward_speeds: bool = False
     """Round a wheel speed of 0 or more to whole degrees per second each tick."""
@@ -53,7 +53,7 @@ class ProfileSpec:
     """A relative move that follows another counts from the other's target, not from the position."""
     pair_tail_ns: int = 0
     """How long a blocking call on two motors stands still after the move."""
-    halfway_heading: bool = True
+    halfway_heading: bool = False
     """A tick moves the robot along the heading it has halfway through its turn, not along that before it."""
     forward_noise_only: bool = False
     """Motor noise works on speeds of 0 or more only, also on a wheel that stands."""
@@ -69,6 +69,8 @@ ROBOLAB = ProfileSpec(
     name="robolab",
     title="the course as its text says, defects mended",
     tick_hz=100,
+    ambient_percent=10,
+    halfway_heading=True,
 )
 
 NBEV3DEVSIM = ProfileSpec(
@@ -77,8 +79,6 @@ NBEV3DEVSIM = ProfileSpec(
     tick_hz=30,
     attribute_read_ns=0,
     clock_read_ns=0,
-    ambient_percent=0,
-    halfway_heading=False,
     round_forward_speeds=True,
     halve_position_moves=True,
     keep_speed_when_stopped=True,
@@ -99,6 +99,8 @@ EV3 = ProfileSpec(
     color_code_read_ns=10 * MS,
     gyro_read_ns=10 * MS,
     reflected_max=100,
+    ambient_percent=10,
+    halfway_heading=True,
     solid=True,
 )
 
