@@ -12,7 +12,7 @@ from tuisim.core.geometry import Pose
 from tuisim.ui.actions import ACTIONS, Action, Situation
 from tuisim.ui.app import Lab
 from tuisim.ui.footer import fitting
-from tuisim.ui.panels import PANELS, PanelInfo
+from tuisim.ui.panels import LARGE, PANELS, PanelInfo
 from tuisim.ui.panels.positioning import parse_field
 from tuisim.ui.screens.help import HelpScreen
 from tuisim.ui.snapshot import IDLE, PAUSED, RUNNING
@@ -35,13 +35,16 @@ async def test_first_picture(size: tuple[int, int]) -> None:
 async def test_a_panel_key_shows_and_hides_it(panel: PanelInfo) -> None:
     async with Lab(settings(LOGS)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
-        assert app.desk.shown(panel.id)
+        at_first = LARGE in panel.sizes
+        assert app.desk.shown(panel.id) is at_first
         await pilot.press(panel.key)
-        assert not app.desk.shown(panel.id)
-        await pilot.press(panel.key)
-        assert app.desk.shown(panel.id)
+        assert app.desk.shown(panel.id) is not at_first
         await pilot.pause()
-        assert panel.title in screen_text(app)
+        assert (f"─ {panel.title}" in screen_text(app)) is not at_first
+        await pilot.press(panel.key)
+        assert app.desk.shown(panel.id) is at_first
+        await pilot.pause()
+        assert (f"─ {panel.title}" in screen_text(app)) is at_first
 
 
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
@@ -63,7 +66,7 @@ async def test_resize_there_and_back() -> None:
         before = screen_text(app)
         await pilot.resize_terminal(200, 60)
         await until(pilot, lambda: app.desk.shown("positioning"))
-        assert all(app.desk.shown(panel) for panel in PANELS)
+        assert all(app.desk.shown(panel.id) for panel in PANELS.values() if panel.sizes)
         await pilot.resize_terminal(80, 24)
         await until(pilot, lambda: not app.desk.shown("chart"))
         await until(pilot, lambda: screen_text(app) == before)
@@ -139,7 +142,7 @@ async def test_speed_steps_and_ends() -> None:
 async def test_pen_is_p_and_not_shift_p() -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await pilot.press("P")
+        await pilot.press("P", "escape")
         assert not app.bridge.pen_down
         await pilot.press("p")
         assert app.bridge.pen_down

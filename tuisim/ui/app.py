@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import constants, events
-from textual.app import App, ComposeResult
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.command import Provider
 from textual.widget import Widget
@@ -26,11 +26,10 @@ from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.speech import Voice
 from tuisim.ui.verbs import end_label, speed_label
 from tuisim.ui.watch import PERIOD_S
+from tuisim.ui.wishes import Wishes
 
 if TYPE_CHECKING:
-    from tuisim.ui.panels.chart import Chart
     from tuisim.ui.panels.output import Output
-    from tuisim.ui.panels.world import World
     from tuisim.ui.render.mat import Pixels
 
 AFTER_FIRST_PAINT_S = 0.05
@@ -44,7 +43,7 @@ def _palette() -> type[Provider]:
     return ActionProvider
 
 
-class Lab(App[None]):
+class Lab(Wishes):
     """The robot lab.
 
     Args:
@@ -68,7 +67,7 @@ class Lab(App[None]):
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
         self.voice = Voice(settings.quiet)
-        self._feed: Feed | None = None
+        self.feed: Feed | None = None
         self._drawn: object = None
         self.loading = Loading(self)
         self._run_when_ready = settings.autorun
@@ -134,7 +133,7 @@ class Lab(App[None]):
             self.complain(error)
             return
         assert self.bridge.run is not None
-        self._feed = Feed(self.bridge.run, self.bridge.noise_at)
+        self.feed = Feed(self.bridge.run, self.bridge.noise_at)
         self._last_words = ""
         if self.desk.output:
             self.desk.output.clear()
@@ -219,14 +218,14 @@ class Lab(App[None]):
             self.call_after_refresh(self._ask_terminal)
 
     def _feed_panels(self) -> None:
-        if self._feed is None or self.bridge.mat is None:
+        if self.feed is None or self.bridge.mat is None:
             return
         if world := self.desk.world:
-            xs, ys = self._feed.trace_points()
+            xs, ys = self.feed.trace_points()
             if xs:
-                world.extend_trace(xs, ys, self._feed.run.spec.robot.pen)
+                world.extend_trace(xs, ys, self.feed.run.spec.robot.pen)
         if self.desk.shown("chart"):
-            self._append(self._feed.chart_series(self.bridge.mat))
+            self._append(self.feed.chart_series(self.bridge.mat))
 
     def _ask_terminal(self) -> None:
         # The answer arrives as a CursorPosition event once the frame has been worked through.
@@ -269,6 +268,7 @@ class Lab(App[None]):
 
     def on_desk_rearranged(self) -> None:
         """Panels came, went or moved."""
+        self.mark_box()
         self.call_after_refresh(self.draw, force=True)
 
     def _introduce_program(self) -> None:
@@ -296,23 +296,10 @@ class Lab(App[None]):
         """Leave an input field."""
         self.set_focus(self.desk.world if self.desk.shown("world") else None)
 
-    def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
-        """The robot was dragged with the mouse."""
-        self.bridge.place(message.pose)
-
     def on_output_answered(self, message: Output.Answered) -> None:
         """The user answered `input()`."""
         self.bridge.answer(message.text)
         self.action_leave_field()
-
-    def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
-        """Show where the robot was at the chart's cursor."""
-        if self.desk.world and self._feed:
-            self.desk.world.set_ghost(self._feed.pose_at(message.time_s))
-
-    def on_positioning_applied(self, message: Any) -> None:
-        """A pose was typed in."""
-        self.bridge.place(message.pose)
 
     def on_click(self, event: events.Click) -> None:
         """A click beside every field leaves it."""

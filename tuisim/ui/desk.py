@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tuisim.ui.panels.chart import Chart
     from tuisim.ui.panels.code import Code
     from tuisim.ui.panels.controls import Controls
+    from tuisim.ui.panels.obstacles import Obstacles
     from tuisim.ui.panels.output import Output
     from tuisim.ui.panels.world import World
 
@@ -75,6 +76,11 @@ class Desk(Container):
     def controls(self) -> Controls | None:
         """The simulator controls, if they have been made."""
         return cast("Controls | None", self.panels.get("controls"))
+
+    @property
+    def obstacles(self) -> Obstacles | None:
+        """The list of obstacles, if it has been made."""
+        return cast("Obstacles | None", self.panels.get("obstacles"))
 
     def shown(self, panel: str) -> bool:
         """Whether a panel is on the screen."""

@@ -125,6 +125,16 @@ def with_robot(plan: Plan, word: str) -> Plan:
     return with_choices(plan, {"robot": word})
 
 
+def with_profile(plan: Plan, word: str) -> Plan:
+    """Return the plan with another profile, by name or from a file.
+
+    Raises:
+        ProfileError: there is none of that name, or the file is wrong.
+    """
+    # Whether things are solid is the profile's business until the user says it anew.
+    return with_choices(plan, {"profile": word, "solid": None})
+
+
 def with_robot_as_chosen(plan: Plan) -> Plan:
     """Return the plan with every edit of the robot undone."""
     return _built(plan, robot=plan.robot)
@@ -143,6 +153,20 @@ def with_robot_edited(plan: Plan, robot: RobotSpec, moved: bool = False) -> Plan
     """
     choice = plan.robot_choice
     return _built(plan, robot=replace(choice, spec=robot, own_places=choice.own_places or moved))
+
+
+def robot_to_save(plan: Plan) -> RobotSpec:
+    """Return the robot as it was chosen and edited, not as the mat has changed it, with the pen of the plan."""
+    return replace(plan.robot_choice.spec, pen=plan.spec.robot.pen)
+
+
+def with_obstacle_set(plan: Plan, word: str) -> Plan:
+    """Return the plan with a set of obstacles, by name or from a file.
+
+    Raises:
+        ObstacleError: there is none of that name, or the file is wrong.
+    """
+    return with_choices(plan, {"obstacles": word})
 
 
 def with_obstacles(plan: Plan, obstacles: tuple[Obstacle, ...]) -> Plan:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.core.geometry import Pose
+from tuisim.ui import plan as plans
 from tuisim.ui.panels import PANELS
+from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import PAUSED
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
     from tuisim.ui.panels.world import World
+    from tuisim.ui.screens.choosing import Chooser
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 """What `[` and `]` step through; 0 is as fast as possible."""
@@ -90,9 +95,10 @@ def nudge(lab: Lab, right_mm: float, up_mm: float, turn_deg: float) -> None:
 
 
 def toggle(lab: Lab, panel: str) -> None:
-    """Show a panel, or hide it."""
+    """Show a panel, or hide it; one that is to be edited takes the focus."""
     lab.desk.toggle(panel)
     lab.situation_changed()
+    lab.call_after_refresh(lab.attend, panel)
 
 
 def _world(lab: Lab) -> World | None:
@@ -123,6 +129,29 @@ def clear_trace(lab: Lab) -> None:
         lab.draw(force=True)
 
 
+def random_place(lab: Lab) -> None:
+    """Put the robot somewhere on the field."""
+    from random import Random
+
+    from tuisim.ui.placing import random_pose
+
+    if pose := random_pose(lab.bridge.spec, Random()):
+        lab.bridge.place(pose)
+    else:
+        lab.say("No free place was found: there are many obstacles, or the robot is large")
+
+
+def saved_poses(lab: Lab) -> None:
+    """Go to a saved pose, or save this one."""
+    from tuisim.ui.screens.poses import SavedPoses
+
+    def go(pose: Pose | None) -> None:
+        if pose:
+            lab.bridge.place(pose)
+
+    lab.push_screen(SavedPoses(lab.bridge.pose), go)
+
+
 def choose_mat(lab: Lab) -> None:
     """Ask for a mat and lay it out."""
     from tuisim.ui.screens.mats import MatPicker
@@ -136,13 +165,92 @@ def choose_mat(lab: Lab) -> None:
 
 def open_program(lab: Lab) -> None:
     """Ask for a program and open it."""
-    from tuisim.ui.screens.programs import ProgramPicker
+    from tuisim.ui.screens.choices import program_chooser
 
     def take(path: str | None) -> None:
         if path:
             lab.loading.open_file(path)
 
-    lab.push_screen(ProgramPicker(), take)
+    lab.push_screen(program_chooser(), take)
+
+
+def _choose(lab: Lab, chooser: Chooser, take: Callable[[Plan, str], Plan]) -> None:
+    """Ask for a name or a file, and take what it stands for into the plan."""
+
+    def chosen(word: str | None) -> None:
+        if word:
+            lab.loading.attempt(lambda plan: take(plan, word))
+
+    lab.push_screen(chooser, chosen)
+
+
+def choose_robot(lab: Lab) -> None:
+    """Ask for a robot."""
+    from tuisim.ui.screens.choices import robot_chooser
+
+    _choose(lab, robot_chooser(lab.bridge.plan), plans.with_robot)
+
+
+def choose_profile(lab: Lab) -> None:
+    """Ask for a profile."""
+    from tuisim.ui.screens.choices import profile_chooser
+
+    _choose(lab, profile_chooser(lab.bridge.plan), plans.with_profile)
+
+
+def choose_obstacles(lab: Lab) -> None:
+    """Ask for a set of obstacles."""
+    from tuisim.ui.screens.choices import obstacle_chooser
+
+    _choose(lab, obstacle_chooser(lab.bridge.plan), plans.with_obstacle_set)
+
+
+def reset_robot(lab: Lab) -> None:
+    """Undo what was edited of the robot."""
+    if lab.bridge.plan.robot_is_edited:
+        lab.loading.attempt(plans.with_robot_as_chosen)
+    else:
+        lab.say("Nothing of the robot is edited")
+
+
+def save_robot(lab: Lab) -> None:
+    """Ask for a file and write the robot to it."""
+    from tuisim.config import save_robot as write
+    from tuisim.ui.screens.saving import SaveDialog
+
+    def save(path: Path) -> None:
+        write(plans.robot_to_save(lab.bridge.plan), path)
+        lab.loading.saved(path)
+
+    proposed = lab.bridge.plan.words.get("robot", "")
+    name = proposed if proposed.endswith(".toml") else f"{lab.bridge.plan.robot_choice.spec.name}.toml"
+    lab.push_screen(SaveDialog("robot", name, save))
+
+
+def save_obstacles(lab: Lab) -> None:
+    """Ask for a file and write the obstacles to it."""
+    from tuisim.config import save_obstacles as write
+    from tuisim.ui.screens.saving import SaveDialog
+
+    def save(path: Path) -> None:
+        write(lab.bridge.plan.spec.world.obstacles, path)
+        lab.loading.saved(path)
+
+    proposed = lab.bridge.plan.words.get("obstacles", "")
+    lab.push_screen(SaveDialog("obstacles", proposed if proposed.endswith(".toml") else "obstacles.toml", save))
+
+
+def save_world(lab: Lab) -> None:
+    """Ask for a file and write the world to it, with the program that is open."""
+    from tuisim.config import save_world as write
+    from tuisim.ui.screens.saving import SaveDialog
+
+    def save(path: Path) -> None:
+        program = lab.bridge.program
+        write(lab.bridge.plan.spec, path, program.path if program and program.path else None)
+        lab.loading.saved_world(path)
+
+    lab.push_screen(SaveDialog("world", str(lab.loading.world_file or "lab.toml"), save))
 
 
 def export(lab: Lab) -> None:

@@ -40,7 +40,10 @@ class Controls(Widget, can_focus=False):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
-        shown = (snapshot.state, snapshot.end, snapshot.speed, snapshot.pen_down, id(snapshot.spec))
+        shown = (
+            (snapshot.state, snapshot.end, snapshot.speed, snapshot.pen_down),
+            (snapshot.spec, snapshot.instant.noise),
+        )
         if shown != self._shown:
             self._shown, self._snapshot = shown, snapshot
             self.refresh()
@@ -78,7 +81,7 @@ class Controls(Widget, can_focus=False):
         )
         spec = now.spec
         slower, faster = (self._button(key, to, True) for key, to in (("[", "slower"), ("]", "faster")))
-        noise = spec.world.noise
+        noise = now.instant.noise
         lines = [
             buttons,
             Text(),

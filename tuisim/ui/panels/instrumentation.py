@@ -21,6 +21,7 @@ _PERIOD_S = 0.1
 _LABEL = Style(color="#a8a8a8")
 _VALUE = Style(color="#ffffff", bold=True)
 _UNIT = Style(color="#a8a8a8")
+_WARNING = Style(color="#ff6e6e", bold=True)
 _COLUMN = 12
 """Width of the labels where there is room."""
 
@@ -109,14 +110,21 @@ def _motor(now: Snapshot, name: str, short: str, width: int) -> Line:
     left = short == "L"
     instant = now.instant
     counts = round(instant.left_position_deg if left else instant.right_position_deg)
-    speed = round(instant.left_speed_dps if left else instant.right_speed_dps)
+    dps = round(instant.left_speed_dps if left else instant.right_speed_dps)
+    stands = now.stalled[0 if left else 1]
+    speed = ("stalled", _WARNING) if stands else _value(f"{dps:d}")
+    unit, close = (_unit(""), _unit("")) if stands else (_unit(" °/s"), _unit("°/s"))
     return _fit(
         width,
-        (_label(name), _unit("tacho"), _value(f"{counts:8d}"), _value(f"{speed:7d}"), _unit(" °/s")),
-        (_label(name, 11), _value(f"{counts:6d}"), _value(f"{speed:6d}"), _unit("°/s")),
-        (_label(name, 11), _value(f"{counts:d}"), _value(f" {speed:d}"), _unit("°/s")),
-        (_label(short, 2), _value(f"{counts:7d}"), _value(f"{speed:6d}"), _unit("°/s")),
+        (_label(name), _unit("tacho"), _value(f"{counts:8d}"), _right(speed, 7 + 4 * stands), unit),
+        (_label(name, 11), _value(f"{counts:6d}"), _right(speed, 6 + 3 * stands), close),
+        (_label(name, 11), _value(f"{counts:d} "), speed, close),
+        (_label(short, 2), _value(f"{counts:7d}"), _right(speed, 6 + 3 * stands), close),
     )
+
+
+def _right(run: Run, width: int) -> Run:
+    return run[0].rjust(width), run[1]
 
 
 def _swatch(seen: ColorReading) -> Run:

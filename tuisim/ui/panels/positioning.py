@@ -62,7 +62,10 @@ class Positioning(Vertical):
             with Horizontal(classes="field"):
                 yield Label(f"{name}, {unit}", markup=False)
                 yield Input(id=field, compact=True, select_on_focus=True)
-        yield Static("[@click=app.act('home')]m  Back to start[/]", classes="link")
+        with Horizontal(classes="links"):
+            yield Static("[@click=app.act('home')]m Start[/]")
+            yield Static("[@click=app.act('random')]j Random[/]")
+        yield Static("[@click=app.act('poses')]P Saved poses[/]", classes="link")
         yield Static(_USE, id="message", markup=False)
 
     def show(self, snapshot: Snapshot) -> None:

@@ -14,8 +14,9 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 from tuisim.ui.cellview import PixelView
+from tuisim.ui.panels.boxdrag import BoxGrip, box_at
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.pentrace import PenTrace
 from tuisim.ui.render.robot import drawn_scale, shape_of
@@ -30,6 +31,8 @@ TURN_STEP_DEG = 5.0
 _RAY_LAG_PX = 1.0
 """Rays are cast anew once the robot has moved so far or turned them so far at their ends:
 they change far more cells than the robot does, and this little cannot be seen."""
+
+_ANY_PEN = PenSpec()
 
 _SHOWS_UNTIL_TAKEN = 10
 """Moments shown before a dropped robot that was not taken jumps back."""
@@ -65,10 +68,18 @@ class World(Widget, can_focus=True):
         pose: Pose
         done: bool
 
+    @dataclass
+    class BoxesDragged(Message):
+        """The user moved an obstacle or drew a new one."""
+
+        obstacles: tuple[Obstacle, ...]
+        index: int
+        """The one that was moved or drawn."""
+
     def __init__(self) -> None:
         super().__init__()
         self.border_title = self.TITLE
-        self._view = WorldView(self._dragged)
+        self._view = WorldView(self._dragged, self._boxes_dragged)
 
     def compose(self) -> ComposeResult:
         """The picture is the only child."""
@@ -76,6 +87,14 @@ class World(Widget, can_focus=True):
 
     def _dragged(self, pose: Pose, done: bool) -> None:
         self.post_message(self.PoseDragged(pose, done))
+
+    def _boxes_dragged(self, obstacles: tuple[Obstacle, ...], index: int) -> None:
+        self.post_message(self.BoxesDragged(obstacles, index))
+
+    def edit_boxes(self, on: bool, marked: int | None = None) -> None:
+        """Let the mouse draw and move obstacles, or not; the one at hand is marked."""
+        self.border_subtitle = "drag draws or moves an obstacle" if on else ""
+        self._view.edit_boxes(on, marked)
 
     @property
     def show_rays(self) -> bool:
@@ -106,7 +125,7 @@ class World(Widget, can_focus=True):
         """Lay out a mat: shape (1143, 2362, 3), one pixel a mm. Until then the panel is blank."""
         self._view.set_mat(pixels)
 
-    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = PenSpec()) -> None:
+    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = _ANY_PEN) -> None:
         """Add points that a pen drew, joined to those before; NaN lifts it."""
         self._view.trace.add(np.array(xs_mm), np.array(ys_mm), pen)
 
@@ -129,14 +148,25 @@ class WorldView(PixelView):
 
     Args:
         dragged: Called with a pose and whether the drag is over.
+        boxes_dragged: Called with the obstacles after a drag of one, and its index.
     """
 
-    def __init__(self, dragged: Callable[[Pose, bool], None]) -> None:
+    def __init__(
+        self,
+        dragged: Callable[[Pose, bool], None],
+        boxes_dragged: Callable[[tuple[Obstacle, ...], int], None],
+    ) -> None:
         super().__init__()
         self.show_rays = False
         self.zoom = 1
         self.ghost: Pose | None = None
         self._tell = dragged
+        self._tell_boxes = boxes_dragged
+        self._edits_boxes = False
+        self._box_grip: BoxGrip | None = None
+        self._draft: tuple[Obstacle, ...] | None = None
+        """The obstacles as the drag under way makes them."""
+        self._marked: int | None = None
         self._mat: Pixels | None = None
         self.trace = PenTrace()
         self._trace_drawn = 0
@@ -161,6 +191,12 @@ class WorldView(PixelView):
         self._mat = pixels
         self._painter = None
         self.repaint_scene()
+
+    def edit_boxes(self, on: bool, marked: int | None) -> None:
+        """Let the mouse draw and move obstacles, or not."""
+        if (on, marked) != (self._edits_boxes, self._marked):
+            self._edits_boxes, self._marked = on, marked
+            self.repaint_scene()
 
     def clear_trace(self) -> None:
         """Forget the trace."""
@@ -196,7 +232,8 @@ class WorldView(PixelView):
     def _scene_of(self, snapshot: Snapshot) -> SceneState:
         spec = snapshot.spec
         pose = self._held or snapshot.instant.pose
-        scene = SceneState(spec.robot, pose, spec.world.obstacles, ghost=self.ghost)
+        boxes = spec.world.obstacles if self._draft is None else self._draft
+        scene = SceneState(spec.robot, pose, boxes, ghost=self.ghost, marked=self._marked)
         if not self.show_rays or self._held is not None:
             return scene
         last = self._scene
@@ -226,21 +263,36 @@ class WorldView(PixelView):
         return self._port.to_mm(col, 2 * row)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Take hold of the robot."""
+        """Take hold of the robot, or of an obstacle, or begin to draw one."""
         if event.button != 1 or self._port is None or self._snapshot is None:
             return
+        if not self._grip_robot(event) and self._edits_boxes:
+            x_mm, y_mm = self._at(event)
+            boxes = self._snapshot.spec.world.obstacles
+            self._box_grip = BoxGrip(boxes, box_at(boxes, x_mm, y_mm, self._port.mm_per_px / 2), x_mm, y_mm)
+            self.capture_mouse()
+            event.stop()
+
+    def _grip_robot(self, event: events.MouseDown) -> bool:
+        assert self._port is not None and self._snapshot is not None
         pose = self._held or self._snapshot.instant.pose
         x_mm, y_mm = self._at(event)
         shape = shape_of(self._snapshot.spec.robot)
         reach_mm = shape.half_width_mm * drawn_scale(shape, self._port) + 1.5 * self._port.mm_per_px
         if math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) > max(reach_mm, shape.half_width_mm - shape.back_mm / 2):
-            return
+            return False
         self._grip = _Grip(pose, x_mm, y_mm, turns=event.shift or event.ctrl)
         self.capture_mouse()
         event.stop()
+        return True
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Move or turn the robot that is held."""
+        """Move or turn what is held."""
+        if self._box_grip is not None:
+            event.stop()
+            dragged = self._box_grip.dragged_to(*self._at(event))
+            self._draft, self._marked = dragged or (None, self._marked)
+            self._draw()
         if self._grip is None or self._port is None:
             return
         event.stop()
@@ -251,7 +303,11 @@ class WorldView(PixelView):
             self._draw()
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Let go of the robot."""
+        """Let go of what is held."""
+        if self._box_grip is not None:
+            event.stop()
+            self.release_mouse()
+            self._drop_box(self._box_grip)
         if self._grip is None:
             return
         event.stop()
@@ -260,6 +316,13 @@ class WorldView(PixelView):
         self._held_shows = _SHOWS_UNTIL_TAKEN
         if self._held is not None:
             self._tell(self._held, True)
+
+    def _drop_box(self, grip: BoxGrip) -> None:
+        draft, self._draft, self._box_grip = self._draft, None, None
+        if draft is not None:
+            self._tell_boxes(draft, len(grip.boxes) if grip.index is None else grip.index)
+        elif grip.index is not None:
+            self._tell_boxes(grip.boxes, grip.index)
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         """Turn the robot counter-clockwise."""

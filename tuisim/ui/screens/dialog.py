@@ -25,8 +25,8 @@ def name_and_title(name: str, title: str, name_cells: int) -> Table:
 class Dialog(ModalScreen[Result], Generic[Result]):
     """A frame with a title; gives None when left by Escape."""
 
-    TITLE_TEXT: ClassVar[str] = ""
-    HINT: ClassVar[str] = "Escape closes"
+    TITLE_TEXT: str = ""
+    HINT: str = "Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Close", show=False)]
 
     def compose(self) -> ComposeResult:

@@ -54,8 +54,8 @@ def key_table() -> Table:
 class HelpScreen(Dialog[None]):
     """How to start, and every key."""
 
-    TITLE_TEXT: ClassVar[str] = "Help"
-    HINT: ClassVar[str] = "↑ ↓ scroll · Escape closes"
+    TITLE_TEXT: str = "Help"
+    HINT: str = "↑ ↓ scroll · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("question_mark,q", "leave", "Close", show=False)]
 
     def content(self) -> ComposeResult:

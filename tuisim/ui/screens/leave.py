@@ -14,8 +14,8 @@ from tuisim.ui.screens.dialog import Dialog
 class LeaveQuestion(Dialog[bool]):
     """Gives True if the user wants to leave all the same."""
 
-    TITLE_TEXT: ClassVar[str] = "Quit?"
-    HINT: ClassVar[str] = "y quits · n goes on"
+    TITLE_TEXT: str = "Quit?"
+    HINT: str = "y quits · n goes on"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y,q,enter", "yes", "Quit", show=False),
         Binding("n", "leave", "Stay", show=False),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from textual import on
 from textual.app import ComposeResult
 from textual.widgets import OptionList
@@ -19,8 +17,8 @@ class MatPicker(Dialog[str]):
         current: The mat that lies there now.
     """
 
-    TITLE_TEXT: ClassVar[str] = "Mats"
-    HINT: ClassVar[str] = "Enter lays it out · Escape closes"
+    TITLE_TEXT: str = "Mats"
+    HINT: str = "Enter lays it out · Escape closes"
 
     def __init__(self, current: str) -> None:
         super().__init__()

@@ -1,0 +1,164 @@
+"""Rows of a form: a name, a field that is typed into or chosen from, and below it what is wrong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from rich.text import Text
+from textual import events, on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+from textual.widget import Widget
+from textual.widgets import Input, Label, Static
+
+from tuisim.errors import ConfigError, TuisimError
+
+
+def reason(error: TuisimError) -> str:
+    """Return what is wrong, without where: that stands beside the field."""
+    message = error.message
+    if isinstance(error, ConfigError) and error.key and not error.file:
+        message = message.removeprefix(f"{error.key}: ")
+    return f"{message} ({error.hint})" if error.hint else message
+
+
+class Choice(Widget, can_focus=True):
+    """One of several words, changed by ← → or a click."""
+
+    DEFAULT_CSS = "Choice { height: 1; width: 1fr; }"
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "step(-1)", "Before", show=False),
+        Binding("right,enter,space", "step(1)", "Next", show=False),
+    ]
+
+    @dataclass
+    class Stepped(Message):
+        """The user wants the choice so many steps on."""
+
+        choice: Choice
+        by: int
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._word = ""
+
+    @property
+    def value(self) -> str:
+        """The word shown; setting it tells nobody."""
+        return self._word
+
+    @value.setter
+    def value(self, word: str) -> None:
+        if word != self._word:
+            self._word = word
+            self.refresh()
+
+    def action_step(self, by: int) -> None:
+        """Ask for another."""
+        self.post_message(self.Stepped(self, by))
+
+    def on_click(self, event: events.Click) -> None:
+        """Ask for the one before at the left end, else for the next."""
+        event.stop()
+        self.action_step(-1 if event.x == 0 else 1)
+
+    def on_focus(self) -> None:
+        """Show that the keys work here."""
+        self.refresh()
+
+    def on_blur(self) -> None:
+        """Show that they do no longer."""
+        self.refresh()
+
+    def render(self) -> Text:
+        """Return the row."""
+        line = Text(f"‹ {self._word}", no_wrap=True, end="")
+        line.truncate(max(self.size.width - 2, 1), overflow="ellipsis")
+        line.append(" ›")
+        return line
+
+
+class Row(Vertical):
+    """One row of a form.
+
+    Args:
+        field: Id of what it edits; rows are told apart by it.
+        label: Its name; empty gives the field the whole width.
+        chosen: Whether it is chosen from, not typed into.
+    """
+
+    DEFAULT_CSS = """
+    Row { height: auto; }
+    Row > Horizontal { height: 1; }
+    Row Input { width: 1fr; height: 1; }
+    Row > .message { display: none; height: auto; }
+    Row.-wrong > .message { display: block; }
+    """
+
+    @dataclass
+    class Entered(Message):
+        """The user has typed something, or asks for another choice."""
+
+        row: Row
+        text: str
+        """What was typed."""
+        by: int = 0
+        """Steps to another choice."""
+
+    def __init__(self, field: str, label: str, chosen: bool) -> None:
+        super().__init__()
+        self.field = field
+        self._label = label
+        self.entry: Choice | Input = Choice() if chosen else Input(compact=True, select_on_focus=True)
+        self._shown = ""
+
+    def compose(self) -> ComposeResult:
+        """Name and field, and the line below."""
+        with Horizontal():
+            if self._label:
+                yield Label(self._label, markup=False)
+            yield self.entry
+        yield Static(classes="message", markup=False)
+
+    def show(self, text: str) -> None:
+        """Show a value, unless another is being typed."""
+        if text != self._shown or not self._typing:
+            self._shown = self.entry.value = text
+            self.complain("")
+
+    @property
+    def _typing(self) -> bool:
+        return self.entry.has_focus and self.entry.value != self._shown
+
+    def complain(self, text: str) -> None:
+        """Say what is wrong below the field; empty for nothing."""
+        self.set_class(bool(text), "-wrong")
+        self.entry.set_class(bool(text), "wrong")
+        if self.is_mounted:
+            self.query_one(".message", Static).update(text)
+
+    def refuse(self, error: TuisimError) -> None:
+        """Say below the field why what was entered is not taken."""
+        self.complain(reason(error))
+
+    @on(Input.Submitted)
+    def _submitted(self, event: Input.Submitted) -> None:
+        event.stop()
+        self._enter()
+
+    def on_descendant_blur(self) -> None:
+        """Take what was typed when the field is left."""
+        if isinstance(self.entry, Input) and self.entry.value != self._shown:
+            self._enter()
+
+    def _enter(self) -> None:
+        self.post_message(self.Entered(self, self.entry.value))
+
+    @on(Choice.Stepped)
+    def _stepped(self, event: Choice.Stepped) -> None:
+        event.stop()
+        self.post_message(self.Entered(self, self.entry.value, event.by))

@@ -1,0 +1,118 @@
+"""Noise: how far readings and wheels stray, by sliders that act at once, and the seed of the next run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual import events, on
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+from textual.widgets import Input, Label, Static
+
+from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec
+from tuisim.errors import ConfigError
+from tuisim.switches import MAX_SEED, whole
+from tuisim.ui.slider import Slider
+from tuisim.ui.snapshot import Snapshot
+
+_KINDS = {"light": ("Light", MAX_LIGHT_NOISE), "motor": ("Motor", MAX_MOTOR_NOISE)}
+"""By field of `NoiseSpec`: name and largest value."""
+_USE = "At once; seed at next run"
+
+
+class Noise(Vertical):
+    """Two sliders with a field each, and the seed."""
+
+    PANEL_ID: ClassVar[str] = "noise"
+    TITLE: ClassVar[str] = "Noise"
+
+    @dataclass
+    class Changed(Message):
+        """The user wants other noise."""
+
+        noise: NoiseSpec
+
+    @dataclass
+    class Seeded(Message):
+        """The user wants another seed."""
+
+        seed: int
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._shown: tuple[NoiseSpec, int] | None = None
+
+    def compose(self) -> ComposeResult:
+        """A row for each number, and a line that says what is wrong."""
+        for kind, (name, maximum) in _KINDS.items():
+            with Horizontal(classes="field"):
+                yield Label(f"{name}", markup=False)
+                yield Slider(maximum, id=kind)
+                yield Input("0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3)
+        with Horizontal(classes="field"):
+            yield Label("Seed", markup=False)
+            yield Input("0", id="seed", compact=True, select_on_focus=True)
+        yield Static(_USE, id="message", markup=False)
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show noise and seed as they were last chosen, here or elsewhere."""
+        if not self.is_mounted or not self.query(Slider):
+            return
+        planned = snapshot.planned
+        shown = planned.world.noise, planned.seed
+        if shown == self._shown:
+            return
+        before, self._shown = self._shown, shown
+        for kind in _KINDS:
+            value = getattr(planned.world.noise, kind)
+            slider, entry = self.query_one(f"#{kind}", Slider), self.query_one(f"#{kind}-number", Input)
+            if before is None or getattr(before[0], kind) != value:
+                slider.value = value
+                entry.value = str(value)
+        if before is None or before[1] != planned.seed:
+            self.query_one("#seed", Input).value = str(planned.seed)
+
+    @on(Slider.Changed)
+    def _slid(self, event: Slider.Changed) -> None:
+        event.stop()
+        self.query_one(f"#{event.slider.id}-number", Input).value = str(event.value)
+        self._say("")
+        self._choose()
+
+    def _choose(self) -> None:
+        light, motor = (self.query_one(f"#{kind}", Slider).value for kind in _KINDS)
+        self.post_message(self.Changed(NoiseSpec(light, motor)))
+
+    @on(Input.Submitted)
+    def _typed(self, event: Input.Submitted) -> None:
+        event.stop()
+        self._take(event.input)
+
+    def on_descendant_blur(self, event: events.DescendantBlur) -> None:
+        """Take what was typed when its field is left."""
+        if isinstance(event.widget, Input):
+            self._take(event.widget)
+
+    def _take(self, entry: Input) -> None:
+        kind = (entry.id or "").removesuffix("-number")
+        name, maximum = _KINDS.get(kind, ("Seed", MAX_SEED))
+        try:
+            value = whole(0, maximum)(entry.value.strip(), "")
+        except ConfigError as error:
+            entry.add_class("wrong")
+            self._say(f"{name} {error.message}")
+            return
+        entry.remove_class("wrong")
+        self._say("")
+        if kind == "seed":
+            self.post_message(self.Seeded(value))
+        else:
+            self.query_one(f"#{kind}", Slider).value = value
+            self._choose()
+
+    def _say(self, wrong: str) -> None:
+        self.query_one("#message", Static).update(wrong or _USE)
+        self.set_class(bool(wrong), "-wrong")

@@ -1,0 +1,99 @@
+"""Settings: every field of robot, pen and world, each with what is wrong with it below."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, VerticalScroll
+from textual.message import Message
+from textual.widgets import Static
+
+from tuisim.ui.edits import Edit, Section, find, sections, step
+from tuisim.ui.form import Choice, Row
+from tuisim.ui.plan import Plan
+from tuisim.ui.snapshot import Snapshot
+
+_LINKS = (
+    (("robot", "r Robots"), ("save-robot", "ctrl+r Save")),
+    (("profile", "F Profiles"), ("reset-robot", "ctrl+n Undo")),
+)
+
+
+class Settings(VerticalScroll, can_focus=False):
+    """A form as long as it takes, scrolled."""
+
+    PANEL_ID: ClassVar[str] = "settings"
+    TITLE: ClassVar[str] = "Settings"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("down", "app.focus_next", "Next field", show=False),
+        Binding("up", "app.focus_previous", "Field before", show=False),
+    ]
+
+    @dataclass
+    class Edited(Message):
+        """The user has entered a value."""
+
+        row: Row
+        edit: Edit
+        text: str
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._plan: Plan | None = None
+        self._fields: list[str] = []
+
+    def compose(self) -> ComposeResult:
+        """What can be done besides; the form follows with the plan."""
+        for pair in _LINKS:
+            with Horizontal(classes="links"):
+                for action, words in pair:
+                    yield Static(f"[@click=app.act('{action}')]{words}[/]")
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Nothing: it shows plans, not moments."""
+
+    def show_plan(self, plan: Plan) -> None:
+        """Show the plan of the next run."""
+        self._plan = plan
+        parts = sections(plan)
+        wanted = [edit.id for part in parts for edit in part.edits]
+        if wanted != self._fields:
+            self._fields = wanted
+            self.call_later(self._rebuild, parts)
+            return
+        for row in self.query(Row):
+            if edit := find(plan, row.field):
+                row.show(edit.read(plan))
+
+    async def _rebuild(self, parts: list[Section]) -> None:
+        """Another robot may have other sensors, so other fields."""
+        focused = next((row.field for row in self.query(Row) if row.entry.has_focus), None)
+        await self.query(".form").remove()
+        for part in parts:
+            rows = [Row(edit.id, edit.label, bool(edit.choices)) for edit in part.edits]
+            for row in rows:
+                row.add_class("form")
+            await self.mount(Static(part.title, classes="form heading", markup=False), *rows)
+        if self._plan:
+            self.show_plan(self._plan)
+        for row in self.query(Row):
+            if row.field == focused:
+                row.entry.focus()
+
+    def begin(self) -> None:
+        """Take the focus: it goes to a field in which letters are still keys of the app."""
+        if choice := next(iter(self.query(Choice)), None):
+            choice.focus()
+
+    @on(Row.Entered)
+    def _entered(self, event: Row.Entered) -> None:
+        event.stop()
+        edit = find(self._plan, event.row.field) if self._plan else None
+        if edit is not None and self._plan is not None:
+            text = step(edit, self._plan, event.by) if event.by else event.text
+            self.post_message(self.Edited(event.row, edit, text))

@@ -1,0 +1,110 @@
+"""Choosing something by its name in a list, or by the path of its file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.widgets import Input, OptionList
+from textual.widgets.option_list import Option
+
+from tuisim.errors import TuisimError
+from tuisim.ui.screens.dialog import Dialog, name_and_title
+
+MAX_FILES = 200
+MAX_TRIED = 50
+"""Files of the folder that are opened to see whether they fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Part of the list."""
+
+    title: str
+    entries: Sequence[tuple[str, str, str]]
+    """What is chosen, its name, and its title, which may be empty."""
+
+
+def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = None) -> Group:
+    """Return the files of the folder one is in.
+
+    Args:
+        suffixes: With their dots.
+        fits: Raises TuisimError for a file that is not to be listed.
+    """
+    wanted = tuple(suffixes)
+    found = sorted(path for path in Path.cwd().iterdir() if path.suffix.lower() in wanted and path.is_file())
+    if fits:
+        found = [path for path in found[:MAX_TRIED] if _passes(fits, path)]
+    return Group(f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found])
+
+
+def _passes(fits: Callable[[Path], object], path: Path) -> bool:
+    try:
+        fits(path)
+    except TuisimError:
+        return False
+    return True
+
+
+class Chooser(Dialog[str]):
+    """Gives the name or the path that was chosen.
+
+    Args:
+        title: What is chosen.
+        groups: The list; empty groups are left out.
+        current: What is chosen now, to begin there.
+        path_hint: What stands in the empty field; no field without it.
+    """
+
+    HINT: str = "Enter chooses · Escape closes"
+
+    def __init__(self, title: str, groups: Sequence[Group], current: str = "", path_hint: str = "") -> None:
+        super().__init__()
+        self.TITLE_TEXT = title
+        if path_hint:
+            self.HINT = "Enter chooses · tab to the field · Escape closes"
+        self._groups = [group for group in groups if group.entries]
+        self._current = current
+        self._path_hint = path_hint
+
+    def content(self) -> ComposeResult:
+        """A field for a path, and the list."""
+        if self._path_hint:
+            yield Input(placeholder=self._path_hint, compact=True)
+        options: list[Option | None] = []
+        for group in self._groups:
+            if options:
+                options.append(None)
+            if group.title:
+                options.append(Option(Text(group.title, "italic"), disabled=True))
+            wide = max(len(name) for _, name, _ in group.entries)
+            options += [
+                Option(name_and_title(name, title, wide) if title else Text(name, "bold"), id=chosen)
+                for chosen, name, title in group.entries[:MAX_FILES]
+            ]
+            if len(group.entries) > MAX_FILES:
+                more = f"… and {len(group.entries) - MAX_FILES} more: type the name"
+                options.append(Option(Text(more), disabled=True))
+        listed = OptionList(*options)
+        names = [option.id for option in listed.options]
+        if self._current in names:
+            listed.highlighted = names.index(self._current)
+        yield listed
+
+    def on_mount(self) -> None:
+        """Begin in the list: most want one of those."""
+        self.query_one(OptionList).focus()
+
+    @on(OptionList.OptionSelected)
+    def _chosen(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option.id)
+
+    @on(Input.Submitted)
+    def _typed(self, event: Input.Submitted) -> None:
+        if event.value.strip():
+            self.dismiss(event.value.strip())

@@ -1,0 +1,88 @@
+"""What the panels ask of the app: the robot somewhere else, other noise, obstacles, settings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from textual.app import App
+
+from tuisim.errors import TuisimError
+from tuisim.ui.plan import with_obstacles
+
+if TYPE_CHECKING:
+    from tuisim.ui.bridge import Bridge
+    from tuisim.ui.desk import Desk
+    from tuisim.ui.feed import Feed
+    from tuisim.ui.loading import Loading
+    from tuisim.ui.panels.chart import Chart
+    from tuisim.ui.panels.noise import Noise
+    from tuisim.ui.panels.obstacles import Obstacles
+    from tuisim.ui.panels.positioning import Positioning
+    from tuisim.ui.panels.settings import Settings
+    from tuisim.ui.panels.world import World
+
+
+class Wishes(App[None]):
+    """The part of the app that answers messages of panels; Textual finds the methods by their names."""
+
+    bridge: Bridge
+    desk: Desk
+    loading: Loading
+    feed: Feed | None
+    """The run at hand or the last one, as the chart and the trace are fed from it."""
+
+    def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
+        """The robot was dragged with the mouse."""
+        self.bridge.place(message.pose)
+
+    def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
+        """Show where the robot was at the chart's cursor."""
+        if self.desk.world and self.feed:
+            self.desk.world.set_ghost(self.feed.pose_at(message.time_s))
+
+    def on_positioning_applied(self, message: Positioning.Applied) -> None:
+        """A pose was typed in."""
+        self.bridge.place(message.pose)
+
+    def attend(self, panel: str) -> None:
+        """Give the focus to a panel that is to be edited, if it is on the screen; else to the world."""
+        widget = self.desk.panels.get(panel)
+        if widget is not None and hasattr(widget, "begin"):
+            if self.desk.shown(panel):
+                widget.begin()
+            else:
+                self.set_focus(self.desk.world if self.desk.shown("world") else None)
+
+    def on_settings_edited(self, message: Settings.Edited) -> None:
+        """A field of the settings was entered: what is wrong with it is said there."""
+        try:
+            self.loading.take(self.loading.change(lambda plan: message.edit.write(plan, message.text)))
+        except TuisimError as error:
+            message.row.refuse(error)
+
+    def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
+        """Obstacles were typed, added or removed."""
+        self.loading.attempt(lambda plan: with_obstacles(plan, message.obstacles))
+
+    def on_obstacles_marked(self) -> None:
+        """Another obstacle is at hand."""
+        self.mark_box()
+
+    def mark_box(self) -> None:
+        """Show in the world which obstacle is at hand, and whether the mouse draws any."""
+        on = self.desk.shown("obstacles")
+        if world := self.desk.world:
+            world.edit_boxes(on, self.desk.obstacles.at if on and self.desk.obstacles else None)
+
+    def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
+        """An obstacle was drawn or moved with the mouse."""
+        if self.loading.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and self.desk.obstacles:
+            self.desk.obstacles.mark(message.index)
+
+    def on_noise_changed(self, message: Noise.Changed) -> None:
+        """Noise was set."""
+        self.bridge.set_noise(message.noise)
+
+    def on_noise_seeded(self, message: Noise.Seeded) -> None:
+        """The seed of the next run was set."""
+        self.bridge.set_seed(message.seed)
