@@ -54,16 +54,16 @@ def _in_place(panels: Sequence[str], place: str) -> list[str]:
     return [info.id for info in PANELS.values() if info.place == place and info.id in panels]
 
 
-def _share(panels: Sequence[str], rows: int) -> list[int]:
-    """Divide `rows` among stacked panels: first the least, then what is good, then the rest to the first."""
-    heights = [PANELS[panel].min_rows for panel in panels]
-    spare = rows - sum(heights)
-    for at, panel in enumerate(panels):
-        more = min(spare, PANELS[panel].good_rows - heights[at])
-        heights[at] += more
+def _share(panels: Sequence[str], wanted: Sequence[str], rows: int) -> list[int]:
+    """Divide `rows` among stacked panels: the least, what is good to the most wanted first, the rest to the topmost."""
+    heights = {panel: PANELS[panel].min_rows for panel in panels}
+    spare = rows - sum(heights.values())
+    for panel in sorted(panels, key=wanted.index):
+        more = min(spare, PANELS[panel].good_rows - heights[panel])
+        heights[panel] += more
         spare -= more
-    heights[0] += spare
-    return heights
+    heights[panels[0]] += spare
+    return list(heights.values())
 
 
 def _strip_rows(strip: Sequence[str], width: int) -> list[list[str]]:
@@ -139,7 +139,7 @@ def arrange(panels: Sequence[str], width: int, height: int) -> Arrangement:
     if side:
         left = width - side_width(width) if strip or main else 0
         y = 0
-        for panel, rows_high in zip(side, _share(side, height), strict=True):
+        for panel, rows_high in zip(side, _share(side, kept, height), strict=True):
             boxes[panel] = Box(left, y, width - left, rows_high)
             y += rows_high
     rows = _strip_rows(strip, left)

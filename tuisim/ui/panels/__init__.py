@@ -75,7 +75,7 @@ PANELS: Mapping[str, PanelInfo] = {
         PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", SIDE, (MEDIUM, LARGE), 8, 13),
         PanelInfo("code", "Code", "D", "code:Code", BOTTOM, (MEDIUM, LARGE), 5, 9, weight=4),
         PanelInfo("chart", "Chart", "c", "chart:Chart", BOTTOM, (LARGE,), 8, 16, weight=5),
-        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", SIDE, (MEDIUM, LARGE), 10, 12),
+        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", SIDE, (MEDIUM, LARGE), 11, 12),
         PanelInfo("positioning", "Positioning", "X", "positioning:Positioning", SIDE, (LARGE,), 8, 8),
         PanelInfo("noise", "Noise", "z", "noise:Noise", SIDE, (LARGE,), 6, 6),
         PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", SIDE, (), 11, 16),

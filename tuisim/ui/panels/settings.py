@@ -46,6 +46,8 @@ class Settings(VerticalScroll, can_focus=False):
         self.border_title = self.TITLE
         self._plan: Plan | None = None
         self._fields: list[str] = []
+        self._begins = False
+        """Whether it is to take the focus as soon as it has fields."""
 
     def compose(self) -> ComposeResult:
         """What can be done besides; the form follows with the plan."""
@@ -84,10 +86,14 @@ class Settings(VerticalScroll, can_focus=False):
         for row in self.query(Row):
             if row.field == focused:
                 row.entry.focus()
+        if self._begins:
+            self.begin()
 
     def begin(self) -> None:
         """Take the focus: it goes to a field in which letters are still keys of the app."""
-        if choice := next(iter(self.query(Choice)), None):
+        choice = next(iter(self.query(Choice)), None)
+        self._begins = choice is None
+        if choice:
             choice.focus()
 
     @on(Row.Entered)
