@@ -96,8 +96,7 @@ def _open(arguments: Namespace) -> int:
         colors=settings.colors,
     )
     with _drawing_on_stdout():
-        run_app(app_settings)
-    return 0
+        return run_app(app_settings)
 
 
 @contextmanager

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
+import signal
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import constants, events
@@ -85,8 +88,17 @@ class Lab(Wishes):
         """Begin what costs time, after the first paint."""
         if self.is_headless:
             self.pacer.asks = False
+        else:
+            self._leave_on_signals()
         self.situation_changed()
         self.set_timer(AFTER_FIRST_PAINT_S, self._begin)
+
+    def _leave_on_signals(self) -> None:
+        """Give the terminal back in order when somebody ends the app from outside."""
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            # As a shell shows a program that the signal has ended.
+            loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
 
     def _begin(self) -> None:
         self.desk.ensure("world", "output", "chart")
@@ -325,7 +337,9 @@ def _choose_colors(colors: str) -> None:
         os.environ["NO_COLOR"] = "1"
 
 
-def run_app(settings: AppSettings) -> None:
-    """Run the app in this terminal until the user quits."""
+def run_app(settings: AppSettings) -> int:
+    """Run the app in this terminal until the user quits; return the exit code."""
     _choose_colors(settings.colors)
-    Lab(settings).run()
+    lab = Lab(settings)
+    lab.run()
+    return lab.return_code or 0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rich.text import Text
-from textual import on
+from textual import events, on
 from textual.app import ComposeResult
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
@@ -75,7 +75,7 @@ class Chooser(Dialog[str]):
     def content(self) -> ComposeResult:
         """A field for a path, and the list."""
         if self._path_hint:
-            yield Input(placeholder=self._path_hint, compact=True)
+            yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
         options: list[Option | None] = []
         for group in self._groups:
             if options:
@@ -99,6 +99,15 @@ class Chooser(Dialog[str]):
     def on_mount(self) -> None:
         """Begin in the list: most want one of those."""
         self.query_one(OptionList).focus()
+
+    def on_key(self, event: events.Key) -> None:
+        """What is typed while the list has the focus goes into the field."""
+        if event.character and event.is_printable and not event.character.isspace() and self.query(Input):
+            field = self.query_one(Input)
+            if not field.has_focus:
+                event.stop()
+                field.focus()
+                field.insert_text_at_cursor(event.character)
 
     @on(OptionList.OptionSelected)
     def _chosen(self, event: OptionList.OptionSelected) -> None:
