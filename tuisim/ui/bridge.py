@@ -170,8 +170,8 @@ class Bridge:
         return noise_at(self.run.spec, self._actions, record)
 
     def _field(self) -> Field | None:
-        """The mat as the sensors see it."""
-        if self.mat is None:
+        """The mat as the sensors see it, None until it is prepared for them."""
+        if self.mat is None or not self.mat.serves(self.spec):
             return None
         if self.run is None or self._moved or not self.run.spec.world.pen_marks:
             return self.mat.field

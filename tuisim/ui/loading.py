@@ -64,7 +64,7 @@ class Loading:
     def mat_is_ready(self) -> bool:
         """Whether the mat lies there, prepared for the robot's sensors."""
         mat = self._lab.bridge.mat
-        return mat is not None and mat.key == mat_key(self._lab.bridge.plan.spec)
+        return mat is not None and mat.serves(self._lab.bridge.plan.spec)
 
     def prepare_mat(self) -> None:
         """Prepare the mat off the event loop; `Lab.mat_ready` follows."""

@@ -32,6 +32,11 @@ class Mat:
     pixels: NDArray[np.uint8]
     """Shape (height, width, 3), rows from the top."""
 
+    def serves(self, spec: RunSpec) -> bool:
+        """Whether it is the mat of a run, prepared for its sensors."""
+        wanted = mat_key(spec)
+        return wanted[:2] == self.key[:2] and wanted[2] <= self.key[2]
+
     @property
     def name(self) -> str:
         """As a specification calls it."""

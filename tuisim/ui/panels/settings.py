@@ -63,13 +63,13 @@ class Settings(VerticalScroll, can_focus=False):
         """Show the plan of the next run."""
         self._plan = plan
         parts = sections(plan)
-        wanted = [edit.id for part in parts for edit in part.edits]
-        if wanted != self._fields:
-            self._fields = wanted
+        edits = {edit.id: edit for part in parts for edit in part.edits}
+        if list(edits) != self._fields:
+            self._fields = list(edits)
             self.call_later(self._rebuild, parts)
             return
         for row in self.query(Row):
-            if edit := find(plan, row.field):
+            if edit := edits.get(row.field):
                 row.show(edit.read(plan))
 
     async def _rebuild(self, parts: list[Section]) -> None:
