@@ -51,7 +51,33 @@ def _passes(fits: Callable[[Path], object], path: Path) -> bool:
     return True
 
 
-class Chooser(Dialog[str]):
+class ListDialog(Dialog[str]):
+    """A list, and mostly a field for a path; gives what was chosen or typed."""
+
+    def on_mount(self) -> None:
+        """Begin in the list: most want one of those."""
+        self.query_one(OptionList).focus()
+
+    def on_key(self, event: events.Key) -> None:
+        """What is typed while the list has the focus goes into the field."""
+        if event.character and event.is_printable and not event.character.isspace() and self.query(Input):
+            field = self.query_one(Input)
+            if not field.has_focus:
+                event.stop()
+                field.focus()
+                field.insert_text_at_cursor(event.character)
+
+    @on(OptionList.OptionSelected)
+    def _chosen(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option.id)
+
+    @on(Input.Submitted)
+    def _typed(self, event: Input.Submitted) -> None:
+        if event.value.strip():
+            self.dismiss(event.value.strip())
+
+
+class Chooser(ListDialog):
     """Gives the name or the path that was chosen.
 
     Args:
@@ -95,25 +121,3 @@ class Chooser(Dialog[str]):
         if self._current in names:
             listed.highlighted = names.index(self._current)
         yield listed
-
-    def on_mount(self) -> None:
-        """Begin in the list: most want one of those."""
-        self.query_one(OptionList).focus()
-
-    def on_key(self, event: events.Key) -> None:
-        """What is typed while the list has the focus goes into the field."""
-        if event.character and event.is_printable and not event.character.isspace() and self.query(Input):
-            field = self.query_one(Input)
-            if not field.has_focus:
-                event.stop()
-                field.focus()
-                field.insert_text_at_cursor(event.character)
-
-    @on(OptionList.OptionSelected)
-    def _chosen(self, event: OptionList.OptionSelected) -> None:
-        self.dismiss(event.option.id)
-
-    @on(Input.Submitted)
-    def _typed(self, event: Input.Submitted) -> None:
-        if event.value.strip():
-            self.dismiss(event.value.strip())

@@ -1,41 +1,106 @@
-"""The mat picker."""
+"""The mat picker: every mat by name, with a small picture of the one at hand, or an image of one's own."""
 
 from __future__ import annotations
 
+from functools import partial
+
 from textual import on
 from textual.app import ComposeResult
-from textual.widgets import OptionList
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.ui.screens.dialog import Dialog, name_and_title
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.errors import TuisimError
+from tuisim.ui.cellview import PixelView
+from tuisim.ui.render.mat import Pixels, shrink
+from tuisim.ui.render.viewport import whole_field
+from tuisim.ui.screens.choosing import ListDialog
 
 
-class MatPicker(Dialog[str]):
-    """Every mat by name and title; gives the name.
+class MatPicker(ListDialog):
+    """Gives the name of the chosen mat, or the path of an image.
 
     Args:
         current: The mat that lies there now.
     """
 
     TITLE_TEXT: str = "Mats"
-    HINT: str = "Enter lays it out · Escape closes"
+    HINT: str = "Enter lays it out · tab to the field · Escape closes"
 
     def __init__(self, current: str) -> None:
         super().__init__()
         self._current = current
+        self._shown = ""
+        self._pictures: dict[tuple[str, int, int], Pixels] = {}
 
     def content(self) -> ComposeResult:
-        """The list."""
+        """The list, the picture, and a field for a path."""
         from tuisim.assets import backgrounds
 
         mats = backgrounds()
-        wide = max(map(len, mats), default=0)
-        options = [Option(name_and_title(name, mat.title, wide), id=name) for name, mat in mats.items()]
-        listed = OptionList(*options)
-        if self._current in mats:
-            listed.highlighted = list(mats).index(self._current)
-        yield listed
+        listed = OptionList(*(Option(name, id=name) for name in mats))
+        listed.styles.width = max(map(len, mats), default=0) + 5
+        listed.highlighted = list(mats).index(self._current) if self._current in mats else 0
+        with Horizontal(classes="mats"):
+            yield listed
+            with Vertical():
+                yield PixelView()
+                yield Static(id="title", markup=False)
+        yield Input(placeholder="Or the path of an image of your own", compact=True, select_on_focus=False)
 
-    @on(OptionList.OptionSelected)
-    def _chosen(self, event: OptionList.OptionSelected) -> None:
-        self.dismiss(event.option.id)
+    def on_mount(self) -> None:
+        """Make the picture as high as its width asks for."""
+        self.call_after_refresh(self._begin)
+
+    def on_resize(self) -> None:
+        """Fit the picture to the new width."""
+        self.call_after_refresh(self._begin)
+
+    def _begin(self) -> None:
+        view = self.query_one(PixelView)
+        view.styles.height = max(1, round(view.size.width * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2))
+        self.call_after_refresh(self._show, self._shown)
+
+    @on(OptionList.OptionHighlighted)
+    def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        self._show(event.option.id or "")
+
+    def _show(self, name: str) -> None:
+        """Show a mat: its title at once, its picture as soon as it is decoded."""
+        from tuisim.assets import backgrounds
+
+        self._shown = name
+        view, mats = self.query_one(PixelView), backgrounds()
+        if name not in mats or not view.size:
+            return
+        self.query_one("#title", Static).update(mats[name].title)
+        width, height = view.size.width, 2 * view.size.height
+        if (picture := self._pictures.get((name, width, height))) is not None:
+            view.set_picture(picture)
+        else:
+            work = partial(self._decode, name, width, height, view.ground_rgb)
+            self.run_worker(work, thread=True, group="picture", exclusive=True)
+
+    def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> None:
+        from tuisim.assets import background
+        from tuisim.pictures import decode, read_file
+
+        try:
+            image = background(name).image
+            mat = decode(read_file(image), image, "stretch")
+        except TuisimError as error:
+            self.app.call_from_thread(self._told, name, str(error))
+            return
+        picture = shrink(mat, whole_field(width, height), outside_rgb)
+        self.app.call_from_thread(self._decoded, (name, width, height), picture)
+
+    def _decoded(self, key: tuple[str, int, int], picture: Pixels) -> None:
+        self._pictures[key] = picture
+        if self.is_attached and key[0] == self._shown:
+            self.query_one(PixelView).set_picture(picture)
+
+    def _told(self, name: str, text: str) -> None:
+        if self.is_attached and name == self._shown:
+            self.query_one(PixelView).clear_picture()
+            self.query_one("#title", Static).update(text)
