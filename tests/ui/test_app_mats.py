@@ -44,8 +44,11 @@ async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
         assert app.bridge.snapshot().colors["left"].rgb == (200, 0, 0)
 
 
-async def test_what_is_no_image_changes_no_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
+async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: Path) -> None:
     path = tmp_path / "none.png"
+    if content:
+        path.write_text(content)
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         before = app.bridge.plan
@@ -53,4 +56,6 @@ async def test_what_is_no_image_changes_no_run(tmp_path: Path) -> None:
         await pilot.pause()
         await pilot.press(*str(path), "enter")
         await until(pilot, lambda: any("none.png" in notice for notice in notices(app)))
-        assert app.bridge.plan == before
+        await until(pilot, lambda: app.bridge.plan == before)
+        assert app.loading.mat_is_ready
+        assert app.bridge.snapshot().colors["left"].rgb == (255, 255, 255)

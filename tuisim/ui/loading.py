@@ -34,6 +34,8 @@ class Loading:
     def __init__(self, lab: Lab) -> None:
         self._lab = lab
         self._watch = Watch()
+        self._good: tuple[Plan, Mat] | None = None
+        """The last mat that could be prepared, with its plan."""
         self.world_file: Path | None = lab.settings.world_file
         """The world file that was opened or saved last."""
         self._world_said: Mapping[str, Any] = {}
@@ -77,15 +79,24 @@ class Loading:
         try:
             mat = prepare_mat(spec)
         except TuisimError as error:
-            self._lab.call_from_thread(self._lab.complain, error)
+            self._lab.call_from_thread(self._unprepared, spec, error)
             return
         self._lab.call_from_thread(self._prepared, mat)
+
+    def _unprepared(self, spec: RunSpec, error: TuisimError) -> None:
+        """Say what is wrong with a mat, and lay the one before out again."""
+        self._lab.complain(error)
+        bridge = self._lab.bridge
+        if self._good is not None and not bridge.in_run and mat_key(bridge.plan.spec) == mat_key(spec):
+            plan, bridge.mat = self._good
+            self._load(plan, bridge.program)
 
     def _prepared(self, mat: Mat) -> None:
         bridge = self._lab.bridge
         if mat.key == mat_key(bridge.plan.spec):
             same_picture = bridge.mat is not None and bridge.mat.key[:2] == mat.key[:2]
             bridge.mat = mat
+            self._good = bridge.plan, mat
             self._lab.mat_ready(None if same_picture else mat.pixels)
 
     # What the user chooses
