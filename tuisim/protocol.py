@@ -94,6 +94,19 @@ class SetPen(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class SetButtons(Message):
+    """User action: these of the brick's buttons are held down from now on, all others are not."""
+
+    kind = "set_buttons"
+    pressed: tuple[str, ...]
+    """Names as in `BUTTONS`."""
+
+    def __post_init__(self) -> None:
+        # A pipe and a file bring a list.
+        object.__setattr__(self, "pressed", tuple(self.pressed))
+
+
+@dataclass(frozen=True, slots=True)
 class Answer(Message):
     """User action: the answer to an `input()`; None is end of file."""
 
@@ -101,11 +114,13 @@ class Answer(Message):
     text: str | None
 
 
-COMMANDS: dict[str, type[Message]] = {
-    command.kind: command for command in (Stop, Pause, Resume, StepTicks, SetSpeed, SetPose, SetNoise, SetPen, Answer)
-}
-ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, Answer)
+ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer)
 """The commands that are user actions."""
+_CONTROLS: tuple[type[Message], ...] = (Stop, Pause, Resume, StepTicks, SetSpeed)
+COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CONTROLS, *ACTIONS)}
+
+BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
+"""The brick's buttons, as the library names them."""
 
 
 # Events: child to host.

@@ -182,8 +182,14 @@ WORLD, RUN, APP, PANEL = "world", "run", "app", "panels (app)"
 
 SWITCHES: tuple[Switch, ...] = (
     Switch(WORLD, ("-b", "--background"), "background", "mat, see `tuisim backgrounds`, or image file", "MAT", _name),
-    Switch(WORLD, ("--background-fit",), "background_fit", "how an image fills the field",
-           "|".join(BACKGROUND_FITS), _one_of(BACKGROUND_FITS)),
+    Switch(
+        WORLD,
+        ("--background-fit",),
+        "background_fit",
+        "how an image fills the field",
+        "|".join(BACKGROUND_FITS),
+        _one_of(BACKGROUND_FITS),
+    ),
     Switch(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "robot, see `tuisim robots`, or file", "ROBOT", _name),
     Switch(WORLD, ("-o", "--obstacles"), "obstacles", "see `tuisim obstacles`, or file", "NAME", _name),
     Switch(WORLD, ("--walls",), "walls", "walls on the edges of the field", "on|off", _on_off),

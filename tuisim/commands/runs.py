@@ -100,7 +100,7 @@ def _plain(row: OutputRow) -> dict[str, object]:
 
 def _show(run: StoredRun, *, as_json: bool) -> None:
     facts = describe(run)
-    rows = run.output.rows()
+    rows = [row for row in run.output.rows() if row.stream in STREAMS]
     if as_json:
         print(json.dumps(facts | {"output": [_plain(row) for row in rows]}))
         return

@@ -35,6 +35,12 @@ OUTPUT_ROW = Struct("<IIqIB3x")
 STDOUT, STDERR, SPEECH, INPUT = 1, 2, 3, 4
 """Streams of an output row: printed, error text, spoken, the echo of an answer to input()."""
 
+TEXT_STREAMS = (STDOUT, STDERR, SPEECH, INPUT)
+"""Streams whose rows are lines for people."""
+
+LED, DISPLAY, CONSOLE = 5, 6, 7
+"""Streams of what the brick shows besides: its lights, its picture, its text screen."""
+
 TELEMETRY_FILE = "telemetry.bin"
 OUTPUT_FILE = "output.bin"
 _TELEMETRY_CHUNK = 64 * 16384
@@ -120,7 +126,7 @@ class OutputWriter:
             tick: Ticks done.
             time_ns: Simulated time.
             line: Source line that printed it, 0 for none.
-            stream: STDOUT, STDERR, SPEECH or INPUT.
+            stream: One of the streams above.
 
         Raises:
             LogError: the output has reached MAX_OUTPUT_BYTES.

@@ -88,6 +88,8 @@ class Session:
         self.now = 0
         self.free = 0
         self.slow = LIVE if steering.live else 0
+        self.pressed: frozenset[str] = frozenset()
+        """The brick's buttons that are held down."""
         self._due = sim.due_ns(1)
         hz = sim.spec.profile.tick_hz
         self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz

@@ -162,6 +162,8 @@ class Steering:
                 sim.noise = NoiseSpec(light, motor)
             case protocol.SetPen(down=down):
                 sim.pen_down = down
+            case protocol.SetButtons(pressed=pressed):
+                session.pressed = frozenset(pressed)
             case protocol.Answer(text=text):
                 self.answers.append(text)
             case _:

@@ -17,6 +17,9 @@ class Session(Protocol):
     free: int
     """Above 0 while calls cost nothing: the library's own look-ups, constructors, the prelude."""
 
+    pressed: frozenset[str]
+    """The brick's buttons that are held down, as the library names them."""
+
     @property
     def field(self) -> Field:
         """The mat as it is now."""

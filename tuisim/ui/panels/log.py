@@ -91,9 +91,10 @@ class Log(Widget, can_focus=True):
         self._update()
 
     def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
-        """Append rows; `skipped` ones before them are only counted."""
-        self._count += len(rows) + skipped
-        newest = rows[-KEPT_LINES:]
+        """Append rows; `skipped` ones before them are only counted. What is no line of text is left out."""
+        texts = [row for row in rows if row.stream in _STYLES]
+        self._count += len(texts) + skipped
+        newest = texts[-KEPT_LINES:]
         self._rows.extend(newest)
         self._wrap(newest)
         self._update()
