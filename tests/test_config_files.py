@@ -210,9 +210,7 @@ def test_the_json_of_the_course_is_read(write: Write) -> None:
 
 
 @pytest.mark.parametrize(("words", "noise"), [("", 50), ("-M 7", 7), ("-M 0", 0)], ids=["file", "switch", "none"])
-def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(
-    words: str, noise: int, write: Write
-) -> None:
+def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(words: str, noise: int, write: Write) -> None:
     robot = write("old.json", json.dumps(COURSE_ROBOT))
     spec = build_run_spec(settings_of({"robot": robot}, parse_words(words.split())))
     assert spec.world.noise.motor == noise

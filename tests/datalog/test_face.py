@@ -1,0 +1,43 @@
+"""What the brick shows travels through the output rows unchanged."""
+
+from __future__ import annotations
+
+import random
+
+from tuisim.datalog.face import (
+    BLANK,
+    Face,
+    TextScreen,
+    console_row,
+    display_row,
+    face_after,
+    led_row,
+)
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, STDOUT, OutputRow
+
+
+def row(text: str, stream: int) -> OutputRow:
+    return OutputRow(text, 1, 10, 3, stream)
+
+
+def test_untouched_brick_is_blank() -> None:
+    face = face_after(Face(), [row("Colour: 3", STDOUT)])
+    assert face == Face()
+    assert not any(face.picture)
+
+
+def test_each_stream_comes_back() -> None:
+    picture = random.Random(5).randbytes(len(BLANK))
+    screen = TextScreen(14, 5, ("hello", "", "", "", ""), ((0, 1, 3),))
+    lights = {"left red": 255, "left green": 0, "right red": 7, "right green": 128}
+    face = face_after(
+        Face(), [row(led_row(lights), LED), row(display_row(picture), DISPLAY), row(console_row(screen), CONSOLE)]
+    )
+    assert face == Face(lights, picture, screen, True)
+
+
+def test_newest_screen_is_shown() -> None:
+    screen = TextScreen(14, 5, ("",) * 5)
+    face = face_after(Face(), [row(console_row(screen), CONSOLE), row(display_row(BLANK), DISPLAY)])
+    assert face.text == screen
+    assert not face.shows_text

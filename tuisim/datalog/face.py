@@ -1,0 +1,79 @@
+"""What the brick shows as rows of the output: lights, picture, text screen. Pure Python: the child writes it.
+
+Each row carries the whole of what it is about, so that the newest row of a stream is all that a viewer needs.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import zlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, OutputRow
+
+DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128
+"""Pixels of the display."""
+ROW_BYTES = -(-DISPLAY_WIDTH // 8)
+"""Bytes of a row of the picture; the bits after the last pixel are 0."""
+
+LED_NAMES = ("left red", "left green", "right red", "right green")
+
+BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
+
+
+@dataclass(frozen=True, slots=True)
+class TextScreen:
+    """The text screen."""
+
+    columns: int
+    rows: int
+    lines: tuple[str, ...]
+    """One text a row, at most `columns` characters."""
+    inverse: tuple[tuple[int, int, int], ...] = ()
+    """Spans in reverse video: row, first column and the column after the last, all from 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """What the brick shows at one moment."""
+
+    leds: Mapping[str, int] = field(default_factory=dict)
+    """By name, as in `LED_NAMES`: brightness, 0 to 255. Empty until the program touches them: the brick's own green."""
+    picture: bytes = BLANK
+    """The display, one bit a pixel, 1 is dark, from the top left, rows of `ROW_BYTES` bytes, the highest bit first."""
+    text: TextScreen | None = None
+    """The text screen; None until the program writes to it."""
+    shows_text: bool = False
+    """Whether the text screen was changed later than the picture."""
+
+
+def led_row(brightness: Mapping[str, int]) -> str:
+    """Return the row for the lights: brightness 0 to 255 by name, as in `LED_NAMES`."""
+    return json.dumps(dict(brightness))
+
+
+def display_row(picture: bytes) -> str:
+    """Return the row for a picture as in `Face.picture`."""
+    return base64.b85encode(zlib.compress(picture, 6)).decode()
+
+
+def console_row(screen: TextScreen) -> str:
+    """Return the row for the text screen."""
+    return json.dumps([screen.columns, screen.rows, screen.lines, screen.inverse])
+
+
+def face_after(face: Face, rows: Iterable[OutputRow]) -> Face:
+    """Return what the brick shows after some more output; rows of other streams change nothing."""
+    for row in rows:
+        match row.stream:
+            case stream if stream == LED:
+                face = replace(face, leds=json.loads(row.text))
+            case stream if stream == DISPLAY:
+                face = replace(face, picture=zlib.decompress(base64.b85decode(row.text)), shows_text=False)
+            case stream if stream == CONSOLE:
+                columns, count, lines, inverse = json.loads(row.text)
+                spans = tuple((line, start, end) for line, start, end in inverse)
+                face = replace(face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True)
+    return face
