@@ -158,7 +158,15 @@ class Spoke(Message):
 
     kind = "spoke"
     text: str
+    """What was said; in brackets, what was heard otherwise."""
     time_ns: int
+    tones: str = ""
+    """Tones one after the other, as JSON: a list of [Hz, ms, pause in ms after it]; 0 Hz is silence.
+
+    Empty for speech; the length of a sound file as silence.
+    """
+    file: str = ""
+    """The whole path of the sound file that is played; empty for anything else."""
 
 
 @dataclass(frozen=True, slots=True)

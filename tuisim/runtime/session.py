@@ -162,11 +162,15 @@ class Session:
             timeout_ns *= REPEATED_WAITS
         self._pass(self.now + timeout_ns, True)
 
-    def speak(self, text: str, wait_ns: int) -> None:
-        """Show a text as spoken and wait for so long."""
+    def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
+        """Show what is heard and wait for so long; the others are as in `protocol.Spoke`."""
         self.output.row(text, SPEECH)
-        self.channel.send(Spoke(text, self.now))
+        self.channel.send(Spoke(text, self.now, tones, file))
         self.spend(wait_ns)
+
+    def show(self, row: str, stream: int) -> None:
+        """Write down what the brick shows."""
+        self.output.row(row, stream)
 
     # Passing time
 

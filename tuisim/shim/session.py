@@ -36,5 +36,8 @@ class Session(Protocol):
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
         """Wait until a motor ends a move, at most so long; `again`: the caller then just waits again."""
 
-    def speak(self, text: str, wait_ns: int) -> None:
-        """Show (and where possible say) a text; the program goes on after `wait_ns`."""
+    def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
+        """Show what is heard; the program goes on after `wait_ns`. The others are as in `protocol.Spoke`."""
+
+    def show(self, row: str, stream: int) -> None:
+        """Write down what the brick shows; `stream` is one of `records`, `row` as `datalog.face` makes it."""
