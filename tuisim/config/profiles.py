@@ -37,6 +37,7 @@ SOURCES: Mapping[str, str] = {
     "gyro_read_ns": f"{_OLD}: it waits twice; ev3: a reading like any other",
     "attribute_read_ns": f"{_NEW}, so that polling takes time; {_OLD}: nothing",
     "clock_read_ns": f"{_NEW}, so that loops on the clock end; {_OLD}: nothing",
+    "display_update_ns": f"{_NEW}, an estimate: 130 steps a pixel at the brick's 300 MHz; the old simulator has none",
     "max_speed_dps": "EV3 motor driver table: large motor without a load",
     "reflected_max": "ev3dev2 library: 100; the course and the old simulator: 255",
     "ambient_percent": f"{_NEW}: a sensor close to the mat is in its own shade; {_OLD}: always 0",
@@ -53,6 +54,7 @@ SOURCES: Mapping[str, str] = {
     "ultrasonic_period_ticks": _OLD,
     "solid": "on a real field things are solid; in the old simulator nothing is",
     "plain_state": _OLD,
+    "mend_library": f"{_NEW}: README tells what; ev3: the library as it is",
 }
 """Where the numbers of a key come from."""
 

@@ -30,6 +30,8 @@ class ProfileSpec:
     attribute_read_ns: int = 1 * MS
     """Any other device attribute."""
     clock_read_ns: int = 20_000
+    display_update_ns: int = 10 * MS
+    """`Display.update()`: it turns 22 784 pixels into 91 KB."""
 
     max_speed_dps: float = 1050.0
     """Large motor, no load (EV3 motor driver table)."""
@@ -63,6 +65,8 @@ class ProfileSpec:
     """Obstacles and walls stop the robot, unless the world says otherwise."""
     plain_state: bool = False
     """A motor's `state` is a string, '' or 'running', and `time_sp` is in seconds."""
+    mend_library: bool = True
+    """What the library does wrong and course programs need is put right."""
 
 
 ROBOLAB = ProfileSpec(
@@ -79,6 +83,7 @@ NBEV3DEVSIM = ProfileSpec(
     tick_hz=30,
     attribute_read_ns=0,
     clock_read_ns=0,
+    display_update_ns=0,
     round_forward_speeds=True,
     halve_position_moves=True,
     keep_speed_when_stopped=True,
@@ -102,6 +107,7 @@ EV3 = ProfileSpec(
     ambient_percent=10,
     halfway_heading=True,
     solid=True,
+    mend_library=False,
 )
 
 PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3)}

@@ -1,89 +1,209 @@
-"""Sound: every command that the library would give to the brick's loudspeaker is shown instead."""
+"""Sound: the library's commands to the loudspeaker are shown, and take the time that they sound."""
 
 from __future__ import annotations
 
-import re
+import io
+import os
+import shlex
 import types
 from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS
 from tuisim.shim.session import Session
+from tuisim.shim.tones import Heard, Tone, heard_of, song_of
 
-WORDS_PER_MINUTE = 130
-"""The library's own setting for espeak."""
-
-_TONE = re.compile(r"-f\s+([\d.]+)")
-_LENGTH = re.compile(r"-l\s+([\d.]+)")
-_DELAY = re.compile(r"-D\s+([\d.]+)")
-_DEFAULT_BEEP_MS = 200.0
-_QUOTE = '"'
+LOUDEST = 100
+CHANNEL = "Playback"
+"""The mixer's only channel on the brick."""
+SHORTEST_TURN_NS = 100 * MS
+"""A sound that is played for ever begins anew not sooner than this: the player has to start."""
+_KILLED, _TERMINATED = -9, -15
 
 
 class PlayedSound:
-    """What `play_type` 1 returns where the library returns a process: it is always over."""
+    """Stands in for the process that plays a sound while the program goes on.
 
-    returncode = 0
+    Args:
+        session: The program's clock.
+        command: What is played.
+        length_ns: How long it sounds.
+    """
+
+    stdin = stdout = stderr = None
+    pid = 1
+
+    def __init__(self, session: Session, command: str, length_ns: int) -> None:
+        self.args = command
+        self.returncode: int | None = None
+        self._session, self._until = session, session.now + length_ns
+
+    def poll(self) -> int | None:
+        """Return the exit status, None while it sounds."""
+        self._session.command()
+        if self.returncode is None and self._session.now >= self._until:
+            self.returncode = 0
+        return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
-        """Return at once."""
-        return 0
+        """Wait for the end and return the exit status.
 
-    def poll(self) -> int:
-        """Return the exit status."""
-        return 0
+        Raises:
+            subprocess.TimeoutExpired: it sounds for longer than `timeout` seconds.
+        """
+        if self.returncode is None:
+            rest_ns = max(self._until - self._session.now, 0)
+            limit_ns = rest_ns if timeout is None else max(int(timeout * 1000 * MS), 0)
+            self._session.spend(min(rest_ns, limit_ns))
+            if limit_ns < rest_ns:
+                from subprocess import TimeoutExpired
 
-    def communicate(self) -> tuple[bytes, bytes]:
-        """Return no output."""
+                raise TimeoutExpired(self.args, timeout or 0.0)
+        return self.poll() or 0
+
+    def communicate(self, input: bytes | None = None, timeout: float | None = None) -> tuple[bytes, bytes]:  # noqa: A002
+        """Wait for the end; there is no output."""
+        self.wait(timeout)
         return b"", b""
 
+    def kill(self) -> None:
+        """End it."""
+        self._end(_KILLED)
 
-def spoken_ns(text: str) -> int:
-    """Return how long it takes to say a text."""
-    return len(text.split()) * 60_000 * MS // WORDS_PER_MINUTE
+    def terminate(self) -> None:
+        """End it."""
+        self._end(_TERMINATED)
 
-
-def beep_ns(command: str) -> int:
-    """Return how long a `beep` command line sounds, pauses included."""
-    total = 0.0
-    for tone in command.split(" -n "):
-        length, delay = _LENGTH.search(tone), _DELAY.search(tone)
-        total += float(length.group(1)) if length else _DEFAULT_BEEP_MS
-        total += float(delay.group(1)) if delay else 0.0
-    return int(total * MS)
+    def _end(self, status: int) -> None:
+        if self.poll() is None:
+            self.returncode = status
 
 
-def describe(command: str) -> tuple[str, int]:
-    """Return what a sound command does in words, and how many ns it takes."""
-    if "/espeak" in command:
-        text = command.split("'", 1)[1].rsplit("'", 1)[0]
-        return text, spoken_ns(text)
-    if "/aplay" in command:
-        return f"[plays {command.partition(' -q ')[2].strip(_QUOTE)}]", 0
-    tones = _TONE.findall(command)
-    return (f"[tone {', '.join(tones)} Hz]" if tones else "[beep]"), beep_ns(command)
+class Mixer:
+    """The programs that set the volume and tell it, as far as the library calls them."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._volumes: dict[str, int] = {}
+
+    def volume(self, channel: str | None) -> int:
+        """Return the volume of a channel in percent."""
+        return self._volumes.get(channel or CHANNEL, LOUDEST)
+
+    def system(self, command: str) -> int:
+        """Do `amixer -q set CHANNEL VOLUME%`."""
+        self._session.command()
+        *channel, level = shlex.split(command)[3:]
+        self._volumes[" ".join(channel)] = min(max(int(level.rstrip("%")), 0), LOUDEST)
+        return 0
+
+    def popen(self, command: object) -> io.StringIO:
+        """Do `amixer scontrols`.
+
+        Raises:
+            TypeError: the command is no text, as the real function says it.
+        """
+        self._session.command()
+        if not isinstance(command, str):
+            raise TypeError(f"invalid cmd type ({type(command)}, expected string)")
+        return io.StringIO(f"Simple mixer control '{CHANNEL}',0\n")
+
+
+class Loudspeaker:
+    """Gives sounds to the session.
+
+    Args:
+        session: The program's clock.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.song: list[Tone] | None = None
+        """Collects the tones of a song while the library goes through its notes."""
+
+    def play(self, heard: Heard, wait_ns: int) -> None:
+        """Let a sound be heard, and let so much time pass."""
+        self._session.speak(heard.text, wait_ns, heard.tones_row, heard.file)
+
+    def rest(self, seconds: float) -> None:
+        """Be silent: the library's `sleep`."""
+        if self.song is None:
+            self._session.spend(round(seconds * 1000 * MS))
+        else:
+            self.song.append(Tone(0.0, seconds * 1000))
 
 
 def patch_sound_module(session: Session, module: types.ModuleType) -> None:
     """Finish `ev3dev2.sound` after its import."""
     sound: Any = module
+    speaker, mixer = Loudspeaker(session), Mixer(session)
+    sound.os = types.SimpleNamespace(path=os.path, devnull=os.devnull, system=mixer.system, popen=mixer.popen)
+    sound.sleep = speaker.rest
+    _patch_playing(session, sound, speaker)
+    _patch_songs(sound.Sound, speaker)
+    if session.sim.spec.profile.mend_library:
+        _mend(sound.Sound, mixer)
 
+
+def _patch_playing(session: Session, sound: Any, speaker: Loudspeaker) -> None:
+    give_command = sound.Sound._audio_command
+    mended = session.sim.spec.profile.mend_library
+
+    @wraps(give_command)
     def audio_command(self: Any, command: str, play_type: int) -> PlayedSound | None:
-        text, duration_ns = describe(command)
-        waits = play_type == self.PLAY_WAIT_FOR_COMPLETE
-        session.speak(text, duration_ns if waits else 0)
-        while play_type == self.PLAY_LOOP:
-            session.spend(max(duration_ns, MS))
-        return None if waits else PlayedSound()
-
-    @wraps(sound.Sound.set_volume)
-    def set_volume(self: Any, pct: int, channel: str | None = None) -> None:
-        self._simulated_volume = int(pct)
-
-    @wraps(sound.Sound.get_volume)
-    def get_volume(self: Any, channel: str | None = None) -> int:
-        return int(getattr(self, "_simulated_volume", 100))
+        if play_type not in sound.Sound.PLAY_TYPES:
+            give_command(self, command, play_type)
+        if not mended:
+            # The library splits a command at each bar before it looks at quotes.
+            for part in command.split("|"):
+                shlex.split(part)
+        heard = heard_of(command)
+        if speaker.song is not None:
+            speaker.song += heard.tones
+            return None
+        if play_type == sound.Sound.PLAY_NO_WAIT_FOR_COMPLETE:
+            speaker.play(heard, 0)
+            session.command()
+            return PlayedSound(session, command, heard.length_ns)
+        while play_type == sound.Sound.PLAY_LOOP:
+            speaker.play(heard, max(heard.length_ns, SHORTEST_TURN_NS))
+        speaker.play(heard, heard.length_ns)
+        return None
 
     sound.Sound._audio_command = audio_command
-    sound.Sound.set_volume = set_volume
-    sound.Sound.get_volume = get_volume
+
+
+def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
+    """Let a song be one sound, with the library's own reading of its notes."""
+    read_song = sound_class.play_song
+
+    @wraps(read_song)
+    def play_song(self: Any, song: Any, *args: Any, **kwargs: Any) -> Any:
+        # All notes first: one that is still to be computed could let other threads play meanwhile.
+        notes = list(song)
+        speaker.song = []
+        try:
+            return read_song(self, notes, *args, **kwargs)
+        finally:
+            tones, speaker.song = speaker.song, None
+            if tones:
+                # Also when a later note is wrong: those before it were heard.
+                heard = song_of(tones)
+                speaker.play(heard, heard.length_ns)
+
+    sound_class.play_song = play_song
+
+
+def _mend(sound_class: Any, mixer: Mixer) -> None:
+    """Put right what course programs need: the volume can be read, and any text can be said."""
+    say = sound_class.speak
+
+    @wraps(sound_class.get_volume)
+    def get_volume(self: Any, channel: str | None = None) -> int:
+        return mixer.volume(channel)
+
+    @wraps(say)
+    def speak(self: Any, text: object, *args: Any, **kwargs: Any) -> Any:
+        return say(self, str(text).replace("'", "'\\''"), *args, **kwargs)
+
+    sound_class.get_volume, sound_class.speak = get_volume, speak

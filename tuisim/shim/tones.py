@@ -1,0 +1,180 @@
+"""What is heard: the brick's commands for sound (`beep`, `aplay`, `espeak`) in words, time and tones."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tuisim.core.profile import MS
+
+BEEP_HZ, BEEP_MS, REPEAT_PAUSE_MS = 440.0, 200.0, 100.0
+"""What `beep` takes where nothing is said."""
+HIGHEST_HZ = 20_000.0
+"""`beep` refuses what is above."""
+WORDS_PER_MINUTE = 175
+"""What `espeak` takes where nothing is said; the library says 130."""
+SLOWEST_WPM, FASTEST_WPM = 80, 450
+"""The limits of `espeak`."""
+NAMED_TONES = 4
+"""More tones than this are only counted."""
+
+_TO_SPEAKER = " | /usr/bin/aplay -q"
+
+
+@dataclass(frozen=True, slots=True)
+class Tone:
+    """One tone, or silence."""
+
+    frequency_hz: float
+    """0 is silence."""
+    length_ms: float
+    pause_ms: float = 0.0
+    """Silence after it."""
+
+    @property
+    def total_ms(self) -> float:
+        """Length with the pause."""
+        return self.length_ms + self.pause_ms
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """One sound."""
+
+    text: str
+    """In words; in brackets unless it is speech."""
+    length_ns: int
+    tones: tuple[Tone, ...] = ()
+    """Empty for speech."""
+    file: str = ""
+    """Whole path of a sound file."""
+
+    @property
+    def tones_row(self) -> str:
+        """The tones as in `protocol.Spoke`."""
+        rows = [[_plain(tone.frequency_hz), _plain(tone.length_ms), _plain(tone.pause_ms)] for tone in self.tones]
+        return json.dumps(rows) if rows else ""
+
+
+def heard_of(command: str) -> Heard:
+    """Return what a sound command sounds like.
+
+    Raises:
+        ValueError: a quote in it is not closed.
+    """
+    program, *words = shlex.split(command.removesuffix(_TO_SPEAKER))
+    match os.path.basename(program):
+        case "espeak":
+            return _speech(words[-1], words[:-1])
+        case "aplay":
+            return _file(words[-1])
+        case _:
+            return _beep(words)
+
+
+def song_of(tones: Sequence[Tone]) -> Heard:
+    """Return the sound of a whole song; silent tones are its rests."""
+    count = sum(tone.frequency_hz > 0 for tone in tones)
+    length_ns = _total_ns(tones)
+    notes = "1 note" if count == 1 else f"{count} notes"
+    return Heard(f"[♪ song of {notes}, {length_ns / MS / 1000:.1f} s]", length_ns, tuple(tones))
+
+
+def parse_beep(words: Sequence[str]) -> list[Tone]:
+    """Return the tones of a `beep` command.
+
+    Args:
+        words: Its arguments: -f Hz, -l ms, -r repetitions, -d ms between them, -D ms after each, -n for another tone.
+
+    Raises:
+        ValueError: `beep` would refuse them.
+    """
+    import getopt
+
+    try:
+        options, rest = getopt.gnu_getopt(list(words), "f:l:r:d:D:n", ["new"])
+    except getopt.GetoptError as error:
+        raise ValueError(str(error)) from error
+    if rest:
+        raise ValueError(f"{rest[0]} is no option")
+    notes: list[dict[str, float]] = [{}]
+    for name, value in options:
+        if name in ("-n", "--new"):
+            notes.append({})
+        else:
+            notes[-1][name] = _number(value)
+    return [tone for note in notes for tone in _repeated(note)]
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{text!r} is no number") from None
+
+
+def _repeated(note: dict[str, float]) -> list[Tone]:
+    frequency_hz, length_ms = note.get("-f", BEEP_HZ), note.get("-l", BEEP_MS)
+    pause_ms, times = note.get("-D", note.get("-d", REPEAT_PAUSE_MS)), int(note.get("-r", 1))
+    if not 0 <= frequency_hz <= HIGHEST_HZ or min(length_ms, pause_ms, times) < 0:
+        raise ValueError("out of range")
+    last_pause_ms = pause_ms if "-D" in note else 0.0
+    every = [Tone(frequency_hz, length_ms, pause_ms)] * times
+    return [*every[:-1], Tone(frequency_hz, length_ms, last_pause_ms)] if every else []
+
+
+def _beep(words: list[str]) -> Heard:
+    try:
+        tones = parse_beep(words)
+    except ValueError as error:
+        # The real one writes how it is used to where nobody reads it, and makes no sound.
+        return Heard(f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),))
+    if not words:
+        text = "[beep]"
+    elif len(tones) == 1:
+        text = f"[tone {tones[0].frequency_hz:g} Hz {tones[0].length_ms / 1000:g} s]"
+    elif len(tones) <= NAMED_TONES:
+        pitches = ", ".join(f"{tone.frequency_hz:g}" for tone in tones)
+        text = f"[tones {pitches} Hz, {_total_ns(tones) / MS / 1000:g} s]"
+    else:
+        text = f"[{len(tones)} tones, {_total_ns(tones) / MS / 1000:.1f} s]"
+    return Heard(text, _total_ns(tones), tuple(tones))
+
+
+def _file(path: str) -> Heard:
+    import wave
+
+    try:
+        with wave.open(path, "rb") as file:
+            seconds = file.getnframes() / file.getframerate()
+    except (wave.Error, EOFError, OSError, ZeroDivisionError) as error:
+        # As above: the real player fails where nobody sees it.
+        return Heard(f"[cannot play {path}: {error or 'it is cut off'}]", 0, (Tone(0.0, 0.0),))
+    tones = (Tone(0.0, seconds * 1000),)
+    return Heard(f"[plays {path}, {seconds:.1f} s]", _total_ns(tones), tones, os.path.abspath(path))
+
+
+def _speech(text: str, words: list[str]) -> Heard:
+    import getopt
+
+    speed = WORDS_PER_MINUTE
+    try:
+        for name, value in getopt.gnu_getopt(words, "a:s:v:p:g:k:l:b:f:w:z", ["stdout"])[0]:
+            if name == "-s":
+                speed = min(max(int(value), SLOWEST_WPM), FASTEST_WPM)
+    except (getopt.GetoptError, ValueError):
+        # How it sounds is not known then, but it is said all the same.
+        speed = WORDS_PER_MINUTE
+    return Heard(text, len(text.split()) * 60_000 * MS // speed)
+
+
+def _total_ns(tones: Sequence[Tone]) -> int:
+    return round(sum(tone.total_ms for tone in tones) * MS)
+
+
+def _plain(number: float) -> float:
+    """Return a whole number as one, so that it is written without a point."""
+    return int(number) if number == int(number) else number
