@@ -8,9 +8,12 @@ import types
 from collections.abc import Callable, Mapping, Sequence
 
 from tuisim.shim.building import build_brick
+from tuisim.shim.console import patch_console_module
+from tuisim.shim.display import patch_display_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.overlay import glue_module, patch_lego_module
 from tuisim.shim.refused import REFUSED, refuse_classes
+from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
 from tuisim.shim.sound import patch_sound_module
 
@@ -55,7 +58,10 @@ def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
         more_finishers: Finishers of other modules, by name.
     """
     brick, colors = build_brick(session)
+    screen = Screen(session)
     finishers: dict[str, Finish] = {
+        "ev3dev2.console": lambda module: patch_console_module(session, module, screen),
+        "ev3dev2.display": lambda module: patch_display_module(session, module, screen),
         "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),

@@ -11,10 +11,8 @@ from tuisim.errors import NotSimulated
 
 REFUSED: Mapping[str, tuple[str, ...]] = {
     "ev3dev2.button": ("Button",),
-    "ev3dev2.console": ("Console",),
     "ev3dev2.control.GyroBalancer": ("GyroBalancer",),
     "ev3dev2.control.webserver": ("WebControlledTank",),
-    "ev3dev2.display": ("Display",),
     "ev3dev2.led": ("Led", "Leds"),
     "ev3dev2.port": ("LegoPort",),
     "ev3dev2.power": ("PowerSupply",),

@@ -1,0 +1,89 @@
+"""The text screen: what the library prints there, and the programs that set its font and size."""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+import types
+from typing import Any
+
+from tuisim.datalog.face import DISPLAY_HEIGHT, DISPLAY_WIDTH, console_row
+from tuisim.datalog.records import CONSOLE
+from tuisim.shim.screen import Screen
+from tuisim.shim.session import Session
+from tuisim.shim.textgrid import TextGrid
+
+FONT_WIDTH, FONT_HEIGHT = 12, 24
+"""Pixels of a letter of the font that the library begins with."""
+USUAL_WIDTH = 8
+"""Of fonts that are named after their height only."""
+
+_SIZE = re.compile(r"\D(\d+)(?:x(\d+))?$")
+
+
+def font_size(name: str) -> tuple[int, int] | None:
+    """Return width and height in pixels of a font's letters, by its name.
+
+    The name ends in one or two numbers, such as `Lat15-TerminusBold24x12`, `Lat15-TomThumb4x6`
+    or `Lat15-VGA16`: letters are never wider than high.
+
+    Returns:
+        None for a name without a size that fits the screen.
+    """
+    found = _SIZE.search(name)
+    if found is None:
+        return None
+    sizes = int(found[1]), int(found[2] or USUAL_WIDTH)
+    width, height = (min(sizes), max(sizes)) if found[2] else (USUAL_WIDTH, sizes[0])
+    return (width, height) if 0 < width <= DISPLAY_WIDTH and 0 < height <= DISPLAY_HEIGHT else None
+
+
+class Terminal:
+    """Takes what the library prints and the commands that it gives.
+
+    Args:
+        session: The program's clock.
+        screen: Where the text is seen.
+    """
+
+    def __init__(self, session: Session, screen: Screen) -> None:
+        self._session, self._screen = session, screen
+        self._grid = TextGrid(DISPLAY_WIDTH // FONT_WIDTH, DISPLAY_HEIGHT // FONT_HEIGHT)
+
+    def print(self, text: str, end: str = "\n") -> None:
+        """Write on the screen; stands in for the library's `print`."""
+        self._grid.write(text + end)
+        self._show()
+
+    def system(self, command: str) -> int:
+        """Do `setfont NAME` and `stty [-]echo`; return the exit status."""
+        self._session.command()
+        program, _, name = command.partition(" ")
+        if program != "setfont":
+            # Whether keys are echoed: the brick's buttons write nothing on this screen.
+            return 0
+        size = font_size(name)
+        if size is None:
+            print(f"setfont: cannot find the font {name!r}", file=sys.stderr)
+            return 1
+        self._grid.resize(DISPLAY_WIDTH // size[0], DISPLAY_HEIGHT // size[1])
+        self._show()
+        return 0
+
+    def popen(self, _command: str) -> io.StringIO:
+        """Do `stty size`."""
+        self._session.command()
+        return io.StringIO(f"{self._grid.rows} {self._grid.columns}\n")
+
+    def _show(self) -> None:
+        self._session.command()
+        self._screen.show(console_row(self._grid.screen()), CONSOLE)
+
+
+def patch_console_module(session: Session, module: types.ModuleType, screen: Screen) -> None:
+    """Finish `ev3dev2.console` after its import: it prints on the brick's screen, not into the output."""
+    console: Any = module
+    terminal = Terminal(session, screen)
+    console.print = terminal.print
+    console.os = types.SimpleNamespace(system=terminal.system, popen=terminal.popen)

@@ -1,0 +1,106 @@
+"""The display: the memory that the library copies its picture into."""
+
+from __future__ import annotations
+
+import mmap
+import types
+from functools import cache, wraps
+from typing import Any
+
+from tuisim.datalog.face import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
+from tuisim.datalog.records import DISPLAY
+from tuisim.shim.screen import Screen
+from tuisim.shim.session import Session
+
+BITS_A_PIXEL = 32
+"""As the driver of the brick's display says it; the display itself is black and white."""
+LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
+DARK_BELOW = 128
+"""Greys below this are dark."""
+NO_FILE = -1
+"""In place of the descriptor of the device file."""
+
+
+class FrameBuffer(mmap.mmap):
+    """The memory of the display: what is written there is seen.
+
+    Each pixel has four bytes: unused, red, green, blue.
+    """
+
+    session: Session
+    screen: Screen
+
+    def __new__(cls, _session: Session, _screen: Screen) -> FrameBuffer:
+        """Take fresh memory, not a file."""
+        return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
+
+    def __init__(self, session: Session, screen: Screen) -> None:
+        self.session, self.screen = session, screen
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        """Write bytes, and show them after the time that this takes on the brick."""
+        super().__setitem__(key, value)
+        # Counted also where it costs nothing.
+        self.session.command()
+        self.session.charge(self.session.sim.spec.profile.display_update_ns)
+        self.screen.show(display_row(picture_of(self[:])), DISPLAY)
+
+
+def picture_of(pixels: bytes) -> bytes:
+    """Return the picture in the display's memory, one bit a pixel, as `datalog.face.Face` has it.
+
+    Args:
+        pixels: Four bytes each; the display shows the green one.
+    """
+    from PIL import Image
+
+    grey = Image.frombytes("L", (DISPLAY_WIDTH, DISPLAY_HEIGHT), pixels[2::4])
+    return grey.point([255 if level < DARK_BELOW else 0 for level in range(256)], "1").tobytes()
+
+
+def patch_display_module(session: Session, module: types.ModuleType, screen: Screen) -> None:
+    """Finish `ev3dev2.display` after its import: a frame buffer without a device file."""
+    display: Any = module
+    memory = display.FbMem
+
+    def fixed_info(_fbfid: int) -> Any:
+        size = LINE_BYTES * DISPLAY_HEIGHT
+        return memory.FixScreenInfo(id_name=b"st7586", smem_len=size, line_length=LINE_BYTES)
+
+    def variable_info(_fbfid: int) -> Any:
+        info = memory.VarScreenInfo(
+            xres=DISPLAY_WIDTH,
+            yres=DISPLAY_HEIGHT,
+            xres_virtual=DISPLAY_WIDTH,
+            yres_virtual=DISPLAY_HEIGHT,
+            bits_per_pixel=BITS_A_PIXEL,
+        )
+        for color, offset in (("red", 16), ("green", 8), ("blue", 0)):
+            setattr(info, color, memory.VarScreenInfo.FbBitField(offset, 8, 0))
+        return info
+
+    @cache
+    def buffer() -> FrameBuffer:
+        return FrameBuffer(session, screen)
+
+    memory._open_fbdev = staticmethod(lambda _fbdev=None: NO_FILE)
+    memory._get_fix_info = staticmethod(fixed_info)
+    memory._get_var_info = staticmethod(variable_info)
+    memory._map_fb_memory = staticmethod(lambda _fbfid, _fix_info: buffer())
+    _use_the_bricks_font(display)
+
+
+def _use_the_bricks_font(display: Any) -> None:
+    """Write text without a named font as the Pillow on the brick does, whatever Pillow this is."""
+    from PIL import ImageFont
+
+    # Newer ones draw a smooth font, whose grey edges a black and white display tears apart.
+    plain_font = getattr(ImageFont, "load_default_imagefont", ImageFont.load_default)
+    make = display.Display.__init__
+
+    @wraps(make)
+    def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807
+        make(self, *args, **kwargs)
+        self.draw.font = plain_font()
+
+    display.Display.__init__ = __init__
