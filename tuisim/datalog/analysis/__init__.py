@@ -1,0 +1,1 @@
+"""Analysis of logs: pure functions over arrays and frames, one file a subject."""

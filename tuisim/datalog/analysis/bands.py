@@ -1,0 +1,297 @@
+"""Bands: the plateaus of a log, told apart from the samples on their edges and from stray ones.
+
+The log is cut where that explains it best: the squared distances from the means of the
+pieces, in units of the noise, plus a price for every cut, are as small as they can be
+(optimal partitioning, with the pruning of Killick et al. 2012). Pieces of a sample or
+two between two others are edges, or strays if the log goes on as before; pieces that
+drift into each other are one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+MIN_SAMPLES = 2
+"""A plateau has at least so many samples, with noise one more but for the ends of the log."""
+
+EVERY_PLACE = 4000
+"""Up to so many samples a cut may be anywhere; in longer logs where neighbouring means differ."""
+
+_STRAY_SAMPLES = 2
+"""Longest stretch that counts as stray."""
+
+_EDGE_SAMPLES = 3
+"""Longest stretch that may be an edge between two plateaus."""
+
+_FAR = 5.0
+"""A sample so many standard deviations off is a stray one."""
+
+_NEAR_SAMPLES = 12
+"""How far from a cut a drift is looked at."""
+
+_STEP_OF_RANGE = 0.005
+"""A step below this part of the range is no step, whatever the noise."""
+
+_SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
+"""A piece that drifts by more than these parts of the log's range and of its own highest value is no plateau."""
+
+_CERTAINTY = 4.0
+"""A step is believed from so many standard deviations on."""
+
+_BLOCK = 400_000
+"""Samples that are cut at once: a long log is worked through in such stretches."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plateau:
+    """A stretch of a log with one level. Positions count samples; `stop` is the one after the last."""
+
+    start: int
+    stop: int
+    level: float
+    """Mean without strays; the value itself where all are equal."""
+    spread: float
+    """Standard deviation of its samples without strays."""
+    drift: float
+    """How much it rises from its first sample to its last."""
+    strays: int = 0
+    """Samples that lie far off."""
+
+    @property
+    def samples(self) -> int:
+        """How many there are."""
+        return self.stop - self.start
+
+
+def noise_of(values: FloatArray) -> float:
+    """Return the standard deviation of the noise, from the differences of neighbours; 0 for clean steps.
+
+    Args:
+        values: Finite, shape (n,).
+    """
+    if len(values) < 3:
+        return 0.0
+    differences = np.abs(np.diff(values))
+    by_median = 1.4826 * float(np.median(differences)) / np.sqrt(2.0)
+    # Values that jump between two neighbours of a coarse scale have no median difference.
+    calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
+    by_calm = float(np.sqrt(np.mean(calm**2) / 2.0))
+    return max(float(by_median), by_calm)
+
+
+def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
+    """Return the plateaus of a log, in order; what is between them are edges.
+
+    Args:
+        values: Evenly read samples, shape (n,); those that are not finite belong to no plateau.
+        noise: Standard deviation of the noise, by default estimated from the values.
+    """
+    finite = np.flatnonzero(np.isfinite(values))
+    clean = np.asarray(values, np.float64)[finite]
+    if not len(clean):
+        return []
+    noise = noise_of(clean) if noise is None else noise
+    scale = float(np.ptp(clean))
+    # Without noise the price of a cut is what the smallest step that counts is worth.
+    sigma = max(noise, scale * _STEP_OF_RANGE / _CERTAINTY, 1e-12)
+    pieces = _cut(clean, sigma)
+    least_step = max(scale * _STEP_OF_RANGE, 1e-12)
+    # Twice: what a drift has cut into short pieces can hide a stray between them.
+    for _ in range(2):
+        pieces = _without_strays(clean, pieces, least_step, sigma)
+        pieces = _joined(clean, pieces, least_step, sigma)
+    found = [_plateau(clean, start, stop, sigma) for start, stop in pieces if stop - start >= MIN_SAMPLES]
+    found = [p for p in found if not _is_ramp(clean, p, sigma) and not _is_slope(clean, p, scale)]
+    found = [plateau for at, plateau in enumerate(found) if not _is_edge(found, at)]
+    if noise > 0.0:
+        # Two samples that noise has brought together are no level, but for the ends of a log.
+        found = [p for p in found if p.samples > MIN_SAMPLES or p.start == 0 or p.stop == len(clean)]
+    found = _grown(clean, found, sigma)
+    return [
+        Plateau(int(finite[p.start]), int(finite[p.stop - 1]) + 1, p.level, p.spread, p.drift, p.strays) for p in found
+    ]
+
+
+Pieces = list[tuple[int, int]]
+
+
+def _cut(values: FloatArray, sigma: float) -> Pieces:
+    """Cut the log into pieces of about one level each."""
+    pieces: Pieces = []
+    for first in range(0, len(values), _BLOCK):
+        block = values[first : first + _BLOCK] / sigma
+        places = _places(block)
+        pieces += [(first + start, first + stop) for start, stop in _partition(block, places)]
+    return pieces
+
+
+def _places(scaled: FloatArray) -> NDArray[np.int64]:
+    """Return where cuts may be: positions from 0 to the length, both included."""
+    count = len(scaled)
+    if count <= EVERY_PLACE:
+        return np.arange(count + 1)
+    sums = np.concatenate(([0.0], np.cumsum(scaled)))
+    chosen = np.zeros(count + 1, bool)
+    chosen[[0, count]] = True
+    for width in (1, 3, 8, 24):
+        at = np.arange(width, count - width + 1)
+        step = np.abs(sums[at + width] - 2.0 * sums[at] + sums[at - width]) / width
+        step *= np.sqrt(width / 2.0)
+        # The highest within its own width, so that one edge does not offer many places.
+        peak = np.ones(len(step), bool)
+        for shift in range(1, width + 1):
+            peak[shift:] &= step[shift:] >= step[:-shift]
+            peak[:-shift] &= step[:-shift] >= step[shift:]
+        strong = np.flatnonzero(peak & (step > _CERTAINTY))
+        for shift in (-1, 0, 1):
+            chosen[np.clip(at[strong] + shift, 0, count)] = True
+    return np.flatnonzero(chosen)
+
+
+def _partition(scaled: FloatArray, places: NDArray[np.int64]) -> Pieces:
+    """Return the cheapest partition; values in units of the noise, cuts only at the places."""
+    price = 3.0 * np.log(max(len(scaled), 8)) + 2.0
+    sums = np.concatenate(([0.0], np.cumsum(scaled)))[places]
+    squares = np.concatenate(([0.0], np.cumsum(scaled**2)))[places]
+    count = len(places)
+    best = np.full(count, np.inf)
+    best[0] = -price
+    before = np.zeros(count, np.int64)
+    alive = np.zeros(1, np.int64)
+    for at in range(1, count):
+        length = places[at] - places[alive]
+        total = sums[at] - sums[alive]
+        cost = best[alive] + squares[at] - squares[alive] - total * total / length
+        cheapest = int(np.argmin(cost))
+        best[at] = cost[cheapest] + price
+        before[at] = alive[cheapest]
+        # A start that is dearer already can never again be the best one.
+        alive = np.append(alive[cost <= best[at]], at)
+    pieces: Pieces = []
+    at = count - 1
+    while at > 0:
+        pieces.append((int(places[before[at]]), int(places[at])))
+        at = int(before[at])
+    return pieces[::-1]
+
+
+def _without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
+    """Join what only a few stray samples have cut apart."""
+    done: Pieces = []
+    at = 0
+    while at < len(pieces):
+        after = at
+        while after < len(pieces) and pieces[after][1] - pieces[at][0] <= _STRAY_SAMPLES:
+            after += 1
+        if done and at < after < len(pieces):
+            left, right = done[-1], pieces[after]
+            # Two on either side at least: an edge is no stray.
+            long_enough = min(left[1] - left[0], right[1] - right[0]) >= MIN_SAMPLES
+            if long_enough and _goes_on(values, left, right, least_step, sigma):
+                done[-1] = (left[0], right[1])
+                at = after + 1
+                continue
+        done.append(pieces[at])
+        at += 1
+    return done
+
+
+def _joined(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
+    """Join neighbours that drift into each other."""
+    done: Pieces = []
+    for piece in pieces:
+        if done:
+            left = done[-1]
+            long_enough = min(left[1] - left[0], piece[1] - piece[0]) > _STRAY_SAMPLES
+            if long_enough and _goes_on(values, left, piece, least_step, sigma):
+                done[-1] = (left[0], piece[1])
+                continue
+        done.append(piece)
+    return done
+
+
+def _goes_on(
+    values: FloatArray, left: tuple[int, int], right: tuple[int, int], least_step: float, sigma: float
+) -> bool:
+    """Whether one piece is the other's continuation: no step between them that a common drift does not explain."""
+    before = np.arange(max(left[0], left[1] - _NEAR_SAMPLES), left[1])
+    after = np.arange(right[0], min(right[1], right[0] + _NEAR_SAMPLES))
+    kept = np.concatenate([part[~_strays(values[part], sigma)] for part in (before, after)])
+    model = np.stack([np.ones(len(kept)), kept - left[1], kept >= right[0]], axis=1).astype(np.float64)
+    # Three unknowns: level, drift, step.
+    inverse = np.linalg.pinv(model.T @ model)
+    step = float(inverse[2] @ (model.T @ values[kept]))
+    return abs(step) <= max(least_step, _CERTAINTY * sigma * float(np.sqrt(inverse[2, 2])))
+
+
+def _strays(part: FloatArray, sigma: float) -> NDArray[np.bool_]:
+    """Which samples of a stretch of one level lie far off it."""
+    at = np.arange(len(part), dtype=np.float64)
+    half = len(part) // 2
+    slope = 0.0
+    if half >= 4:
+        slope = (float(np.median(part[-half:])) - float(np.median(part[:half]))) / (len(part) - half)
+    rest = part - slope * at
+    off: NDArray[np.bool_] = np.abs(rest - np.median(rest)) > _FAR * sigma
+    return off if not off.all() else np.zeros(len(part), bool)
+
+
+def _plateau(values: FloatArray, start: int, stop: int, sigma: float) -> Plateau:
+    part = values[start:stop]
+    off = _strays(part, sigma)
+    kept = part[~off]
+    if bool((kept == kept[0]).all()):
+        return Plateau(start, stop, float(kept[0]), 0.0, 0.0, int(off.sum()))
+    drift = 0.0
+    if len(kept) >= 8:
+        drift = float(np.polyfit(np.flatnonzero(~off).astype(np.float64), kept, 1)[0]) * (len(part) - 1)
+    return Plateau(start, stop, float(np.mean(kept)), float(np.std(kept)), drift, int(off.sum()))
+
+
+def _is_edge(found: list[Plateau], at: int) -> bool:
+    """Whether a short piece is but the way from one plateau to the next."""
+    piece = found[at]
+    if piece.samples > _EDGE_SAMPLES or not 0 < at < len(found) - 1:
+        return False
+    before, after = found[at - 1], found[at + 1]
+    if min(before.samples, after.samples) <= piece.samples:
+        return False
+    return min(before.level, after.level) < piece.level < max(before.level, after.level)
+
+
+def _is_ramp(values: FloatArray, plateau: Plateau, sigma: float) -> bool:
+    """Whether a short piece rises or falls from each sample to the next."""
+    if plateau.samples > _EDGE_SAMPLES + 1:
+        return False
+    steps = np.diff(values[plateau.start : plateau.stop])
+    return bool((np.abs(steps) > _CERTAINTY * sigma).all() and (np.sign(steps) == np.sign(steps[0])).all())
+
+
+def _is_slope(values: FloatArray, plateau: Plateau, scale: float) -> bool:
+    """Whether a piece rises or falls so much that it has no level, as an angle does in a turn."""
+    highest = float(np.max(np.abs(values[plateau.start : plateau.stop])))
+    return abs(plateau.drift) > max(_SLOPE_OF_RANGE * scale, _SLOPE_OF_VALUE * highest)
+
+
+def _grown(values: FloatArray, found: list[Plateau], sigma: float) -> list[Plateau]:
+    """Let plateaus take in what belongs to them beyond a stray at their ends."""
+    grown: list[Plateau] = []
+    for at, plateau in enumerate(found):
+        first = grown[-1].stop if grown else 0
+        last = found[at + 1].start if at + 1 < len(found) else len(values)
+        start, stop = plateau.start, plateau.stop
+        near = _FAR * sigma / 2.0
+        for ahead in range(start - 1, max(first, start - 1 - _STRAY_SAMPLES) - 1, -1):
+            if abs(values[ahead] - np.median(values[start : start + _NEAR_SAMPLES])) <= near:
+                start = ahead
+        for ahead in range(stop, min(last, stop + 1 + _STRAY_SAMPLES)):
+            if abs(values[ahead] - np.median(values[max(start, stop - _NEAR_SAMPLES) : stop])) <= near:
+                stop = ahead + 1
+        same = (start, stop) == (plateau.start, plateau.stop)
+        grown.append(plateau if same else _plateau(values, start, stop, sigma))
+    return grown
