@@ -129,10 +129,11 @@ def run_on() -> Iterator[RunOn]:
         profile: str = "ev3",
         live: bool = False,
         start: Pose | None = None,
+        time_limit_s: float = 900.0,
     ) -> Done:
         place = WORLDS[world] if start is None else WorldSpec(background=WORLDS[world].background, start=start)
         spec = RunSpec(ROBOTS[robot], place, PROFILES[profile])
-        options = RunOptions(live=live, speed=0.0, time_limit_s=900.0)
+        options = RunOptions(live=live, speed=0.0, time_limit_s=time_limit_s)
         handles.append(start_run(Program("program.py", text, "none"), spec, options))
         ended = handles[-1].wait(60.0)
         assert ended is not None

@@ -83,7 +83,6 @@ NBEV3DEVSIM = ProfileSpec(
     tick_hz=30,
     attribute_read_ns=0,
     clock_read_ns=0,
-    display_update_ns=0,
     round_forward_speeds=True,
     halve_position_moves=True,
     keep_speed_when_stopped=True,

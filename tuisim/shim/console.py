@@ -10,6 +10,7 @@ from typing import Any
 
 from tuisim.datalog.face import DISPLAY_HEIGHT, DISPLAY_WIDTH, console_row
 from tuisim.datalog.records import CONSOLE
+from tuisim.shim.rebinding import rebind
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
 from tuisim.shim.textgrid import TextGrid
@@ -53,6 +54,9 @@ class Terminal:
 
     def print(self, text: str, end: str = "\n") -> None:
         """Write on the screen; stands in for the library's `print`."""
+        # Counted also where it costs nothing.
+        self._session.command()
+        self._session.charge(self._session.sim.spec.profile.attribute_read_ns)
         self._grid.write(text + end)
         self._show()
 
@@ -77,7 +81,6 @@ class Terminal:
         return io.StringIO(f"{self._grid.rows} {self._grid.columns}\n")
 
     def _show(self) -> None:
-        self._session.command()
         self._screen.show(console_row(self._grid.screen()), CONSOLE)
 
 
@@ -85,5 +88,5 @@ def patch_console_module(session: Session, module: types.ModuleType, screen: Scr
     """Finish `ev3dev2.console` after its import: it prints on the brick's screen, not into the output."""
     console: Any = module
     terminal = Terminal(session, screen)
-    console.print = terminal.print
-    console.os = types.SimpleNamespace(system=terminal.system, popen=terminal.popen)
+    programs = types.SimpleNamespace(system=terminal.system, popen=terminal.popen)
+    rebind(console.Console, print=terminal.print, os=programs)

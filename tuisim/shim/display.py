@@ -15,8 +15,10 @@ from tuisim.shim.session import Session
 BITS_A_PIXEL = 32
 """As the driver of the brick's display says it; the display itself is black and white."""
 LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
-DARK_BELOW = 128
-"""Greys below this are dark."""
+WHITE, DARK_BELOW = 255, 128
+"""Greys below the second one are dark."""
+TRUE_COLOR = 2
+"""The kernel's number for pixels of red, green and blue."""
 NO_FILE = -1
 """In place of the descriptor of the device file."""
 
@@ -27,15 +29,14 @@ class FrameBuffer(mmap.mmap):
     Each pixel has four bytes: unused, red, green, blue.
     """
 
-    session: Session
-    screen: Screen
-
     def __new__(cls, _session: Session, _screen: Screen) -> FrameBuffer:
         """Take fresh memory, not a file."""
         return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
 
     def __init__(self, session: Session, screen: Screen) -> None:
         self.session, self.screen = session, screen
+        self.pixels, self.row = b"", ""
+        super().__setitem__(slice(None), bytes([WHITE]) * len(self))
 
     def __setitem__(self, key: Any, value: Any) -> None:
         """Write bytes, and show them after the time that this takes on the brick."""
@@ -43,7 +44,10 @@ class FrameBuffer(mmap.mmap):
         # Counted also where it costs nothing.
         self.session.command()
         self.session.charge(self.session.sim.spec.profile.display_update_ns)
-        self.screen.show(display_row(picture_of(self[:])), DISPLAY)
+        pixels = self[:]
+        if pixels != self.pixels:
+            self.pixels, self.row = pixels, display_row(picture_of(pixels))
+        self.screen.show(self.row, DISPLAY)
 
 
 def picture_of(pixels: bytes) -> bytes:
@@ -55,7 +59,7 @@ def picture_of(pixels: bytes) -> bytes:
     from PIL import Image
 
     grey = Image.frombytes("L", (DISPLAY_WIDTH, DISPLAY_HEIGHT), pixels[2::4])
-    return grey.point([255 if level < DARK_BELOW else 0 for level in range(256)], "1").tobytes()
+    return grey.point([WHITE if level < DARK_BELOW else 0 for level in range(256)], "1").tobytes()
 
 
 def patch_display_module(session: Session, module: types.ModuleType, screen: Screen) -> None:
@@ -65,7 +69,7 @@ def patch_display_module(session: Session, module: types.ModuleType, screen: Scr
 
     def fixed_info(_fbfid: int) -> Any:
         size = LINE_BYTES * DISPLAY_HEIGHT
-        return memory.FixScreenInfo(id_name=b"st7586", smem_len=size, line_length=LINE_BYTES)
+        return memory.FixScreenInfo(id_name=b"st7586", smem_len=size, visual=TRUE_COLOR, line_length=LINE_BYTES)
 
     def variable_info(_fbfid: int) -> Any:
         info = memory.VarScreenInfo(

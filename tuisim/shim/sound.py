@@ -10,6 +10,7 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS
+from tuisim.shim.rebinding import rebind
 from tuisim.shim.session import Session
 from tuisim.shim.tones import Heard, Tone, heard_of, song_of
 
@@ -126,10 +127,14 @@ class Loudspeaker:
         self._session.speak(heard.text, wait_ns, heard.tones_row, heard.file)
 
     def rest(self, seconds: float) -> None:
-        """Be silent: the library's `sleep`."""
-        if self.song is None:
-            self._session.spend(round(seconds * 1000 * MS))
-        else:
+        """Be silent: the library's `sleep`, with which it does nothing else.
+
+        Raises:
+            ValueError: for less than no time, as `sleep` says it.
+        """
+        if seconds < 0:
+            raise ValueError("sleep length must be non-negative")
+        if self.song is not None:
             self.song.append(Tone(0.0, seconds * 1000))
 
 
@@ -137,8 +142,8 @@ def patch_sound_module(session: Session, module: types.ModuleType) -> None:
     """Finish `ev3dev2.sound` after its import."""
     sound: Any = module
     speaker, mixer = Loudspeaker(session), Mixer(session)
-    sound.os = types.SimpleNamespace(path=os.path, devnull=os.devnull, system=mixer.system, popen=mixer.popen)
-    sound.sleep = speaker.rest
+    programs = types.SimpleNamespace(path=os.path, devnull=os.devnull, system=mixer.system, popen=mixer.popen)
+    rebind(sound.Sound, os=programs, sleep=speaker.rest)
     _patch_playing(session, sound, speaker)
     _patch_songs(sound.Sound, speaker)
     if session.sim.spec.profile.mend_library:

@@ -152,7 +152,7 @@ def _file(path: str) -> Heard:
             seconds = file.getnframes() / file.getframerate()
     except (wave.Error, EOFError, OSError, ZeroDivisionError) as error:
         # As above: the real player fails where nobody sees it.
-        return Heard(f"[cannot play {path}: {error or 'it is cut off'}]", 0, (Tone(0.0, 0.0),))
+        return Heard(f"[cannot play {path}: {str(error) or 'it is cut off'}]", 0, (Tone(0.0, 0.0),))
     tones = (Tone(0.0, seconds * 1000),)
     return Heard(f"[plays {path}, {seconds:.1f} s]", _total_ns(tones), tones, os.path.abspath(path))
 
