@@ -7,7 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from tests.shim import table_groups, table_motor, table_pure, table_reference, table_sensors, test_driving
+from tests.shim import (
+    table_console,
+    table_display,
+    table_groups,
+    table_motor,
+    table_pure,
+    table_reference,
+    table_sensors,
+    table_sound,
+    test_driving,
+    test_overlay,
+    test_screen,
+)
 from tests.shim.checking import Table, differences
 from tests.shim.conftest import RunOn
 
@@ -29,6 +41,11 @@ TABLES: dict[str, tuple[Table, str, str]] = {
     "remote control": (table_sensors.REMOTE, "eyes", "remote"),
     "devices": (table_reference.DEVICES, "eyes", "empty"),
     "moves": (table_reference.MOVES, "square", "empty"),
+    "display": (table_display.DISPLAY, "plain", "empty"),
+    "fonts": (table_display.FONTS, "plain", "empty"),
+    "frame buffer": (table_display.FRAME_BUFFER, "plain", "empty"),
+    "console": (table_console.CONSOLE, "plain", "empty"),
+    "sound": (table_sound.SOUND, "plain", "empty"),
     "several of a kind": (table_reference.SEVERAL, "pairs", "furnished"),
 }
 """By name: table, robot, world."""
@@ -46,7 +63,7 @@ def test_registry_lists_what_the_tables_exercise() -> None:
     for table, _, _ in TABLES.values():
         for item in table.ids:
             ids[item.split(":")[0]].add(item)
-    for item in test_driving.EXERCISED:
+    for item in test_driving.EXERCISED | test_overlay.EXERCISED | test_screen.EXERCISED:
         ids[item.split(":")[0]].add(item)
     for module, found in ids.items():
         file = Path(__file__).parent / "exercised" / f"{module}.txt"

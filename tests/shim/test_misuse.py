@@ -31,7 +31,28 @@ MISUSES = {
     "set point below": ("motor.time_sp = -1", "ValueError: One or more arguments were out of range or invalid"),
     "mode": ("ColorSensor().mode = 'DIM'", "ValueError: One or more arguments were out of range or invalid"),
     "no such attribute": ("motor.run_forever(fast=1)", "AttributeError: "),
-    "unknown sound file": ("Sound().play_file('nothing.wav')", "ValueError: "),
+    "unknown sound file": ("Sound().play_file('nothing.wav')", "ValueError: nothing.wav does not exist"),
+    "unknown note": ("Sound().play_note('H9', 1)", "ValueError: invalid note (H9)"),
+    "wrong kind of sound": ("Sound().tone(1, 2, 3)", "Exception: Unsupported number of parameters in Sound.tone()"),
+    "quote in speech": ('Sound().speak("It\'s")', "ValueError: No closing quotation"),
+    "volume cannot be told": ("Sound().get_volume()", "TypeError: invalid cmd type"),
+    "outside the grid": (
+        "from ev3dev2.display import Display; Display().text_grid('x', x=22)",
+        "AssertionError: grid columns must be between 0 and 21, 22 was requested",
+    ),
+    "unknown font": (
+        "from ev3dev2.display import Display; Display().text_pixels('x', font='luBS14')",
+        "AssertionError: luBS14 is an invalid font",
+    ),
+    "font not loaded": ("from ev3dev2 import fonts; fonts.load('x')", 'Exception: Failed to load font "x". Check'),
+    "picture not there": (
+        "from ev3dev2.display import Display; Display().image_filename('no.png')",
+        "FileNotFoundError: ",
+    ),
+    "colour not there": (
+        "from ev3dev2.display import Display; Display().line(line_color='greenish')",
+        "ValueError: unknown color specifier: 'greenish'",
+    ),
     "odometry not started": (
         "from ev3dev2.wheel import EV3Tire; MoveDifferential(OUTPUT_B, OUTPUT_C, EV3Tire, 120).turn_to_angle(10, 90)",
         "ev3dev2.ThreadNotRunning: ",
