@@ -72,7 +72,14 @@ LIBRARY_ERRORS = {
     "sensor mode": ("colorLeft.mode = 'X'", "ValueError"),
     "write-only": ("tank_drive.left_motor.command", "write-only"),
     "unknown attribute": ("tank_drive.left_motor.run_forever(foo=1)", "AttributeError"),
-    "refused part": ("from ev3dev2.button import Button\nButton()", "NotSimulated: ev3dev2.button.Button"),
+    "refused part": (
+        "from ev3dev2.control.GyroBalancer import GyroBalancer\nGyroBalancer()",
+        "NotSimulated: ev3dev2.control.GyroBalancer.GyroBalancer is not part of the simulated brick (it balances on",
+    ),
+    "network": (
+        "from ev3dev2.control.webserver import WebControlledTank\nWebControlledTank('outB', 'outC')",
+        "NotSimulated: ev3dev2.control.webserver.WebControlledTank is not part of the simulated brick (a program",
+    ),
 }
 
 

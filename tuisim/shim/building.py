@@ -7,7 +7,10 @@ from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import mounted
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, SensorSpec, UltrasonicSpec
 from tuisim.shim.devices import Brick, SimDevice
+from tuisim.shim.leds import LED_CLASS, Lights, led_name
 from tuisim.shim.lego_sensors import ColorDevice, LegoSensor
+from tuisim.shim.ports import PORT_CLASS, all_ports
+from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.shim.range_sensors import GyroDevice, infrared_sensor, touch_sensor, ultrasonic_sensor
 from tuisim.shim.session import Session
 from tuisim.shim.tacho import KINDS, TachoMotor
@@ -17,7 +20,7 @@ MOTOR_CLASS, SENSOR_CLASS = "tacho-motor", "lego-sensor"
 
 
 def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
-    """Plug the robot's motors and sensors in.
+    """Build the brick and plug the robot's motors and sensors in.
 
     Returns:
         The brick, and its colour sensors by device path.
@@ -35,6 +38,11 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     sonars: list[LegoSensor] = []
     for at, sensor in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
         brick.add(SENSOR_CLASS, f"sensor{at}", _sensor_device(session, sensor, at, colors, sonars))
+    for at, socket in enumerate(all_ports(session)):
+        brick.add(PORT_CLASS, f"port{at}", socket)
+    for name, light in Lights(session).lights.items():
+        brick.add(LED_CLASS, led_name(name), light.device())
+    brick.add(POWER_CLASS, BATTERY, Battery(session).device())
     return brick, colors
 
 

@@ -8,8 +8,10 @@ import types
 from collections.abc import Callable, Mapping, Sequence
 
 from tuisim.shim.building import build_brick
+from tuisim.shim.buttons import evdev_module, patch_button_module
 from tuisim.shim.console import patch_console_module
 from tuisim.shim.display import patch_display_module
+from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.overlay import glue_module, patch_lego_module
 from tuisim.shim.refused import REFUSED, refuse_classes
@@ -60,8 +62,10 @@ def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
     brick, colors = build_brick(session)
     screen = Screen(session)
     finishers: dict[str, Finish] = {
+        "ev3dev2.button": lambda module: patch_button_module(session, module),
         "ev3dev2.console": lambda module: patch_console_module(session, module, screen),
         "ev3dev2.display": lambda module: patch_display_module(session, module, screen),
+        "ev3dev2.led": lambda module: patch_led_module(session, module, brick),
         "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
@@ -72,5 +76,4 @@ def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
     sys.meta_path.insert(0, FinishingFinder(finishers))
     connect(session, brick)
     sys.modules["ev3dev2_glue"] = glue_module(session)
-    # The library reads its buttons through this package and complains at import when it is missing.
-    sys.modules.setdefault("evdev", types.ModuleType("evdev", "Present, so that the library does not complain."))
+    sys.modules["evdev"] = evdev_module(session)

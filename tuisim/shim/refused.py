@@ -9,27 +9,27 @@ from typing import Any, NoReturn
 
 from tuisim.errors import NotSimulated
 
-REFUSED: Mapping[str, tuple[str, ...]] = {
-    "ev3dev2.button": ("Button",),
-    "ev3dev2.control.GyroBalancer": ("GyroBalancer",),
-    "ev3dev2.control.webserver": ("WebControlledTank",),
-    "ev3dev2.led": ("Led", "Leds"),
-    "ev3dev2.port": ("LegoPort",),
-    "ev3dev2.power": ("PowerSupply",),
+REFUSED: Mapping[str, Mapping[str, str]] = {
+    "ev3dev2.control.GyroBalancer": {
+        "GyroBalancer": "it balances on two wheels, and this robot cannot fall; to drive, use MoveTank or MoveSteering",
+    },
+    "ev3dev2.control.webserver": {
+        "RobotWebServer": "a program has no network; for driving by hand use RemoteControlledTank or the buttons",
+        "WebControlledTank": "a program has no network; for driving by hand use RemoteControlledTank or the buttons",
+    },
 }
-"""By module, the classes that cannot be made."""
+"""By module, the classes that cannot be made, and what to use in their place."""
 
 
 def refuse_classes(module: types.ModuleType) -> None:
     """Make the constructors of a module's refused classes raise NotSimulated."""
-    for name in REFUSED[module.__name__]:
-        found: Any = getattr(module, name, None)
-        if found is not None:
-            found.__init__ = wraps(found.__init__)(_refusal(f"{module.__name__}.{name}"))
+    for name, hint in REFUSED[module.__name__].items():
+        refused: Any = getattr(module, name)
+        refused.__init__ = wraps(refused.__init__)(_refusal(f"{module.__name__}.{name}", hint))
 
 
-def _refusal(name: str) -> Any:
+def _refusal(name: str, hint: str) -> Any:
     def refuse(_self: object, *_args: object, **_kwargs: object) -> NoReturn:
-        raise NotSimulated(f"{name} is not part of the simulated brick")
+        raise NotSimulated(f"{name} is not part of the simulated brick", hint)
 
     return refuse

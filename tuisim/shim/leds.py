@@ -1,0 +1,234 @@
+"""The brick's four lights, as the kernel's generic driver has them, and the library's animations on them.
+
+A light whose trigger is `timer` blinks by itself in simulated time, in a thread that does nothing else.
+"""
+
+from __future__ import annotations
+
+import _thread
+import errno
+import os
+import stat
+import types
+from collections.abc import Callable
+from functools import wraps
+from itertools import count
+from typing import Any
+
+from tuisim.core.profile import MS
+from tuisim.core.simulation import NS_PER_S
+from tuisim.datalog.face import LED_NAMES, led_row
+from tuisim.datalog.records import LED
+from tuisim.shim.devices import Brick, SimDevice, refuse
+from tuisim.shim.rebinding import rebind
+from tuisim.shim.session import Session
+
+LED_CLASS = "leds"
+"""The kernel's class of lights."""
+MAX_BRIGHTNESS = 255
+TRIGGERS = ("none", "timer", "default-on")
+BLINK_MS = 500
+"""How long a blinking light is on, and off, until it is told otherwise."""
+STOP_POLL_NS = MS
+"""How often stopping an animation looks whether it is over."""
+
+
+def led_name(name: str) -> str:
+    """Return the kernel's name of a light, such as `led0:red:brick-status`.
+
+    Args:
+        name: One of `LED_NAMES`.
+    """
+    side, color = name.split()
+    return f"led{('left', 'right').index(side)}:{color}:brick-status"
+
+
+class Lights:
+    """All lights together, and what is written down about them.
+
+    Args:
+        session: Takes the rows.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.lights = {name: Light(self, green=name.endswith("green")) for name in LED_NAMES}
+        self._shown = self._brightness()
+
+    def _brightness(self) -> dict[str, int]:
+        return {name: light.shining for name, light in self.lights.items()}
+
+    def show(self) -> None:
+        """Write down how bright the lights are, if that is different from before."""
+        brightness = self._brightness()
+        if brightness != self._shown:
+            self._shown = brightness
+            self.session.show(led_row(brightness), LED)
+
+
+class Light:
+    """One light.
+
+    Args:
+        lights: Told of each change.
+        green: Whether it shines when the program starts.
+    """
+
+    def __init__(self, lights: Lights, green: bool) -> None:
+        self._lights = lights
+        self.shining = MAX_BRIGHTNESS if green else 0
+        """Its brightness at this moment."""
+        self._trigger = "default-on" if green else "none"
+        self._blink_brightness = 0
+        self._delays_ms = {"delay_on": 0, "delay_off": 0}
+        self._blink = 0
+        """Which blinking is meant; the thread of an earlier one ends."""
+
+    def device(self) -> SimDevice:
+        """Return it as the library's device."""
+        return SimDevice(
+            self._lights.session,
+            {
+                "brightness": lambda: self.shining,
+                "max_brightness": lambda: MAX_BRIGHTNESS,
+                "trigger": self._triggers,
+                "delay_on": lambda: self._delay("delay_on"),
+                "delay_off": lambda: self._delay("delay_off"),
+            },
+            {"trigger": self._set_trigger},
+            number_writers={
+                "brightness": self._set_brightness,
+                "delay_on": lambda value: self._set_delay("delay_on", value),
+                "delay_off": lambda value: self._set_delay("delay_off", value),
+            },
+        )
+
+    def _triggers(self) -> str:
+        return " ".join(f"[{name}]" if name == self._trigger else name for name in TRIGGERS)
+
+    def _shine(self, brightness: int) -> None:
+        self.shining = brightness
+        self._lights.show()
+
+    def _set_brightness(self, value: int) -> None:
+        if value < 0:
+            raise refuse(str(value))
+        self._lights.session.command()
+        value = min(value, MAX_BRIGHTNESS)
+        if value and self._trigger == "timer":
+            self._blink_brightness = value
+            if self.shining:
+                self._shine(value)
+            return
+        if not value:
+            # Dark is the end of whatever let it shine.
+            self._trigger = "none"
+        self._shine(value)
+
+    def _set_trigger(self, text: str) -> None:
+        if text not in TRIGGERS:
+            raise refuse(text)
+        self._lights.session.command()
+        before, self._trigger = self._trigger, text
+        if text == "timer":
+            self._blink_brightness = self.shining or MAX_BRIGHTNESS
+            self._delays_ms = dict.fromkeys(self._delays_ms, BLINK_MS)
+            self._start_blinking()
+        elif text == "default-on":
+            self._shine(MAX_BRIGHTNESS)
+        elif before != "none":
+            self._shine(0)
+
+    def _delay(self, name: str) -> int:
+        if self._trigger != "timer":
+            raise OSError(errno.ENOENT, name)
+        return self._delays_ms[name]
+
+    def _set_delay(self, name: str, value: int) -> None:
+        self._delay(name)
+        if value < 0:
+            raise refuse(str(value))
+        self._lights.session.command()
+        self._delays_ms[name] = value
+        self._start_blinking()
+
+    # Blinking
+
+    def _start_blinking(self) -> None:
+        self._blink += 1
+        on_ms, off_ms = self._delays_ms.values()
+        if on_ms and off_ms:
+            _thread.start_new_thread(self._keep_blinking, (self._blink,))
+        else:
+            self._shine(self._blink_brightness if on_ms else 0)
+
+    def _keep_blinking(self, blink: int) -> None:
+        # A lock that nobody gives back waits without passing for a line of the program that lets time pass.
+        alarm = _thread.allocate_lock()
+        alarm.acquire()
+        lit = True
+        while blink == self._blink and self._trigger == "timer":
+            self._shine(self._blink_brightness if lit else 0)
+            alarm.acquire(True, self._delays_ms["delay_on" if lit else "delay_off"] * MS / NS_PER_S)
+            lit = not lit
+
+
+def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
+    """Finish `ev3dev2.led` after its import: its files, its threads, and waiting for them to end."""
+    led: Any = module
+    numbers = count(1)
+    running: dict[int, int] = {}
+    """By number of an animation, the thread it runs in."""
+
+    def start_new_thread(function: Callable[..., None], arguments: tuple[Any, ...]) -> int | None:
+        number = next(numbers)
+
+        def animate() -> None:
+            running[number] = _thread.get_ident()
+            try:
+                function(*arguments)
+            finally:
+                del running[number]
+
+        _thread.start_new_thread(animate, ())
+        return number if number in running else None
+
+    def animate_stop(self: Any) -> None:
+        """Let the animation end, and wait until it has."""
+        number = self.animate_thread_id
+        # A flashing animation turns the lights off through here itself: it must not wait for its own end.
+        if number is None or running.get(number) == _thread.get_ident():
+            return
+        self.animate_thread_stop = True
+        while number in running:
+            session.spend(STOP_POLL_NS)
+        # One that ended with an error has not said so.
+        self.animate_thread_id, self.animate_thread_stop = None, False
+
+    rebind(led.Led, os=_files_of(brick))
+    rebind(led.Leds, _thread=types.SimpleNamespace(start_new_thread=start_new_thread))
+    led.Leds.animate_stop = animate_stop
+    if session.sim.spec.profile.mend_library:
+        _mend_trigger(led.Led)
+
+
+def _mend_trigger(led_class: Any) -> None:
+    """Let a light tell its trigger; the library takes the one thing that it found for two."""
+
+    @wraps(led_class.trigger.fget)
+    def get_trigger(self: Any) -> str:
+        return str(self.get_attr_from_set(None, "trigger"))
+
+    led_class.trigger = led_class.trigger.getter(get_trigger)
+
+
+def _files_of(brick: Brick) -> types.SimpleNamespace:
+    """Return what the library uses of `os`, to look for attributes of a light that come and go."""
+
+    def exists(path: str) -> bool:
+        folder, _, name = path.rpartition("/")
+        return name in brick.by_path[folder].readers
+
+    mode = stat.S_IFREG | stat.S_IRUSR | stat.S_IWUSR | stat.S_IRGRP | stat.S_IWGRP
+    status = os.stat_result((mode, *[0] * 9))
+    return types.SimpleNamespace(path=types.SimpleNamespace(exists=exists), stat=lambda _path: status)

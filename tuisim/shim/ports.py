@@ -1,0 +1,125 @@
+"""The brick's eight ports, and what is plugged into them.
+
+A port can be told its mode and device as far as that fits what is plugged in. What would take
+the device away, or put another one there, needs hands: it is refused by name.
+"""
+
+from __future__ import annotations
+
+import errno
+from dataclasses import dataclass
+
+from tuisim.core.sensors import mounted
+from tuisim.core.spec import INPUT_PORTS, OUTPUT_PORTS, RobotSpec
+from tuisim.errors import NotSimulated
+from tuisim.shim.devices import SimDevice, refuse
+from tuisim.shim.session import Session
+from tuisim.shim.tacho import KINDS
+
+PORT_CLASS = "lego-port"
+"""The kernel's class of ports."""
+AUTO = "auto"
+"""The mode in which a port finds out by itself what is plugged in."""
+
+
+@dataclass(frozen=True, slots=True)
+class PortKind:
+    """What ports of one side of the brick have in common."""
+
+    driver_name: str
+    modes: tuple[str, ...]
+    empty: str
+    """The status while nothing is plugged in."""
+
+
+INPUT = PortKind(
+    "ev3-input-port",
+    (AUTO, "nxt-analog", "nxt-color", "nxt-i2c", "other-i2c", "ev3-analog", "ev3-uart", "other-uart", "raw"),
+    "no-sensor",
+)
+OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "raw"), "no-motor")
+
+ANALOG_DRIVERS = ("lego-ev3-touch",)
+"""Sensors without a processor of their own; all others speak over the port's serial line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plugged:
+    """What is plugged into a port."""
+
+    driver_name: str
+    mode: str
+    """The mode of the port that it needs."""
+
+
+def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
+    """Return what is on the robot's ports, by their short names such as `in1`."""
+    motors = {robot.left_port: "large", robot.right_port: "large"}
+    motors |= {motor.port: motor.kind for motor in robot.extra_motors}
+    found = {port: Plugged(KINDS[kind].driver_name, "tacho-motor") for port, kind in motors.items()}
+    for kind, sensor in mounted(robot):
+        mode = "ev3-analog" if kind.driver_name in ANALOG_DRIVERS else "ev3-uart"
+        found[sensor.port] = Plugged(kind.driver_name, mode)
+    return found
+
+
+class LegoPort:
+    """One port.
+
+    Args:
+        session: Clock and simulation.
+        port: Its short name, such as `in1`.
+        plugged: What is plugged in.
+    """
+
+    def __init__(self, session: Session, port: str, plugged: Plugged | None) -> None:
+        self._session, self._port, self._plugged = session, port, plugged
+        self._kind = INPUT if port in INPUT_PORTS else OUTPUT
+        self._mode = AUTO
+
+    def device(self) -> SimDevice:
+        """Return it as the library's device."""
+        return SimDevice(
+            self._session,
+            {
+                "address": lambda: f"ev3-ports:{self._port}",
+                "driver_name": lambda: self._kind.driver_name,
+                "modes": lambda: " ".join(self._kind.modes),
+                "mode": lambda: self._mode,
+                "status": self._status,
+            },
+            {"mode": self._set_mode, "set_device": self._set_device},
+        )
+
+    def _status(self) -> str:
+        if self._mode != AUTO:
+            return self._mode
+        return self._plugged.mode if self._plugged else self._kind.empty
+
+    def _set_mode(self, text: str) -> None:
+        if text not in self._kind.modes:
+            raise refuse(text)
+        self._session.command()
+        if self._plugged is not None and text not in (AUTO, self._plugged.mode):
+            raise NotSimulated(
+                f"ev3dev2.port.LegoPort.mode: {text!r} would disconnect {self._plugged.driver_name} from {self._port}",
+                f"{AUTO} or {self._plugged.mode}",
+            )
+        self._mode = text
+
+    def _set_device(self, text: str) -> None:
+        self._session.command()
+        if self._mode in (AUTO, "raw"):
+            raise OSError(errno.EOPNOTSUPP, "set_device")
+        if self._plugged is None or text != self._plugged.driver_name:
+            there = self._plugged.driver_name if self._plugged else "nothing"
+            raise NotSimulated(
+                f"ev3dev2.port.LegoPort.set_device: {there} is plugged into {self._port}, not {text}",
+                "a robot file says what is on which port",
+            )
+
+
+def all_ports(session: Session) -> list[SimDevice]:
+    """Return the brick's ports, inputs first."""
+    plugged = plugged_in(session.sim.spec.robot)
+    return [LegoPort(session, port, plugged.get(port)).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]

@@ -1,0 +1,93 @@
+"""The battery: a rechargeable one whose voltage falls with what the brick and its wheels draw.
+
+The open voltage falls in a straight line from `FULL_V` to `EMPTY_V` over the capacity; under
+a current it is lower by that current times the inner resistance. The brick draws `BRICK_A` all
+the time, a running motor `RUNNING_A` and `SPEED_A` more at full speed, a blocked one `BLOCKED_A`.
+What was drawn before is the sum over the recorded ticks, so only the driving motors count there.
+The same world at the same tick has the same voltage, however often it was measured.
+"""
+
+from __future__ import annotations
+
+from tuisim.core.motors import STOPPED, Motor
+from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.shim.devices import SimDevice
+from tuisim.shim.session import Session
+
+POWER_CLASS, BATTERY = "power_supply", "lego-ev3-battery"
+"""Class and name of the battery, as the kernel has them."""
+
+FULL_V, EMPTY_V = 8.1, 6.0
+MAX_DESIGN_V, MIN_DESIGN_V = 8.4, 6.0
+CAPACITY_AH = 2.05
+INNER_OHM = 0.25
+BRICK_A, RUNNING_A, SPEED_A, BLOCKED_A = 0.17, 0.06, 0.12, 1.8
+
+MICRO = 1_000_000
+S_PER_H = 3600
+
+
+class Battery:
+    """The battery of a run.
+
+    Args:
+        session: Clock and simulation.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._max_dps = session.sim.spec.profile.max_speed_dps
+        self._records = 0
+        self._drawn_as = 0.0
+        """Ampere seconds drawn in the records so far."""
+
+    def device(self) -> SimDevice:
+        """Return it as the library's device."""
+        return SimDevice(
+            self._session,
+            {
+                "current_now": lambda: round(self.current_a() * MICRO),
+                "voltage_now": lambda: round(self.voltage_v() * MICRO),
+                "voltage_max_design": lambda: round(MAX_DESIGN_V * MICRO),
+                "voltage_min_design": lambda: round(MIN_DESIGN_V * MICRO),
+                "technology": lambda: "Li-ion",
+                "type": lambda: "Battery",
+                "scope": lambda: "System",
+            },
+            {},
+        )
+
+    def current_a(self) -> float:
+        """Return the current at this moment."""
+        sim = self._session.sim
+        return BRICK_A + sum(self._motor_a(motor) for motor in (sim.left, sim.right, *sim.others))
+
+    def _motor_a(self, motor: Motor) -> float:
+        if motor.mode == STOPPED:
+            return 0.0
+        if motor.blocked_ticks:
+            return BLOCKED_A
+        return self._turning_a(motor.speed_dps)
+
+    def _turning_a(self, speed_dps: float) -> float:
+        return RUNNING_A + SPEED_A * abs(speed_dps) / self._max_dps
+
+    def voltage_v(self) -> float:
+        """Return the voltage at this moment."""
+        used = self._taken_as() / S_PER_H / CAPACITY_AH
+        return max(EMPTY_V, FULL_V - (FULL_V - EMPTY_V) * used) - INNER_OHM * self.current_a()
+
+    def _taken_as(self) -> float:
+        """Return the charge drawn since the start, in ampere seconds."""
+        sim = self._session.sim
+        tick_s = 1 / sim.spec.profile.tick_hz
+        for record in sim.records_since(self._records):
+            self._records += 1
+            left_dps, right_dps, flags = record[7], record[8], int(record[10])
+            drawn_a = BRICK_A
+            if flags & FLAG_LEFT_RUNNING:
+                drawn_a += self._turning_a(left_dps)
+            if flags & FLAG_RIGHT_RUNNING:
+                drawn_a += self._turning_a(right_dps)
+            self._drawn_as += drawn_a * tick_s
+        return self._drawn_as
