@@ -1,0 +1,12 @@
+"""The array types of this package."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+"""Real numbers, shape (n,)."""
+
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
