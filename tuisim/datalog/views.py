@@ -227,6 +227,16 @@ class OutputView:
         """Return every row so far; what `new_rows` returns next does not change."""
         return list(self.rows())
 
+    def rows_from(self, position: int) -> Iterator[tuple[OutputRow, int]]:
+        """Yield the rows from a position on, each with the position after it.
+
+        Args:
+            position: 0, or one that was yielded before.
+        """
+        data, _, end = self._file.look()
+        if data is not None:
+            yield from output_rows(data, position, end)
+
     def rows(self) -> Iterator[OutputRow]:
         """Yield what `all_rows` returns, one by one: a run may print a million lines."""
         data, _, end = self._file.look()
