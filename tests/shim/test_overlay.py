@@ -70,6 +70,14 @@ ROWS: dict[str, Row] = {
         "True",
         setup="from ev3dev2.display import Display",
     ),
+    "`Leds.animate_flash(block=False)`": same(
+        "leds.animate_flash('AMBER', duration=1, block=False), time.sleep(3), leds.animate_stop()",
+        "(None, None, None)",
+        setup="from ev3dev2.led import Leds\nleds = Leds()",
+    ),
+    "`Button.wait_for_released()` of a button that is not pressed": same(
+        "Button().wait_for_released('up', 500)", "True", setup="from ev3dev2.button import Button"
+    ),
     "`==`, `<` of two speeds": same("SpeedPercent(50) == SpeedPercent(50)", "TypeError"),
     "`ColorSensor.lab`, `hls`": same(
         "[round(value) for value in (*c.lab, *c.hls)]", "[9342, 0, 0, 0, 255, 0]", setup="c = ColorSensor()"
