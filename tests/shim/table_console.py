@@ -18,8 +18,9 @@ CONSOLE = Table(
               "((44, 21), (29, 10), (11, 4))", "Console.set_font"),
         Check("size('Lat15-VGA8'), size('Lat15-Fixed14'), size('Lat7-TerminusBoldVGA16')",
               "((22, 16), (22, 9), (22, 8))"),
-        Check("size('nonsense'), size('Lat15-Huge500x400'), size('Lat15-None0x0'), size(None)",
-              "((22, 8), (22, 8), (22, 8), (22, 8))"),
+        Check("size('nonsense'), size('Lat16'), size('Lat15-Huge500x400'), size('Lat15-None0x0'), size(None)",
+              "((22, 8), (22, 8), (22, 8), (22, 8), (22, 8))"),
+        Check("size('Lat15-Terminus20x10.psf.gz')", "(17, 6)"),
         Check("c.text_at('x', alignment='Q')"),
     ),
 )  # fmt: skip

@@ -91,7 +91,9 @@ def test_beep_takes(words: str, tones: list[Tone]) -> None:
     assert parse_beep(words.split()) == tones
 
 
-@pytest.mark.parametrize("words", ["-f", "-f x", "-f 20001", "-f -1", "-l -1", "-x", "loud"])
+@pytest.mark.parametrize(
+    "words", ["-f", "-f x", "-f 20001", "-f -1", "-l -1", "-l inf", "-D nan", "-r 1e9", "-r -1", "-x", "loud"]
+)
 def test_beep_refuses(words: str) -> None:
     with pytest.raises(ValueError):
         parse_beep(words.split())

@@ -20,19 +20,20 @@ FONT_WIDTH, FONT_HEIGHT = 12, 24
 USUAL_WIDTH = 8
 """Of fonts that are named after their height only."""
 
-_SIZE = re.compile(r"\D(\d+)(?:x(\d+))?$")
+_FONT = re.compile(r"\w+-[A-Za-z]+(\d+)(?:x(\d+))?(?:\.psf)?(?:\.gz)?")
 
 
 def font_size(name: str) -> tuple[int, int] | None:
     """Return width and height in pixels of a font's letters, by its name.
 
-    The name ends in one or two numbers, such as `Lat15-TerminusBold24x12`, `Lat15-TomThumb4x6`
-    or `Lat15-VGA16`: letters are never wider than high.
+    Args:
+        name: A character set, a face and one or two numbers, such as `Lat15-TerminusBold24x12`,
+            `Lat15-TomThumb4x6` or `Lat15-VGA16`: letters are never wider than high.
 
     Returns:
-        None for a name without a size that fits the screen.
+        None for a name that is no font's, or a size that does not fit the screen.
     """
-    found = _SIZE.search(name)
+    found = _FONT.fullmatch(name)
     if found is None:
         return None
     sizes = int(found[1]), int(found[2] or USUAL_WIDTH)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import shlex
 from collections.abc import Sequence
@@ -14,6 +15,8 @@ BEEP_HZ, BEEP_MS, REPEAT_PAUSE_MS = 440.0, 200.0, 100.0
 """What `beep` takes where nothing is said."""
 HIGHEST_HZ = 20_000.0
 """`beep` refuses what is above."""
+MOST_REPETITIONS = 10_000
+"""Each is listed."""
 WORDS_PER_MINUTE = 175
 """What `espeak` takes where nothing is said; the library says 130."""
 SLOWEST_WPM, FASTEST_WPM = 80, 450
@@ -111,15 +114,18 @@ def parse_beep(words: Sequence[str]) -> list[Tone]:
 
 def _number(text: str) -> float:
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
-        raise ValueError(f"{text!r} is no number") from None
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{text!r} is no number")
+    return number
 
 
 def _repeated(note: dict[str, float]) -> list[Tone]:
     frequency_hz, length_ms = note.get("-f", BEEP_HZ), note.get("-l", BEEP_MS)
     pause_ms, times = note.get("-D", note.get("-d", REPEAT_PAUSE_MS)), int(note.get("-r", 1))
-    if not 0 <= frequency_hz <= HIGHEST_HZ or min(length_ms, pause_ms, times) < 0:
+    if not (0 <= frequency_hz <= HIGHEST_HZ and 0 <= times <= MOST_REPETITIONS) or min(length_ms, pause_ms) < 0:
         raise ValueError("out of range")
     last_pause_ms = pause_ms if "-D" in note else 0.0
     every = [Tone(frequency_hz, length_ms, pause_ms)] * times
