@@ -12,6 +12,8 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
+from tuisim.errors import ConfigError
+
 PROTOCOL_VERSION = 1
 
 
@@ -99,11 +101,14 @@ class SetButtons(Message):
 
     kind = "set_buttons"
     pressed: tuple[str, ...]
-    """Names as in `BUTTONS`."""
+    """Names as in `BUTTONS`; others raise a ConfigError."""
 
     def __post_init__(self) -> None:
         # A pipe and a file bring a list.
         object.__setattr__(self, "pressed", tuple(self.pressed))
+        for name in self.pressed:
+            if name not in BUTTONS:
+                raise ConfigError(f"the brick has no button {name!r}", f"one of {', '.join(BUTTONS)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +211,7 @@ def parse_command(line: bytes) -> Message:
     """Return the command in one line that the host wrote.
 
     Raises:
-        ValueError, KeyError, TypeError: the line is not a command.
+        ValueError, KeyError, TypeError, ConfigError: the line is not a command.
     """
     fields: dict[str, Any] = json.loads(line)
     return COMMANDS[fields.pop("kind")](**fields)

@@ -141,6 +141,7 @@ OWN = (
     "ev3dev2.console",
     "ev3dev2.display",
     "ev3dev2.fonts",
+    "ev3dev2.led",
     "ev3dev2.motor",
     "ev3dev2.sensor",
     "ev3dev2.sensor.lego",

@@ -75,6 +75,12 @@ ROWS: dict[str, Row] = {
         "(None, None, None)",
         setup="from ev3dev2.led import Leds\nleds = Leds()",
     ),
+    "`Led.trigger`, read": Row(
+        "light.trigger",
+        "'default-on'",
+        "ValueError: too many values to unpack",
+        setup="from ev3dev2.led import Led\nlight = Led()\nlight.trigger = 'default-on'",
+    ),
     "`Button.wait_for_released()` of a button that is not pressed": same(
         "Button().wait_for_released('up', 500)", "True", setup="from ev3dev2.button import Button"
     ),
