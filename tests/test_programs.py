@@ -9,9 +9,13 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tuisim.assets import programs
+from tuisim.datalog.face import ROW_BYTES, Face, face_after
+from tuisim.datalog.records import DISPLAY
+from tuisim.datalog.store import load_run
 from tuisim.programfile import read_program
 
 EXAMPLES = {
+    "draw_light.py": {"background": "Grey_bands", "y_mm": 500.0, "lines": 0},
     "follow_line.py": {"lines": 1, "samples": 0},
     "log_greys.py": {"background": "Grey_bands"},
     "name_colour.py": {"background": "Rainbow_bands", "x_mm": 300.0, "y_mm": 500.0, "lines": 2},
@@ -104,3 +108,14 @@ def test_log_of_the_greys_has_the_plateaus_in_driving_order(tuisim: Command) -> 
     bands = [value for value, after in zip(values, [*values[1:], None], strict=True) if value == after or after is None]
     plateaus = [value for value, before in zip(bands, [None, *bands], strict=False) if value != before]
     assert plateaus == [100, 86.27450980392157, 100, 82.74509803921568, 100, 50.19607843137255, 100, 0]
+
+
+def test_display_shows_the_light_as_a_bar(tuisim: Command) -> None:
+    run = load_run(json.loads(tuisim("run", "draw_light", "--json").stdout)["id"])
+    pictures = [face_after(Face(), [row]).picture for row in run.output.all_rows() if row.stream == DISPLAY]
+    # One for each light on the mat, and those half way across an edge.
+    assert len(pictures) > 5
+    middle = slice(60 * ROW_BYTES, 61 * ROW_BYTES)
+    bars = [int.from_bytes(picture[middle], "big").bit_count() for picture in pictures]
+    assert bars[0] == 139
+    assert 2 <= bars[-1] < 12
