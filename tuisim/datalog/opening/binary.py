@@ -1,0 +1,100 @@
+"""Parquet and Arrow files: read piece by piece, so that what is whole of a damaged one is not lost."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from tuisim.datalog.formats import METADATA_KEY
+from tuisim.datalog.opening.notes import Notes
+from tuisim.errors import LogError
+
+PARQUET_MAGIC, ARROW_MAGIC = b"PAR1", b"ARROW1"
+
+
+def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
+    """Return what our own exports say of themselves; empty for other files."""
+    try:
+        found = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    """Yield the row groups of a file, each with the part of the file that is read then.
+
+    Raises:
+        LogError: the file has no readable footer, without which nothing can be found in it.
+    """
+    import pyarrow.parquet as pq
+
+    try:
+        file = pq.ParquetFile(path)
+    except (pa.ArrowException, OSError, ValueError) as error:
+        hint = "a Parquet file that was cut off cannot be read: its table of contents is at its end"
+        raise LogError(f"no readable Parquet file: {_short(error)}", hint, file=str(path)) from error
+    with file:
+        count = file.metadata.num_row_groups
+        if not count:
+            yield 1.0, file.schema_arrow.empty_table()
+        first = 1
+        for at in range(count):
+            rows = file.metadata.row_group(at).num_rows
+            try:
+                part = file.read_row_group(at)
+            except (pa.ArrowException, OSError, ValueError):
+                notes.add("rows are damaged and were left out", [first], rows)
+            else:
+                yield (at + 1) / count, part
+            first += rows
+
+
+def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    """Yield the record batches of a file; of one that was cut off those that are whole.
+
+    Raises:
+        LogError: not even the names of the columns can be read.
+    """
+    size = max(path.stat().st_size, 1)
+    with pa.memory_map(str(path)) as source:
+        try:
+            with pa.ipc.open_file(source) as reader:
+                count = reader.num_record_batches
+                if not count:
+                    yield 1.0, reader.schema.empty_table()
+                for at in range(count):
+                    try:
+                        part = pa.Table.from_batches([reader.get_batch(at)])
+                        part.validate(full=True)
+                    except (pa.ArrowException, OSError, ValueError):
+                        notes.add("batches of rows are damaged and were left out", [], 1)
+                    else:
+                        yield (at + 1) / count, part
+                return
+        except (pa.ArrowException, OSError, ValueError):
+            notes.say("the file was cut off: read as far as it goes")
+        # Behind eight bytes of magic an Arrow file is a stream of batches.
+        source.seek(8)
+        try:
+            stream = pa.ipc.open_stream(source)
+        except (pa.ArrowException, OSError, ValueError) as error:
+            raise LogError(f"no readable Arrow file: {_short(error)}", file=str(path)) from error
+        yield 0.0, stream.schema.empty_table()
+        while True:
+            try:
+                part = pa.Table.from_batches([stream.read_next_batch()])
+                part.validate(full=True)
+            except StopIteration:
+                return
+            except (pa.ArrowException, OSError, ValueError):
+                return
+            yield source.tell() / size, part
+
+
+def _short(error: Exception) -> str:
+    return str(error).splitlines()[0][:120] if str(error) else type(error).__name__

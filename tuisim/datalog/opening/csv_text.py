@@ -1,0 +1,171 @@
+"""Tables as text: one row a line, cells between separators."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv as pa_csv
+
+from tuisim.datalog.opening.lines import Block
+from tuisim.datalog.opening.notes import Notes
+from tuisim.datalog.opening.numbers import are_numbers, parsed_numbers
+
+SEPARATORS = (",", ";", "\t", "|")
+_SNIFFED_LINES = 30
+
+
+class CsvReader:
+    """Reads blocks of one file; names and types of the columns are fixed by the first.
+
+    Args:
+        notes: Where it says what was wrong.
+    """
+
+    def __init__(self, notes: Notes) -> None:
+        self._notes = notes
+        self._names: list[str] = []
+        self._separator = ","
+        self._decimal_comma = False
+        self._kinds: dict[str, bool] = {}
+        """By column, whether it holds numbers; missing while all its cells were empty."""
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the rows of a block; None if it holds but the heading."""
+        if not self._names:
+            block = self._begin(block)
+            if not self._names:
+                return None
+        cells = self._fast(block)
+        columns, rows = self._careful(block) if cells is None else (cells, None)
+        if not len(columns[0]):
+            return None
+        return pa.table(
+            [self._typed(n, c, block, rows) for n, c in zip(self._names, columns, strict=True)], self._names
+        )
+
+    # The heading
+
+    def _begin(self, block: Block) -> Block:
+        lines = [line for _, line in zip(range(_SNIFFED_LINES), block.lines(), strict=False)]
+        if not lines:
+            return block
+        self._separator = sniff_separator([text for _, text in lines])
+        row, heading = lines[0]
+        names = [name.strip() for name in self._cells(heading)]
+        self._decimal_comma = self._separator == ";" and _has_decimal_comma([text for _, text in lines[1:]])
+        if are_numbers(pa.array(names, pa.string()), self._decimal_comma):
+            self._notes.say("no heading: the columns are numbered")
+            self._names = [f"column {at}" for at in range(1, len(names) + 1)]
+            return block
+        self._names = self._unique(names)
+        skipped = block.text.split(b"\n", row - block.first_row + 1)
+        return Block(row + 1, skipped[-1])
+
+    def _unique(self, names: Sequence[str]) -> list[str]:
+        unique: list[str] = []
+        for at, name in enumerate(names, 1):
+            wanted, again = name or f"column {at}", 2
+            while wanted in unique:
+                wanted, again = f"{name or f'column {at}'} ({again})", again + 1
+            if name and wanted != name:
+                self._notes.say(f"two columns are called {name!r}: the second is {wanted!r} here")
+            unique.append(wanted)
+        return unique
+
+    # Cells
+
+    def _fast(self, block: Block) -> list[pa.Array] | None:
+        """All cells by the library's parser, None if a row is not like the others."""
+        if not block.text.strip():
+            return [pa.array([], pa.string()) for _ in self._names]
+        try:
+            table = pa_csv.read_csv(
+                io.BytesIO(block.text),
+                pa_csv.ReadOptions(column_names=self._names, use_threads=False, block_size=len(block.text) + 1),
+                pa_csv.ParseOptions(delimiter=self._separator, newlines_in_values=False),
+                pa_csv.ConvertOptions(
+                    column_types=dict.fromkeys(self._names, pa.string()), strings_can_be_null=False, null_values=[]
+                ),
+            )
+        except pa.ArrowInvalid:
+            return None
+        if b'"' in block.text and table.num_rows != sum(1 for line in block.text.split(b"\n") if line.strip()):
+            return None
+        return [column.combine_chunks() for column in table.columns]
+
+    def _careful(self, block: Block) -> tuple[list[pa.Array], list[int]]:
+        """Cells line by line; short rows are filled up, long ones cut, both are noted."""
+        width = len(self._names)
+        rows, numbers, short, long = [], [], [], []
+        for row, line in block.lines():
+            cells = self._cells(line)
+            if len(cells) < width:
+                short.append(row)
+                cells += [""] * (width - len(cells))
+            elif len(cells) > width and any(cell.strip() for cell in cells[width:]):
+                long.append(row)
+            rows.append(cells[:width])
+            numbers.append(row)
+        if short:
+            self._notes.add("rows have too few cells: the rest is empty", short)
+        if long:
+            self._notes.add("rows have too many cells: the rest is left out", long)
+        return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
+
+    def _cells(self, line: str) -> list[str]:
+        try:
+            cells = next(csv.reader([line], delimiter=self._separator, strict=True))
+        except (csv.Error, StopIteration):
+            # A quote that is never closed is but a character.
+            return line.split(self._separator)
+        return cells
+
+    def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
+        if name not in self._kinds:
+            kind = are_numbers(cells, self._decimal_comma)
+            if kind is None:
+                return pa.nulls(len(cells), pa.float64())
+            self._kinds[name] = kind
+        if not self._kinds[name]:
+            return cells.dictionary_encode() if len(cells) > 100 else cells
+        numbers, wrong = parsed_numbers(cells, self._decimal_comma)
+        if (count := _count(wrong)) > 0:
+            at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
+            where = [rows[index] for index in at] if rows else _rows_at(block, at)
+            self._notes.add(f"cells of {name!r} hold no number", where, count)
+        return numbers
+
+
+def _count(mask: Any) -> int:
+    return int(mask.true_count)
+
+
+def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
+    rows = [row for row, _ in block.lines()]
+    return [rows[at] for at in positions]
+
+
+def _has_decimal_comma(lines: Sequence[str]) -> bool:
+    cells = [cell.strip() for line in lines for cell in line.split(";")]
+    with_comma = sum(cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdigit() for cell in cells)
+    return with_comma > 0 and not any(cell.count(".") == 1 and cell.replace(".", "").isdigit() for cell in cells)
+
+
+def sniff_separator(lines: Sequence[str]) -> str:
+    """Return what separates the cells: what is there in most lines, and in most of them equally often."""
+
+    def evenness(separator: str) -> tuple[int, int]:
+        counts = Counter(line.count(separator) for line in lines)
+        counts.pop(0, None)
+        if not counts:
+            return 0, 0
+        number, times = counts.most_common(1)[0]
+        return times, number
+
+    best = max(SEPARATORS, key=evenness)
+    return best if evenness(best) > (0, 0) else ","

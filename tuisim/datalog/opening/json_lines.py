@@ -1,0 +1,76 @@
+"""Tables as JSON: one object a line."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pyarrow as pa
+
+from tuisim.datalog.opening.lines import Block
+from tuisim.datalog.opening.notes import Notes
+
+
+class JsonReader:
+    """Reads blocks of one file; names and types of the columns are fixed by the first.
+
+    Args:
+        notes: Where it says what was wrong.
+    """
+
+    def __init__(self, notes: Notes) -> None:
+        self._notes = notes
+        self._kinds: dict[str, bool] = {}
+        """By column, whether it holds numbers; missing while it held nothing."""
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the rows of a block; None if there is none."""
+        found: list[tuple[int, dict[str, Any]]] = []
+        broken: list[int] = []
+        for row, line in block.lines():
+            try:
+                value = json.loads(line)
+            except (ValueError, RecursionError):
+                broken.append(row)
+                continue
+            if isinstance(value, dict):
+                found.append((row, value))
+            else:
+                broken.append(row)
+        if broken:
+            self._notes.add("lines are no JSON object and were left out", broken)
+        if not found:
+            return None
+        names = dict.fromkeys(name for _, cells in found for name in cells)
+        return pa.table({name: self._column(name, found) for name in names})
+
+    def _column(self, name: str, found: list[tuple[int, dict[str, Any]]]) -> pa.Array:
+        cells = [cells.get(name) for _, cells in found]
+        if name not in self._kinds:
+            kinds = [_is_number(cell) for cell in cells if cell is not None]
+            if not kinds:
+                return pa.nulls(len(cells), pa.float64())
+            self._kinds[name] = 2 * sum(kinds) >= len(kinds)
+        if not self._kinds[name]:
+            return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())
+        wrong = [row for (row, _), cell in zip(found, cells, strict=True) if cell is not None and not _is_number(cell)]
+        if wrong:
+            self._notes.add(f"cells of {name!r} hold no number", wrong)
+        return pa.array(
+            [_float(cell) if cell is not None and _is_number(cell) else None for cell in cells], pa.float64()
+        )
+
+
+def _is_number(cell: object) -> bool:
+    return isinstance(cell, int | float) and not isinstance(cell, bool)
+
+
+def _float(cell: float) -> float:
+    try:
+        return float(cell)
+    except OverflowError:
+        return float("inf") if cell > 0 else float("-inf")
+
+
+def _text(cell: object) -> str:
+    return cell if isinstance(cell, str) else json.dumps(cell)

@@ -1,0 +1,157 @@
+"""Which columns of a table are time, name of the variable, and values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+import numpy as np
+import pyarrow as pa
+
+from tuisim.errors import LogError
+
+ROW = ""
+"""Instead of a time column: the samples are counted."""
+
+_TIME_NAMES = ("time", "time_s", "t", "seconds", "sec", "elapsed", "timestamp", "datetime", "date", "index", "x")
+"""Names of time columns, the surest first; ends such as `_ms` tell the unit."""
+
+_UNITS_S = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0}
+_VARIABLE_NAMES = ("variable", "name", "sensor", "channel", "signal", "key", "metric")
+_VALUE_NAMES = ("value", "val", "y", "reading", "measurement")
+_NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
+"""Columns of our own long frames that say where a sample comes from."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What the columns mean."""
+
+    time: str = ROW
+    """Column with the time; `ROW` where the samples are only counted."""
+    unit_s: float = 1.0
+    """Seconds that a unit of the time column stands for."""
+    variable: str = ""
+    """Column that names the variable of each row; empty where each column is a variable of its own."""
+    values: tuple[str, ...] = ()
+    """Columns with values; one if `variable` names them."""
+    run: str = ""
+    """Column that tells runs apart; empty if there is one run only."""
+
+
+def is_numeric(kind: pa.DataType) -> bool:
+    """Return whether a column holds numbers."""
+    return bool(pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_boolean(kind))
+
+
+def is_time(kind: pa.DataType) -> bool:
+    """Return whether a column holds moments or spans of time."""
+    return bool(pa.types.is_temporal(kind))
+
+
+def guessed(table: pa.Table) -> Layout:
+    """Return what the columns seem to mean.
+
+    The time is the column with the surest name, else the first one that rises all the
+    time, else the rows are counted. A text column with a known name next to one called
+    `value` names the variables; otherwise every other column of numbers is one.
+    """
+    names = table.column_names
+    time = _guessed_time(table)
+    run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
+    variable = next((n for n in _VARIABLE_NAMES if n in names and _is_text(table.schema.field(n).type)), "")
+    value = next((n for n in _VALUE_NAMES if n in names and is_numeric(table.schema.field(n).type)), "")
+    if variable and value and value != time:
+        return Layout(time, unit_of(time, table), variable, (value,), run)
+    numeric = [n for n in names if is_numeric(table.schema.field(n).type) and n not in (time, run)]
+    if value and value in numeric:
+        kept = [n for n in numeric if n not in _NO_VALUES]
+    else:
+        # In a frame of every tick the pose is a value like any other.
+        kept = [n for n in numeric if n not in ("line", "row")]
+    return Layout(time, unit_of(time, table), "", tuple(kept or numeric), run)
+
+
+def _guessed_time(table: pa.Table) -> str:
+    lowered: dict[str, str] = {name.lower(): name for name in table.column_names}
+    usable = {n for n in table.column_names if is_numeric(table.schema.field(n).type) or _is_moment(table, n)}
+    for wanted in _TIME_NAMES:
+        for ending in ("", *(f"_{unit}" for unit in _UNITS_S), *(f" ({unit})" for unit in _UNITS_S)):
+            name = lowered.get(wanted + ending, "")
+            if name in usable and not _is_empty(table, name):
+                return name
+    numeric = [n for n in table.column_names if is_numeric(table.schema.field(n).type) and n not in _NO_VALUES]
+    # A single column of numbers is what was measured.
+    return numeric[0] if len(numeric) > 1 and _rises(table, numeric[0]) else ROW
+
+
+def _is_empty(table: pa.Table, name: str) -> bool:
+    return bool(table.column(name).null_count == table.num_rows)
+
+
+def _is_text(kind: pa.DataType) -> bool:
+    if pa.types.is_dictionary(kind):
+        kind = kind.value_type
+    return bool(pa.types.is_string(kind) or pa.types.is_large_string(kind))
+
+
+def _is_moment(table: pa.Table, name: str) -> bool:
+    """Whether a column holds times, also as text in ISO form."""
+    kind = table.schema.field(name).type
+    if is_time(kind):
+        return True
+    if not _is_text(kind) or not table.num_rows:
+        return False
+    from tuisim.datalog.opening.moments import seconds_of_texts
+
+    return bool(np.isfinite(seconds_of_texts(table.column(name).slice(0, 20))).any())
+
+
+def _rises(table: pa.Table, name: str) -> bool:
+    column = table.column(name)
+    if column.null_count or table.num_rows < 2:
+        return False
+    return bool((np.diff(column.to_numpy()) > 0).all())
+
+
+def unit_of(name: str, table: pa.Table) -> float:
+    """Return the seconds that a unit of a time column stands for, by the end of its name."""
+    if not name or not is_numeric(table.schema.field(name).type):
+        return 1.0
+    ending = name.lower().rstrip(")").replace("(", "_").replace("[", "_").rstrip("]").rpartition("_")[2].strip()
+    return _UNITS_S.get(ending, 1.0) if ending != name.lower() else 1.0
+
+
+def chosen(table: pa.Table, time: str | None, values: Sequence[str]) -> Layout:
+    """Return what the columns mean where the user names some of them.
+
+    Args:
+        table: The log.
+        time: Column with the time; empty to count the rows; None to guess.
+        values: Columns with values; none to guess.
+
+    Raises:
+        LogError: there is no such column, or it holds no numbers.
+    """
+    layout = guessed(table)
+    if time is not None:
+        if time:
+            _require(table, time)
+        values = values or [n for n in layout.values if n != time]
+        layout = Layout(time, unit_of(time, table), layout.variable, layout.values, layout.run)
+    if values and tuple(values) != layout.values:
+        for name in values:
+            _require(table, name)
+            if not is_numeric(table.schema.field(name).type):
+                raise LogError(f"column {name!r} holds no numbers")
+        keep = layout.variable if len(values) == 1 and layout.variable else ""
+        layout = Layout(layout.time, layout.unit_s, keep, tuple(values), layout.run)
+    return layout
+
+
+def _require(table: pa.Table, name: str) -> None:
+    if name not in table.column_names:
+        near = get_close_matches(name, table.column_names, 1)
+        hint = f"did you mean {near[0]!r}? " if near else ""
+        raise LogError(f"no column {name!r}", f"{hint}there are {', '.join(table.column_names)}")

@@ -1,0 +1,212 @@
+"""Reading a log piece by piece, so that its beginning can be seen while the rest is still coming."""
+
+from __future__ import annotations
+
+import sys
+import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+from typing import Protocol
+
+import pyarrow as pa
+
+from tuisim.datalog.opening.binary import ARROW_MAGIC, PARQUET_MAGIC, arrow_parts, metadata_in, parquet_parts
+from tuisim.datalog.opening.csv_text import CsvReader
+from tuisim.datalog.opening.json_lines import JsonReader
+from tuisim.datalog.opening.layout import chosen
+from tuisim.datalog.opening.lines import BLOCK_BYTES, Block, LineCutter
+from tuisim.datalog.opening.log import Log
+from tuisim.datalog.opening.notes import Notes
+from tuisim.datalog.opening.printed import PrintedReader, looks_printed
+from tuisim.errors import LogError
+
+STDIN = "-"
+FIRST_BYTES = 1 << 18
+"""Read and shown first."""
+_GZIP_MAGIC, _GZIP_BITS = b"\x1f\x8b", 31
+_SHOW_EVERY_S = 0.5
+_TABLES = (".csv", ".tsv")
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """How far the reading has come."""
+
+    part: float
+    """Of the file that has been read, 0 to 1; not a number where the size is not known."""
+    log: Log | None
+    """The log so far, now and then; always with the last one."""
+    done: bool = False
+
+
+class Readable(Protocol):
+    """Bytes that come one after the other."""
+
+    def read(self, count: int, /) -> bytes | None:
+        """Return at most so many more bytes, none at the end."""
+
+
+class BlockReader(Protocol):
+    """What turns lines into rows."""
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the rows of a block, None if it holds none."""
+
+
+def open_log(source: str | Path, time: str | None = None, values: Sequence[str] = ()) -> Log:
+    """Return the whole log in a file.
+
+    Args:
+        source: Path of a CSV, Parquet, JSONL, Arrow or text file; `-` is the standard input.
+        time: Column with the time; empty to count the rows; None to guess.
+        values: Columns with values; none to guess.
+
+    Raises:
+        LogError: it cannot be read, holds no row, or there is no such column.
+    """
+    last = None
+    for loaded in loading(source, time, values):
+        last = loaded.log or last
+    assert last is not None
+    return last
+
+
+def loading(source: str | Path, time: str | None = None, values: Sequence[str] = ()) -> Iterator[Loaded]:
+    """Read a log; yield the log so far, soon after the start and then now and then.
+
+    Args:
+        source, time, values: As for `open_log`.
+
+    Raises:
+        LogError: as for `open_log`.
+    """
+    title = "standard input" if str(source) == STDIN else str(source)
+    notes = Notes()
+    parts: list[pa.Table] = []
+    shown_at = 0.0
+    for part, table in _parts(source, notes):
+        if table is not None:
+            parts.append(table)
+        now = monotonic()
+        show = bool(parts) and now - shown_at > _SHOW_EVERY_S * (1 + len(parts) // 50)
+        yield Loaded(part, _log(title, parts, notes, time, values) if show else None)
+        shown_at = now if show else shown_at
+    if not sum(part.num_rows for part in parts):
+        said = "; ".join(notes.texts())
+        raise LogError("no rows" + (f": {said}" if said else ""), "a log has a heading and a row a sample", file=title)
+    log = _log(title, parts, notes, time, values)
+    yield Loaded(1.0, log, done=True)
+
+
+def _log(title: str, parts: Sequence[pa.Table], notes: Notes, time: str | None, values: Sequence[str]) -> Log:
+    table = joined(parts)
+    try:
+        layout = chosen(table, time, values)
+    except LogError as error:
+        raise LogError(str(error), file=title) from error
+    return Log(title, table, layout, notes.texts(), notes.left_out, metadata_in(parts[0].schema))
+
+
+def joined(parts: Sequence[pa.Table]) -> pa.Table:
+    """Return tables one below the other; a column that one does not have is empty there."""
+    return pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
+
+
+def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+    if str(source) == STDIN:
+        yield from text_parts(sys.stdin.buffer, 0, "", notes)
+        return
+    path = Path(source)
+    try:
+        if path.is_dir():
+            raise LogError("is a folder, not a log", file=str(path))
+        regular = path.is_file()
+        with path.open("rb", buffering=0 if not regular else -1) as handle:
+            head = handle.read(8) if regular else b""
+            if head.startswith(PARQUET_MAGIC):
+                yield from parquet_parts(path, notes)
+            elif head.startswith(ARROW_MAGIC):
+                yield from arrow_parts(path, notes)
+            elif head.startswith(_GZIP_MAGIC):
+                inner = path.with_suffix("").suffix.lower()
+                handle.seek(0)
+                yield from text_parts(_Unpacked(handle, notes), 0, inner, notes)
+            else:
+                if regular:
+                    handle.seek(0)
+                yield from text_parts(handle, path.stat().st_size if regular else 0, path.suffix.lower(), notes)
+    except FileNotFoundError as error:
+        raise LogError("no such file", file=str(path)) from error
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
+
+
+def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+    """Yield the rows of a text, with the part of it that has been read.
+
+    Args:
+        handle: The bytes.
+        size: How many there are, 0 if that is not known.
+        suffix: Of the file's name, lower case, such as `.csv`.
+        notes: What was wrong.
+    """
+    cutter, reader = LineCutter(notes), None
+    read = 0
+    while True:
+        data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
+        read += len(data)
+        block = cutter.feed(data) if data else cutter.finish()
+        if block is not None:
+            reader = reader or _reader_for(block, suffix, notes)
+            yield (min(1.0, read / size) if size else float("nan")), reader.read(block)
+        elif data:
+            yield (min(1.0, read / size) if size else float("nan")), None
+        if not data:
+            return
+
+
+class _Unpacked:
+    """A compressed file, read as far as it goes.
+
+    Args:
+        handle: The compressed bytes.
+        notes: What was wrong.
+    """
+
+    def __init__(self, handle: Readable, notes: Notes) -> None:
+        self._handle, self._notes = handle, notes
+        self._unpack = zlib.decompressobj(_GZIP_BITS)
+
+    def read(self, count: int, /) -> bytes:
+        """Return some more bytes, none at the end."""
+        while True:
+            packed = self._unpack.unconsumed_tail or self._handle.read(BLOCK_BYTES)
+            if self._unpack.eof:
+                # Files that were compressed apart may stand one behind the other.
+                packed = self._unpack.unused_data + (packed or b"")
+                self._unpack = zlib.decompressobj(_GZIP_BITS)
+            elif not packed:
+                self._cut_off()
+            if not packed:
+                return b""
+            try:
+                data = self._unpack.decompress(packed, count)
+            except zlib.error:
+                self._cut_off()
+                return b""
+            if data:
+                return data
+
+    def _cut_off(self) -> None:
+        self._notes.say("the compressed file was cut off or is damaged: read as far as it goes")
+
+
+def _reader_for(block: Block, suffix: str, notes: Notes) -> BlockReader:
+    lines = [line for _, (_, line) in zip(range(30), block.lines(), strict=False)]
+    if suffix in (".jsonl", ".ndjson", ".json") or (suffix not in _TABLES and lines and lines[0].startswith("{")):
+        return JsonReader(notes)
+    if suffix not in _TABLES and looks_printed(lines):
+        return PrintedReader(notes)
+    return CsvReader(notes)
