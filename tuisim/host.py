@@ -14,6 +14,7 @@ import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from tuisim import assets
 from tuisim.core.spec import RunSpec
@@ -29,6 +30,7 @@ from tuisim.protocol import (
     Message,
     Paused,
     Resumed,
+    ScriptedAction,
     Started,
     Stop,
 )
@@ -72,6 +74,12 @@ class RunOptions:
     """Scripted answers to input()."""
     asks_user: bool = False
     """Whether input() asks the user when there are no scripted answers left; otherwise that is the end of the input."""
+    actions: tuple[ScriptedAction, ...] = ()
+    """User actions that are known already, in the order of their ticks."""
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the options as they are stored with a run."""
+        return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
 
 class RunHandle:
@@ -82,7 +90,7 @@ class RunHandle:
     ) -> None:
         self.program, self.spec, self.field = program, spec, field
         self._options, self._store = options, store
-        run = store.new_run(program, spec, field.to_plain(), asdict(options), options.live)
+        run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
         self.ended: Ended | None = None
         self.started = False

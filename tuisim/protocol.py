@@ -9,6 +9,7 @@ stores each with the tick before which it was applied, so that a run can be repe
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
@@ -123,6 +124,35 @@ ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Ans
 """The commands that are user actions."""
 _CONTROLS: tuple[type[Message], ...] = (Stop, Pause, Resume, StepTicks, SetSpeed)
 COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CONTROLS, *ACTIONS)}
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptedAction:
+    """A user action that is known before the run: one of an earlier run, or one that a test gives."""
+
+    tick: int
+    """It takes effect when so many ticks are done, right before the next one."""
+    action: Message
+    """One of `ACTIONS`."""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.action, ACTIONS):
+            raise TypeError(f"not a user action: {self.action!r}")
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return it as it is written down with a run."""
+        return {"tick": self.tick, "kind": self.action.kind, **asdict(self.action)}
+
+    @classmethod
+    def from_plain(cls, row: Mapping[str, Any]) -> ScriptedAction:
+        """Return what `to_plain` has made plain.
+
+        Raises:
+            KeyError, TypeError: it is no user action.
+        """
+        fields = {name: value for name, value in row.items() if name not in ("tick", "kind")}
+        return cls(int(row["tick"]), COMMANDS[row["kind"]](**fields))
+
 
 BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 """The brick's buttons, as the library names them."""

@@ -54,7 +54,7 @@ class Child:
         self._telemetry = TelemetryWriter(folder)
         self._sim = simulation_of(config.spec, self._telemetry)
         self._output = Output(OutputWriter(folder))
-        steering = Steering(channel, folder, config.live, config.speed, config.start_paused)
+        steering = Steering(channel, folder, config.live, config.speed, config.start_paused, config.actions)
         limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
         file = config.path or config.name
         self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)

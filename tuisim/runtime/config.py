@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tuisim.core.spec import RunSpec, from_plain
 from tuisim.fields import FieldFiles
+from tuisim.protocol import ScriptedAction
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,7 @@ class RunConfig:
     stall_limit_s: float
     answers: tuple[str, ...]
     asks_user: bool
+    actions: tuple[ScriptedAction, ...]
 
 
 def read_config(folder: Path) -> RunConfig:
@@ -51,4 +53,5 @@ def read_config(folder: Path) -> RunConfig:
         stall_limit_s=options["stall_limit_s"],
         answers=tuple(options["answers"]),
         asks_user=options["asks_user"],
+        actions=tuple(ScriptedAction.from_plain(row) for row in options["actions"]),
     )

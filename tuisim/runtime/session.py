@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tuisim.core.marks import PenMarks
 
 LIVE, ATTENTION, THREADS, STOPPING = 1, 2, 4, 8
-"""Bits of `Session.slow`: paced or pausable, a command waits, more than one thread, unwinding."""
+"""Bits of `Session.slow`: the steering is asked before ticks, a command waits, more than one thread, unwinding."""
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
@@ -87,7 +87,7 @@ class Session:
         self.program_file = program_file
         self.now = 0
         self.free = 0
-        self.slow = LIVE if steering.live else 0
+        self.slow = LIVE if steering.wanted else 0
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that are held down."""
         self._due = sim.due_ns(1)
@@ -226,6 +226,8 @@ class Session:
         sim, steering = self.sim, self.steering
         sim.changed = False
         target = sim.ticks_at(until)
+        if not steering.wanted:
+            self.slow &= ~LIVE
         while sim.tick < target:
             # Never ahead of the last tick of this wait: user actions belong right before a tick.
             self.now = max(self.now, sim.due_ns(sim.tick))

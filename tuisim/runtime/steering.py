@@ -9,14 +9,14 @@ from __future__ import annotations
 import json
 import os
 from collections import deque
-from dataclasses import asdict
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
-from tuisim.protocol import Message
+from tuisim.protocol import Message, ScriptedAction
 from tuisim.runtime import real
 from tuisim.runtime.channel import Channel
 
@@ -41,14 +41,18 @@ class Steering:
         channel: Pipes to the host.
         folder: Run folder, for the user actions.
         live: Whether the run is paced and can be paused.
-        speed: 1.0 is real time, 0 as fast as possible.
+        speed: 1.0 is real time, 0 as fast as possible; a run that is not live is not paced.
         paused: Begin standing still.
+        script: User actions that are known already, in the order of their ticks.
     """
 
-    def __init__(self, channel: Channel, folder: Path, live: bool, speed: float, paused: bool) -> None:
+    def __init__(
+        self, channel: Channel, folder: Path, live: bool, speed: float, paused: bool, script: Iterable[ScriptedAction]
+    ) -> None:
         self.live = live
         self._channel, self._folder = channel, folder
-        self._speed = speed
+        self._speed = speed if live else 0.0
+        self._script = deque(script)
         self._paused = paused
         self._steps = 0
         self._anchor: tuple[float, int] | None = None
@@ -87,6 +91,11 @@ class Steering:
 
     # Right before ticks
 
+    @property
+    def wanted(self) -> bool:
+        """Whether it must be asked before ticks: the run is live, or actions are still to come."""
+        return self.live or bool(self._script)
+
     def before_ticks(self, session: Session, most: int) -> int:
         """Wait until ticks may be done.
 
@@ -105,6 +114,9 @@ class Steering:
         if session.stop_reason is not None:
             session.checkpoint()
             return most
+        if self._script:
+            # The next one must find its tick.
+            most = min(most, self._script[0].tick - session.sim.tick)
         if self._paused and not self._steps:
             self._hold(session)
         if self._steps:
@@ -149,6 +161,8 @@ class Steering:
     # User actions
 
     def _apply_actions(self, session: Session) -> None:
+        while self._script and self._script[0].tick <= session.sim.tick:
+            self.apply(session, self._script.popleft().action)
         while self._waiting:
             self.apply(session, self._waiting.popleft())
 
@@ -176,5 +190,4 @@ class Steering:
         if self._actions_fd < 0:
             path = self._folder / ACTIONS_FILE
             self._actions_fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
-        row = {"tick": tick, "kind": action.kind, **asdict(action)}
-        os.write(self._actions_fd, json.dumps(row).encode() + b"\n")
+        os.write(self._actions_fd, json.dumps(ScriptedAction(tick, action).to_plain()).encode() + b"\n")

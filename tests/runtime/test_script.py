@@ -1,0 +1,99 @@
+"""User actions that are known before the run take effect at their ticks, as they did when the user made them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+import pytest
+
+from tests.runtime.conftest import Done, Start
+from tests.runtime.test_steering import until
+from tuisim.protocol import (
+    Answer,
+    Message,
+    ScriptedAction,
+    SetButtons,
+    SetNoise,
+    SetPen,
+    SetPose,
+    SetSpeed,
+)
+
+Run = Callable[..., Done]
+
+LOGGER = """
+import time
+tank_drive.on(SpeedPercent(40), SpeedPercent(30))
+for i in range(60):
+    print('Light:', colorLeft.reflected_light_intensity_pc)
+    time.sleep(0.04)
+"""
+THREADS = """
+import threading, time
+def watch():
+    for i in range(40):
+        print('Gyro:', gyro.angle)
+        time.sleep(0.03)
+watcher = threading.Thread(target=watch)
+watcher.start()
+for i in range(30):
+    tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(-20), 0.05)
+watcher.join()
+"""
+ASKS = """
+name = input('who? ')
+tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(30), 0.5)
+print('hello', name, input('again? '))
+"""
+
+
+def test_actions_come_at_their_ticks(run: Run) -> None:
+    done = run(
+        "import time\ntime.sleep(1)",
+        actions=(
+            ScriptedAction(10, SetPose(700.0, 500.0, 90.0)),
+            ScriptedAction(10, SetPen(True)),
+            ScriptedAction(50, SetPose(300.0, 400.0, 0.0)),
+        ),
+    )
+    places = done.run.telemetry.array()["x_mm"]
+    assert (places[9], places[10], places[49], places[50]) == (150.0, 700.0, 700.0, 300.0)
+    assert done.run.telemetry.last().actions == 3  # type: ignore[union-attr]
+
+
+def test_a_button_is_held_between_its_actions(run: Run) -> None:
+    done = run(
+        "import time\nfrom ev3dev2.button import Button\nb = Button()\n"
+        "for i in range(5):\n    print(b.buttons_pressed)\n    time.sleep(0.1)",
+        actions=(ScriptedAction(15, SetButtons(("enter",))), ScriptedAction(35, SetButtons(()))),
+    )
+    assert done.lines == ["[]", "[]", "['enter']", "['enter']", "[]"]
+
+
+def test_only_actions_may_be_scripted() -> None:
+    with pytest.raises(TypeError, match="user action"):
+        ScriptedAction(0, SetSpeed(1.0))
+
+
+SCRIPTS: dict[str, tuple[str, tuple[Message, ...]]] = {
+    "drive": (LOGGER, (SetPose(900.0, 500.0, 45.0), SetNoise(20, 50), SetPen(True), SetNoise(0, 0))),
+    "threads": (THREADS, (SetNoise(0, 80), SetPose(900.0, 500.0, 45.0), SetButtons(("up", "enter")))),
+    "answers": (ASKS, (Answer("Ada"), SetPose(900.0, 500.0, 45.0), Answer("bye"))),
+}
+
+
+@pytest.mark.parametrize(("text", "actions"), SCRIPTS.values(), ids=SCRIPTS)
+def test_what_a_user_did_can_be_done_again(start: Start, run: Run, text: str, actions: tuple[Message, ...]) -> None:
+    live = start(text, live=True, speed=4.0, asks_user=True, noise=(5, 5))
+    for number, action in enumerate(actions, 1):
+        until(live, lambda at=8 * number: live.telemetry.count > at)  # type: ignore[misc]
+        live.send(action)
+    live.wait(30.0)
+    rows = (live.folder / "actions.jsonl").read_text().splitlines()
+    script = tuple(ScriptedAction.from_plain(row) for row in map(json.loads, rows))
+    assert [row.action for row in script] == list(actions)
+    for options in ({}, {"live": True, "speed": 0.0}):
+        again = run(text, asks_user=True, noise=(5, 5), actions=script, **options)
+        assert again.recording == Done(live, live.ended).recording  # type: ignore[arg-type]
+        assert (again.run.folder / "actions.jsonl").read_text().splitlines() == rows
