@@ -83,6 +83,11 @@ EXITS = {
     "time limit": ("import time\ntime.sleep(99)\n", ["--timeout", 5], 3),
     "time limit, paced": ("import time\ntime.sleep(99)\n", ["--timeout", 0.2, "--speed", 4], 3),
     "no answer": ("input('? ')\n", [], 1),
+    "press": (
+        "from ev3dev2.button import Button\nassert Button().wait_for_bump('enter', 1000)\n",
+        ["--press", "enter@0.2-0.5", "--press", "up@0.3"],
+        0,
+    ),
     "answer": ("assert input('? ') == 'yes'\n", ["--input", "yes"], 0),
 }
 

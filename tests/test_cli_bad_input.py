@@ -27,6 +27,7 @@ BAD = {
     "motor noise too large": ("run prog.py -M 501", "-M: must be a whole number from 0 to 500"),
     "speed": ("run prog.py --speed fast", "--speed: no such speed 'fast' (max, or"),
     "timeout": ("run prog.py --timeout 0", "--timeout: must be a number from 0.001"),
+    "press": ("run prog.py --press entre@1", "--press: the brick has no button 'entre' (did you mean enter?)"),
     "pen colour": ("run prog.py -P reed", "-P: no such colour 'reed' (did you mean red"),
     "unknown switch": ("run prog.py --frob", "--frob (see `tuisim run --help`)"),
     "export without a format": ("run prog.py --export rows", ".csv"),

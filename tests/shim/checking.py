@@ -26,6 +26,8 @@ class Table:
     """The module that the ids belong to; `other.module:Name` names another one."""
     setup: str
     checks: tuple[Check, ...]
+    presses: tuple[str, ...] = ()
+    """Buttons of the brick that are pressed meanwhile, as `tuisim run --press` takes them."""
 
     @property
     def program(self) -> str:

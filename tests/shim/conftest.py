@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import pytest
 
+from tuisim.commands.press import parse_press, press_actions
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import REMOTE_CHANNELS, REMOTE_CODES, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import PROFILES
@@ -130,10 +131,13 @@ def run_on() -> Iterator[RunOn]:
         live: bool = False,
         start: Pose | None = None,
         time_limit_s: float = 900.0,
+        presses: tuple[str, ...] = (),
+        speed: float = 0.0,
     ) -> Done:
         place = WORLDS[world] if start is None else WorldSpec(background=WORLDS[world].background, start=start)
         spec = RunSpec(ROBOTS[robot], place, PROFILES[profile])
-        options = RunOptions(live=live, speed=0.0, time_limit_s=time_limit_s)
+        actions = press_actions([parse_press(press) for press in presses], spec.profile.tick_hz)
+        options = RunOptions(live=live, speed=speed, time_limit_s=time_limit_s, actions=actions)
         handles.append(start_run(Program("program.py", text, "none"), spec, options))
         ended = handles[-1].wait(60.0)
         assert ended is not None

@@ -138,6 +138,7 @@ def test_almost_every_item_is_exercised(capsys: pytest.CaptureFixture[str]) -> N
 
 OWN = (
     "ev3dev2",
+    "ev3dev2.button",
     "ev3dev2.console",
     "ev3dev2.display",
     "ev3dev2.fonts",

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.shim import (
+    table_button,
     table_console,
     table_display,
     table_groups,
@@ -46,6 +47,7 @@ TABLES: dict[str, tuple[Table, str, str]] = {
     "display": (table_display.DISPLAY, "plain", "empty"),
     "fonts": (table_display.FONTS, "plain", "empty"),
     "frame buffer": (table_display.FRAME_BUFFER, "plain", "empty"),
+    "buttons": (table_button.BUTTON, "plain", "empty"),
     "lights": (table_led.LED, "plain", "empty"),
     "battery": (table_power.POWER, "plain", "empty"),
     "ports": (table_power.PORT, "eyes", "empty"),
@@ -59,7 +61,7 @@ TABLES: dict[str, tuple[Table, str, str]] = {
 
 @pytest.mark.parametrize(("table", "robot", "world"), TABLES.values(), ids=TABLES)
 def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
-    done = run_on(table.program, robot, world)
+    done = run_on(table.program, robot, world, presses=table.presses)
     assert "\n".join(differences(table, done.lines)) == ""
     assert done.ended.end == "finished", done.errors
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from tuisim.commands import outcome
 from tuisim.commands.follow import Follower
 from tuisim.commands.prepare import Prepared, prepare_runs
+from tuisim.commands.press import parse_press, press_actions
 from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
@@ -38,6 +39,8 @@ def add_arguments(parser: SwitchParser) -> None:
     add("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", type=lambda text: limit(text, "--timeout"),
         help=f"simulated seconds allowed ({DEFAULT_TIME_LIMIT_S:g})")  # fmt: skip
     add("--input", action="append", default=[], metavar="TEXT", help="answer to an input(); may be repeated")
+    add("--press", action="append", default=[], metavar="BUTTON@S", type=parse_press,
+        help="hold a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated")  # fmt: skip
     add("--json", action="store_true", help="one JSON object a program on stdout; what programs print goes to stderr")
     parser.add_switches()
 
@@ -98,6 +101,7 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int,
         speed=speed,
         time_limit_s=arguments.timeout,
         answers=tuple(arguments.input),
+        actions=press_actions(arguments.press, one.spec.profile.tick_hz),
     )
     handle = start_run(one.program, one.spec, options, store)
     try:

@@ -1,0 +1,70 @@
+"""`--press`: which button is held from which tick."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.commands.press import Press, parse_press, press_actions
+from tuisim.errors import ConfigError
+from tuisim.protocol import BUTTONS, ScriptedAction, SetButtons
+
+GIVEN = {
+    "plain": ("enter@1", Press("enter", 1.0, 1.1)),
+    "held": ("up@0.5-2", Press("up", 0.5, 2.0)),
+    "from the start": ("backspace@0-0.01", Press("backspace", 0.0, 0.01)),
+}
+
+
+@pytest.mark.parametrize(("text", "press"), GIVEN.values(), ids=GIVEN)
+def test_a_press_is_read(text: str, press: Press) -> None:
+    assert parse_press(text) == press
+
+
+WRONG = {
+    "no time": ("enter", "--press: must be BUTTON@FROM or BUTTON@FROM-UNTIL, got 'enter' (such as enter@1.5)"),
+    "no button": ("entre@1", "--press: the brick has no button 'entre' (did you mean enter?)"),
+    "empty": ("@1", f"--press: the brick has no button '' (one of {', '.join(BUTTONS)})"),
+    "no number": ("up@soon", "--press: must be a number from 0 to 1e+06, got 'soon'"),
+    "negative": ("up@-1", "--press: must be a number from 0 to 1e+06, got ''"),
+    "not a number": ("up@nan", "--press: must be a number from 0 to 1e+06, got 'nan'"),
+    "no end": ("up@1-", "--press: must be a number from 0 to 1e+06, got ''"),
+    "backwards": ("up@2-1", "--press: 'up@2-1' ends before it begins (BUTTON@FROM-UNTIL, in simulated seconds)"),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), WRONG.values(), ids=WRONG)
+def test_a_wrong_press_says_what_is_allowed(text: str, message: str) -> None:
+    with pytest.raises(ConfigError) as raised:
+        parse_press(text)
+    assert str(raised.value) == message
+
+
+HELD = {
+    "none": ((), ()),
+    "one": (("enter@1",), ((100, ("enter",)), (110, ()))),
+    "shorter than a tick": (("enter@1-1.001",), ((100, ("enter",)), (101, ()))),
+    "overlapping": (
+        ("enter@1-3", "up@2-4"),
+        ((100, ("enter",)), (200, ("up", "enter")), (300, ("up",)), (400, ())),
+    ),
+    "the same one": (("up@1-2", "up@1.5-3"), ((100, ("up",)), (300, ()))),
+    "one after the other": (("up@1-2", "down@2-3"), ((100, ("up",)), (200, ("down",)), (300, ()))),
+    "not in order": (("up@5", "down@1"), ((100, ("down",)), (110, ()), (500, ("up",)), (510, ()))),
+}
+
+
+@pytest.mark.parametrize(("texts", "changes"), HELD.values(), ids=HELD)
+def test_presses_become_changes_at_ticks(
+    texts: tuple[str, ...], changes: tuple[tuple[int, tuple[str, ...]], ...]
+) -> None:
+    found = press_actions([parse_press(text) for text in texts], 100)
+    assert found == tuple(ScriptedAction(tick, SetButtons(pressed)) for tick, pressed in changes)
+
+
+def test_ticks_are_those_of_the_profile() -> None:
+    assert [change.tick for change in press_actions([parse_press("up@1-2")], 30)] == [30, 60]
+
+
+def test_a_button_that_the_brick_does_not_have_is_refused() -> None:
+    with pytest.raises(ConfigError, match="the brick has no button 'start'"):
+        SetButtons(("up", "start"))

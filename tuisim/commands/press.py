@@ -1,0 +1,67 @@
+"""`--press`: buttons of the brick that are pressed at stated times, without anybody there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tuisim.errors import ConfigError
+from tuisim.protocol import BUTTONS, ScriptedAction, SetButtons
+from tuisim.switches import nearest, number
+
+FLAG = "--press"
+DEFAULT_PRESS_S = 0.1
+"""How long a button is held when nothing else is said."""
+MAX_PRESS_S = 1e6
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """One button, held for a while; times in simulated seconds."""
+
+    button: str
+    """One of `BUTTONS`."""
+    from_s: float
+    until_s: float
+
+
+def parse_press(text: str) -> Press:
+    """Return the press that a text such as `enter@1.0-1.5` or `enter@1` describes.
+
+    Raises:
+        ConfigError: there is no such button, or the times are wrong.
+    """
+    name, at, times = text.partition("@")
+    if not at:
+        raise ConfigError(f"must be BUTTON@FROM or BUTTON@FROM-UNTIL, got {text!r}", "such as enter@1.5", key=FLAG)
+    if name not in BUTTONS:
+        raise ConfigError(f"the brick has no button {name!r}", nearest(name, BUTTONS), key=FLAG)
+    seconds = number(0.0, MAX_PRESS_S)
+    begin, to, end = times.partition("-")
+    from_s = seconds(begin, FLAG)
+    until_s = seconds(end, FLAG) if to else from_s + DEFAULT_PRESS_S
+    if until_s <= from_s:
+        raise ConfigError(f"{text!r} ends before it begins", "BUTTON@FROM-UNTIL, in simulated seconds", key=FLAG)
+    return Press(name, from_s, until_s)
+
+
+def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[ScriptedAction, ...]:
+    """Return the changes of the buttons, in the order of their ticks.
+
+    Args:
+        presses: May overlap.
+        tick_hz: Ticks a second; a press lasts one tick at least.
+    """
+    held = []
+    for press in presses:
+        first = round(press.from_s * tick_hz)
+        held.append((press.button, first, max(first + 1, round(press.until_s * tick_hz))))
+    changes: list[ScriptedAction] = []
+    before: tuple[str, ...] = ()
+    for tick in sorted({tick for _, first, last in held for tick in (first, last)}):
+        down = {button for button, first, last in held if first <= tick < last}
+        pressed = tuple(button for button in BUTTONS if button in down)
+        if pressed != before:
+            changes.append(ScriptedAction(tick, SetButtons(pressed)))
+            before = pressed
+    return tuple(changes)
