@@ -79,11 +79,12 @@ async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -
         app.query_one("#light", Slider).focus()
         await pilot.press("pageup")
         await until(pilot, lambda: app.bridge.snapshot().instant.noise.light == 10)
-        run = app.bridge.run
+        run, recording = app.bridge.run, app.bridge.timeline.recording
         assert run is not None
+        assert recording is not None
         actions, _ = read_actions(run.folder)
         assert [(action.kind, dict(action.fields)) for action in actions] == [("set_noise", {"light": 10, "motor": 0})]
-        assert app.bridge.noise_at(run.telemetry.record(0)) == NoiseSpec(0, 0)
+        assert recording.noise_at(run.telemetry.record(0)) == NoiseSpec(0, 0)
         await until(pilot, lambda: "light ±10" in screen_text(app))
         # The run itself began without: what it was made of does not change.
         assert json.loads((run.folder / "run.json").read_text())["spec"]["world"]["noise"]["light"] == 0

@@ -149,15 +149,16 @@ async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
             pilot, lambda: chart._picture is not None and chart._picture.columns > 0 and chart._traces.end_s() > 5
         )
         chart.focus()
+        now = app.bridge.pose
         await pilot.press("left", *["shift+left"] * 2)
-        await until(pilot, lambda: world._view.ghost is not None)
+        await until(pilot, lambda: app.bridge.snapshot().past)
         await pilot.pause()
-        ghost, cursor_s = world._view.ghost, chart._state.cursor_s
-        assert ghost is not None
-        assert cursor_s is not None
-        assert 150 < ghost.x_mm < app.bridge.pose.x_mm
-        run = app.bridge.run
-        assert run is not None
-        assert ghost == run.telemetry.record(int(cursor_s * 100 + 1e-6)).pose
+        snapshot, cursor_s = app.bridge.snapshot(), chart._state.cursor_s
+        assert cursor_s == snapshot.time_s
+        assert 150 < snapshot.instant.pose.x_mm < now.x_mm
+        assert snapshot.now_pose == now
+        assert world._view._scene is not None
+        assert (world._view._scene.pose, world._view._scene.ghost) == (snapshot.instant.pose, now)
         await pilot.press("escape")
-        await until(pilot, lambda: world._view.ghost is None)
+        await until(pilot, lambda: not app.bridge.snapshot().past)
+        assert chart._state.cursor_s is None

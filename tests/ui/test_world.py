@@ -110,16 +110,16 @@ async def test_the_trace_survives_another_mat_and_can_be_cleared() -> None:
         assert view(app.panel)._cells[row, col] == plain
 
 
-async def test_the_ghost_comes_and_goes() -> None:
+async def test_where_the_robot_is_now_is_a_ghost_in_the_past() -> None:
     app = PanelApp(World())
     async with app.run_test(size=(76, 27)):
         app.panel.set_mat(white_mat())
         app.panel.show(moment())
         before = view(app.panel)._cells.copy()
 
-        app.panel.set_ghost(Pose(300.0, 300.0, 90.0))
+        app.panel.show(moment(now_pose=Pose(300.0, 300.0, 90.0)))
         assert (before != view(app.panel)._cells).any()
-        app.panel.set_ghost(None)
+        app.panel.show(moment())
         assert (before == view(app.panel)._cells).all()
 
 

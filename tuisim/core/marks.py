@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import islice
 
 from tuisim.core.css import css_rgb
 from tuisim.core.field import Field
@@ -89,6 +90,13 @@ class PenMarks:
         self.records = 0
         """How many tick records have been taken in."""
         self._last: _PenPoint | None = None
+
+    def field_of_first(self, count: int) -> MarkedField:
+        """Return the mat with the first `count` marks only, as it was when there were no more."""
+        field = self.field
+        marks = dict(islice(field.marks.items(), count))
+        blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
+        return MarkedField(field.width_px, field.height_px, field.pixels, field.sums, marks, blocks)
 
     def take_in(self, records: Iterable[tuple[float, ...]]) -> None:
         """Draw on.

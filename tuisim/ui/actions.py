@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from textual.message import Message
 
-from tuisim.ui import verbs
+from tuisim.ui import travel, verbs
 from tuisim.ui.panels import PANELS
 from tuisim.ui.snapshot import PAUSED, RUNNING, STARTING, WAITING
 
@@ -35,7 +35,7 @@ class Act(Message):
 IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
 """States in which there is a child process."""
 
-PROGRAM, ROBOT, PANEL, FILES, APP = "Program", "Robot", "Panels", "Files", "App"
+PROGRAM, TIME, ROBOT, PANEL, FILES, APP = "Program", "Time", "Robot", "Panels", "Files", "App"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,9 @@ class Situation:
     state: str
     has_program: bool
     has_run: bool
-    """Whether there has been a run, so that there is a log."""
+    """Whether there has been a run, so that there is a log, and a past."""
+    in_past: bool = False
+    """Whether an instant before the newest is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +81,11 @@ _KEY_LABELS = {
     "left_square_bracket": "[",
     "right_square_bracket": "]",
     "question_mark": "?",
+    "comma": ",",
+    "less_than_sign": "<",
+    "greater_than_sign": ">",
+    "left_parenthesis": "(",
+    "right_parenthesis": ")",
 }
 
 
@@ -92,10 +99,24 @@ def _can_stop(now: Situation) -> str:
     return "" if now.state in IN_RUN else "Nothing is running: R runs the program"
 
 
+def _can_pause(now: Situation) -> str:
+    return "" if now.in_past else _can_stop(now)
+
+
 def _can_step(now: Situation) -> str:
-    if now.state == PAUSED:
+    if now.state == PAUSED or now.in_past:
         return ""
-    return "One tick works while paused: space pauses" if now.state in IN_RUN else _can_stop(now)
+    if now.state in IN_RUN:
+        return "One tick works while paused: space pauses"
+    return "This is the end of the run: , goes back" if now.has_run else _can_stop(now)
+
+
+def _can_look_back(now: Situation) -> str:
+    return "" if now.has_run else "No run yet to look back on: R runs the program"
+
+
+def _can_look_on(now: Situation) -> str:
+    return "" if now.in_past else _can_look_back(now) or "This is the newest instant"
 
 
 def _can_change_world(now: Situation) -> str:
@@ -132,14 +153,30 @@ def _toggles() -> list[Action]:
     ]
 
 
+def _travels() -> list[Action]:
+    back, on = _can_look_back, _can_look_on
+    keys = "< >"
+    return [
+        Action("second-back", "less_than_sign", "One second back", TIME, travel.second_back, back, "1 s", "", keys),
+        Action("second-on", "greater_than_sign", "One second on", TIME, travel.second_on, on),
+        Action("sample-before", "left_parenthesis", "The sample before", TIME, travel.sample_before, back),
+        Action("next-sample", "right_parenthesis", "The next sample", TIME, travel.next_sample, on),
+        Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, travel.ask_where, back, "go to"),
+        Action("start-of-run", "home", "Start of the run", TIME, travel.to_start, back),
+        Action("now", "end", "Back to now (also escape)", TIME, travel.to_now, on),
+    ]
+
+
 # The footer shows them in this order, as far as they fit; `help` and `quit` always.
 ACTIONS: Mapping[str, Action] = {
     action.id: action
     for action in (
         Action("run", "R", "Run the program", PROGRAM, verbs.run, _can_run, "run"),
         Action("stop", "S", "Stop the program", PROGRAM, verbs.stop, _can_stop, "stop"),
-        Action("pause", "space", "Pause or go on", PROGRAM, verbs.pause, _can_stop, "pause"),
-        Action("tick", "full_stop", "One tick, while paused", PROGRAM, verbs.tick, _can_step, "tick"),
+        Action("pause", "space", "Pause or go on; play the past", PROGRAM, travel.pause, _can_pause, "pause"),
+        Action("tick", "full_stop", "One tick on, while paused", TIME, travel.tick_on, _can_step, "tick"),
+        Action("back", "comma", "One tick back", TIME, travel.tick_back, _can_look_back, "back"),
+        *_travels(),
         Action("open", "o", "Open a program or a world", FILES, verbs.open_program, _can_change_world, "open"),
         Action("mats", "b", "Choose a mat", ROBOT, verbs.choose_mat, _can_change_world, "mats"),
         Action("home", "m", "Robot back to its start", ROBOT, verbs.home, footer="start"),

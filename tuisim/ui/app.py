@@ -17,12 +17,14 @@ from textual.widget import Widget
 
 from tuisim.errors import TuisimError
 from tuisim.protocol import Ended
+from tuisim.ui import travel
 from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
 from tuisim.ui.bridge import ROWS_A_POLL, Bridge, News
 from tuisim.ui.desk import Desk
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
 from tuisim.ui.loading import Loading
+from tuisim.ui.lookback import Lookback
 from tuisim.ui.pacer import Pacer
 from tuisim.ui.session import AppSettings
 from tuisim.ui.snapshot import ENDED, Snapshot
@@ -70,6 +72,7 @@ class Lab(Wishes):
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
         self.voice = Voice(settings.quiet)
+        self.lookback = Lookback(self.desk, self.bridge.timeline)
         self.feed: Feed | None = None
         self._drawn: object = None
         self.loading = Loading(self)
@@ -144,21 +147,26 @@ class Lab(Wishes):
         except TuisimError as error:
             self.complain(error)
             return
-        assert self.bridge.run is not None
-        self.feed = Feed(self.bridge.run, self.bridge.noise_at)
-        self._last_words = ""
+        self.run_changed()
+
+    def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
+        """Make the panels ready for another run, which may be over already and have ended with some words."""
+        recording = self.bridge.timeline.recording
+        self.feed = Feed(recording) if recording else None
+        self._last_words = last_words
         if self.desk.output:
             self.desk.output.clear()
         if self.desk.chart:
             self.desk.chart.clear()
         if self.desk.code:
-            self.desk.code.mark_error(0)
+            self.desk.code.mark_error(error_line)
         self.situation_changed()
 
     def _beat(self) -> None:
         """Take what the run has written, and show a frame if the terminal has shown the last one."""
         try:
             self._take(self.bridge.poll())
+            travel.beat(self)
             if self.pacer.ready():
                 self.draw()
         except TuisimError as error:
@@ -218,26 +226,28 @@ class Lab(Wishes):
         snapshot = self.bridge.snapshot()
         now = (
             (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
-            (snapshot.spec, snapshot.next_spec),
+            (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
         )
-        if now == self._drawn and not force:
+        if now == self._drawn and not force and not (self.feed and self.feed.is_behind):
             return
         self._drawn = now
         self._feed_panels()
+        self.lookback.show()
         self.desk.show(snapshot)
         self._show_footer(snapshot)
         if self.pacer.drawn():
             self.call_after_refresh(self._ask_terminal)
 
     def _feed_panels(self) -> None:
-        if self.feed is None or self.bridge.mat is None:
+        if self.feed is None:
             return
         if world := self.desk.world:
             xs, ys = self.feed.trace_points()
             if xs:
-                world.extend_trace(xs, ys, self.feed.run.spec.robot.pen)
-        if self.desk.shown("chart"):
-            self._append(self.feed.chart_series(self.bridge.mat))
+                world.extend_trace(xs, ys, self.feed.recording.spec.robot.pen)
+        mat = self.bridge.mat
+        if self.desk.shown("chart") and mat and mat.field and mat.serves(self.feed.recording.spec):
+            self._append(self.feed.chart_series(mat.field))
 
     def _ask_terminal(self) -> None:
         # The answer arrives as a CursorPosition event once the frame has been worked through.
@@ -254,6 +264,8 @@ class Lab(Wishes):
 
     def _show_footer(self, snapshot: Snapshot) -> None:
         status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
+        if snapshot.past:
+            status = "playing" if self.bridge.timeline.playing else f"past {snapshot.time_s:.2f} s"
         if snapshot.state in IN_RUN or snapshot.speed != 1:
             status += f" {speed_label(snapshot.speed)}"
         shown = frozenset(panel for panel in self.desk.panels if self.desk.shown(panel))
@@ -261,7 +273,8 @@ class Lab(Wishes):
 
     def situation(self) -> Situation:
         """Return what decides which keys work."""
-        return Situation(self.bridge.state, self.bridge.program is not None, bool(self.bridge.run_id))
+        bridge = self.bridge
+        return Situation(bridge.state, bridge.program is not None, bool(bridge.run_id), bridge.in_past)
 
     # Panels
 
@@ -305,7 +318,9 @@ class Lab(Wishes):
         self.action_act(message.action)
 
     def action_leave_field(self) -> None:
-        """Leave an input field."""
+        """Leave an input field; from the world, come back from the past."""
+        if self.bridge.in_past and self.focused in (None, self.desk.world):
+            travel.to_now(self)
         self.set_focus(self.desk.world if self.desk.shown("world") else None)
 
     def on_output_answered(self, message: Output.Answered) -> None:

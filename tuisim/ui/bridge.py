@@ -14,16 +14,17 @@ from tuisim import protocol
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, Instant
+from tuisim.core.state import FLAG_PEN_DOWN, Instant
 from tuisim.datalog.records import OutputRow
 from tuisim.ui import plan as plans
 from tuisim.ui.plan import Plan
 from tuisim.ui.readings import snapshot_of
+from tuisim.ui.recording import Recording
 from tuisim.ui.snapshot import ENDED, IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot
+from tuisim.ui.timeline import Timeline
 
 if TYPE_CHECKING:
-    from tuisim.core.marks import PenMarks
-    from tuisim.datalog.runfile import Action
+    from tuisim.datalog.runfile import StoredRun
     from tuisim.datalog.views import TickRecord
     from tuisim.host import Program, RunHandle
     from tuisim.ui.mat import Mat
@@ -31,11 +32,6 @@ if TYPE_CHECKING:
 
 ROWS_A_POLL = 4000
 """Most output rows that one poll takes, so that a flood of prints leaves the app fluid."""
-
-STALL_S = 0.1
-"""A running motor that has not turned for longer is stalled (EV3 motor driver)."""
-_STILL_DEG = 0.05
-"""Less in that time is no turning, but pushing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,22 +65,21 @@ class Bridge:
         self.speed = settings.speed
         self.mat: Mat | None = None
         self.run: RunHandle | None = None
+        """The run at work or the last one; None before the first, and while one from the store is shown."""
+        self.timeline = Timeline()
         self._still = self._at_rest(self.home)
-        self._end: protocol.Ended | None = None
+        self._end = ""
+        """How the run ended."""
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer holds."""
-        self._noise_set = False
-        """Whether the user has changed the noise of the run at hand."""
-        self._actions: tuple[Action, ...] = ()
-        """The user's actions in this run, as far as they have been read."""
-        self._marks: PenMarks | None = None
 
     # What is the case
 
     @property
     def spec(self) -> RunSpec:
-        """What is shown: the run's own specification while it goes on, else that of the next run."""
-        return self.run.spec if self.run is not None and self.run.ended is None else self.plan.spec
+        """What is shown: the run's own specification while it goes on or is looked back at, else the next run's."""
+        recording = self.timeline.recording
+        return recording.spec if recording and (self.in_run or self.in_past) else self.plan.spec
 
     @property
     def in_run(self) -> bool:
@@ -92,11 +87,16 @@ class Bridge:
         return self.run is not None and self.run.ended is None
 
     @property
+    def in_past(self) -> bool:
+        """Whether an instant before the newest is looked at."""
+        return self.timeline.at is not None
+
+    @property
     def state(self) -> str:
         """One of the states of `ui.snapshot`."""
         run = self.run
         if run is None:
-            return IDLE
+            return ENDED if self.timeline.recording else IDLE
         if run.ended is not None:
             return ENDED
         if run.waiting_for_input is not None:
@@ -108,7 +108,7 @@ class Bridge:
     @property
     def run_id(self) -> str:
         """Id of the run at hand or the last one, empty if there was none."""
-        return self.run.run_id if self.run else ""
+        return self.timeline.recording.run_id if self.timeline.recording else ""
 
     @property
     def pose(self) -> Pose:
@@ -121,84 +121,63 @@ class Bridge:
         return self._moment()[2]
 
     def snapshot(self) -> Snapshot:
-        """Return the picture of this moment."""
-        record = self._record()
+        """Return the picture of the moment that is looked at."""
+        record, recording = self._record(), self.timeline.recording
         instant, line, pen_down = self._moment()
-        return snapshot_of(
-            instant,
-            self.spec,
-            self._field(),
-            state=self.state,
-            end=self._end.end if self._end and self.state == ENDED else "",
-            line=line,
-            speed=self.speed,
-            pen_down=pen_down,
-            stalled=self._stalled(record) if record else (False, False),
-            next_spec=self.plan.spec,
+        newest = recording.telemetry.last() if recording and self.in_past else None
+        return replace(
+            snapshot_of(
+                instant,
+                self.spec,
+                self._field(record),
+                state=self.state,
+                end=self._end if self.state == ENDED else "",
+                line=line,
+                speed=self.speed,
+                pen_down=pen_down,
+                stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
+                next_spec=self.plan.spec,
+            ),
+            past=self.in_past,
+            now_tick=max(0, self.timeline.newest),
+            now_pose=newest.pose if newest else None,
         )
 
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.plan.spec
         return Instant(0, pose, gyro_zero_deg=pose.heading_deg, noise=spec.world.noise, seed=spec.seed)
 
+    @property
+    def _is_of_run(self) -> bool:
+        """Whether what is shown is an instant of the run, and not how the robot stands after it."""
+        return self.in_run or self.in_past
+
     def _record(self) -> TickRecord | None:
-        """The newest record of the run, if the robot is where it left it."""
-        return self.run.telemetry.last() if self.run and not self._moved else None
+        """The record that is looked at; now that is the run's newest, if the robot is where the run left it."""
+        recording = self.timeline.recording
+        if recording is None or (self._moved and not self.in_past):
+            return None
+        return self.timeline.record() or recording.telemetry.last()
 
     def _moment(self) -> tuple[Instant, int, bool]:
-        """The newest instant, the program's line, and whether the pen is down."""
-        record = self._record()
-        if record is None:
+        """The instant, the program's line, and whether the pen is down."""
+        record, recording = self._record(), self.timeline.recording
+        if record is None or recording is None:
             return self._still, 0, self.plan.spec.robot.pen.down
         from tuisim.datalog.views import instant_of
 
-        noise = self.noise_at(record) if self.in_run else self.plan.spec.world.noise
+        noise = recording.noise_at(record) if self._is_of_run else self.plan.spec.world.noise
         # At rest the pen is where the next run will have it.
-        down = bool(record.flags & FLAG_PEN_DOWN) if self.in_run else self.plan.spec.robot.pen.down
+        down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.plan.spec.robot.pen.down
         return instant_of(record, self.spec, noise), record.line, down
 
-    def noise_at(self, record: TickRecord) -> NoiseSpec:
-        """Return the noise at the tick of a record of the run at hand."""
-        assert self.run is not None
-        if not self._noise_set:
-            return self.run.spec.world.noise
-        from tuisim.datalog.runfile import noise_at, read_actions
-
-        # The record counts the actions modulo 65536, and may be a little ahead of their file.
-        if 0 < (record.actions - len(self._actions)) & 0xFFFF < 0x8000:
-            self._actions = read_actions(self.run.folder)[0]
-        return noise_at(self.run.spec, self._actions, record)
-
-    def _field(self) -> Field | None:
-        """The mat as the sensors see it, None until it is prepared for them."""
-        if self.mat is None or not self.mat.serves(self.spec):
+    def _field(self, record: TickRecord | None) -> Field | None:
+        """The mat as the sensors saw it then, None until it is prepared for them."""
+        if self.mat is None or self.mat.field is None or not self.mat.serves(self.spec):
             return None
-        if self.run is None or self._moved or not self.run.spec.world.pen_marks:
-            return self.mat.field
-        if self._marks is None:
-            from tuisim.core.marks import PenMarks
-
-            self._marks = PenMarks(self.mat.field, self.run.spec)
-        self._marks.take_in(self.run.telemetry.array()[self._marks.records :].tolist())
-        return self._marks.field
-
-    def _stalled(self, record: TickRecord) -> tuple[bool, bool]:
-        """Whether the left and the right motor are told to run but do not turn."""
-        run = self.run
-        if run is None or run.ended is not None:
-            return False, False
-        ticks = int(STALL_S * run.spec.profile.tick_hz) + 1
-        if record.tick < ticks:
-            return False, False
-        before = run.telemetry.record(record.tick - ticks)
-        running = record.flags & before.flags
-        turned = (
-            abs(record.left_position_deg - before.left_position_deg),
-            abs(record.right_position_deg - before.right_position_deg),
-        )
+        recording = self.timeline.recording
         return (
-            bool(running & FLAG_LEFT_RUNNING) and turned[0] < _STILL_DEG,
-            bool(running & FLAG_RIGHT_RUNNING) and turned[1] < _STILL_DEG,
+            self.mat.field if record is None or recording is None else recording.field_at(record.tick, self.mat.field)
         )
 
     # What the user does
@@ -214,10 +193,19 @@ class Bridge:
         if self.program is None or self.in_run:
             return
         self.close()
-        self._end, self._moved = None, True
-        self._noise_set, self._actions, self._marks = False, (), None
+        self._end, self._moved = "", True
         options = RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)
         self.run = start_run(self.program, self.plan.spec, options)
+        self._look_at(Recording(self.run))
+
+    def replay(self, run: StoredRun) -> None:
+        """Show a run from the store as one that is over. Not during a run."""
+        self.close()
+        self._end = run.state
+        self._look_at(Recording(run))
+
+    def _look_at(self, recording: Recording) -> None:
+        self.timeline.take(recording)
         self._moved = False
 
     def stop(self) -> None:
@@ -258,7 +246,8 @@ class Bridge:
         self.plan = plans.with_noise(self.plan, noise)
         self._still = replace(self._still, noise=noise)
         if self.in_run:
-            self._noise_set = True
+            assert self.timeline.recording is not None
+            self.timeline.recording.noise_was_set()
             self._send(protocol.SetNoise(noise.light, noise.motor))
 
     def set_seed(self, seed: int) -> None:
@@ -295,6 +284,7 @@ class Bridge:
                 self.run.kill()
             self.run.close()
             self.run = None
+        self.timeline.take(None)
 
     def _send(self, command: protocol.Message) -> None:
         if self.run is not None:
@@ -309,15 +299,17 @@ class Bridge:
             HostError: the child sent rubbish.
             LogError: its recording is damaged.
         """
-        if self.run is None:
+        recording = self.timeline.recording
+        if recording is None:
             return News([])
         ended = None
         spoken: list[str] = []
-        for event in self.run.pump():
+        for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
-                    self._end = ended = event
+                    ended, self._end = event, event.end
                 case protocol.Spoke(text=text):
                     spoken.append(text)
-        rows = self.run.output.new_rows(ROWS_A_POLL)
-        return News(rows, 0, ended, tuple(spoken), self.run.waiting_for_input if self.in_run else None)
+        rows = recording.rows.take(ROWS_A_POLL)
+        prompt = self.run.waiting_for_input if self.run and self.in_run else None
+        return News(rows, 0, ended, tuple(spoken), prompt)

@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim.core.field import Field
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec
+from tuisim.core.spec import PenSpec
 from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.datalog.records import OutputRow
 from tuisim.datalog.samples import samples_of
 from tuisim.ui.readings import telemetry_traces
 
 if TYPE_CHECKING:
-    from tuisim.core.marks import PenMarks
-    from tuisim.datalog.views import TickRecord
-    from tuisim.host import RunHandle
-    from tuisim.ui.mat import Mat
+    import numpy as np
+    import numpy.typing as npt
+
+    from tuisim.ui.recording import Recording
 
 Series = dict[str, tuple[list[float], list[float]]]
 """By trace name: times in s, values."""
 
+Points = tuple[list[float], list[float]]
+"""x and y in mm, NaN where the pen was lifted."""
+
 POINTS_A_FEED = 60
 """Most telemetry moments that one call measures; each costs a reading of every sensor."""
+POINTS_OF_A_RUN = 1500
+"""About so many moments are measured of a run that was there before anybody looked."""
 TRACE_POINTS_A_FEED = 4000
 _JUMP_MM = 25.0
 """No wheel carries the pen so far in a tick: the robot was put somewhere else."""
@@ -44,79 +48,103 @@ def sample_series(rows: Iterable[OutputRow]) -> Series:
 class Feed:
     """Reading positions in one run's telemetry."""
 
-    run: RunHandle
-    noise_at: Callable[[TickRecord], NoiseSpec]
-    """The noise at the tick of a record."""
+    recording: Recording
     _charted: int = field(default=0, init=False)
     _traced: int = field(default=0, init=False)
     _lifted: bool = field(default=False, init=False)
     """Whether the pen was up in the last record that was traced."""
     _last_xy_mm: tuple[float, float] | None = field(default=None, init=False)
     """Where the robot was in the last record that was traced."""
-    _marks: PenMarks | None = field(default=None, init=False)
 
-    def pose_at(self, time_s: float | None) -> Pose | None:
-        """Return where the robot was at a time of the run, None if that is not recorded."""
-        if time_s is None:
-            return None
-        tick = int(time_s * self.run.spec.profile.tick_hz + 1e-6)
-        return self.run.telemetry.record(tick).pose if 0 <= tick < self.run.telemetry.count else None
+    @property
+    def is_behind(self) -> bool:
+        """Whether the chart has not been given all of the run yet."""
+        return self._charted < self.recording.telemetry.count
 
-    def chart_series(self, mat: Mat) -> Series:
-        """Return telemetry traces of the ticks since the last call."""
+    def chart_series(self, mat: Field) -> Series:
+        """Return telemetry traces of the ticks since the last call, of a long stretch only its first part."""
         from tuisim.datalog.views import instant_of
 
-        count = self.run.telemetry.count
-        spec, hz = self.run.spec, self.run.spec.profile.tick_hz
-        if spec.world.pen_marks and self._marks is None:
-            from tuisim.core.marks import PenMarks
-
-            self._marks = PenMarks(mat.field, spec)
+        run = self.recording
+        count = run.telemetry.count
+        stride = max(1, (count - self._charted) // POINTS_OF_A_RUN)
+        end = min(count, self._charted + stride * POINTS_A_FEED)
+        spec, hz = run.spec, run.spec.profile.tick_hz
         series: Series = {}
-        for at in _thinned(self._charted, count, POINTS_A_FEED):
-            record = self.run.telemetry.record(at)
-            instant = instant_of(record, spec, self.noise_at(record))
-            for name, value in telemetry_traces(instant, spec, self._mat_at(at, mat.field)).items():
+        for at in _thinned(self._charted, end, POINTS_A_FEED):
+            record = run.telemetry.record(at)
+            instant = instant_of(record, spec, run.noise_at(record))
+            for name, value in telemetry_traces(instant, spec, run.field_at(at, mat)).items():
                 times, values = series.setdefault(name, ([], []))
                 times.append(record.tick / hz)
                 values.append(value)
-        self._charted = count
+        self._charted = end
         return series
 
-    def _mat_at(self, at: int, mat: Field) -> Field:
-        """The mat as it was at a record, with what the pen had drawn if the sensors see it."""
-        if self._marks is None:
-            return mat
-        self._marks.take_in(self.run.telemetry.array()[self._marks.records : at + 1].tolist())
-        return self._marks.field
-
-    def trace_points(self) -> tuple[list[float], list[float]]:
-        """Return where the pen drew since the last call: x and y in mm; NaN where it was lifted."""
+    def trace_points(self) -> Points:
+        """Return where the pen drew since the last call."""
         import numpy as np
 
-        records = self.run.telemetry.array()[self._traced :]
+        records = self.recording.telemetry.array()[self._traced :]
         if not len(records):
             return [], []
         self._traced += len(records)
-        before_x, before_y = self._last_xy_mm or (np.nan, np.nan)
-        way = np.hypot(np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y))
-        # NaN, before the first record, counts as a jump: the traces of two runs are not joined.
-        jumps = np.cumsum(~(way < _JUMP_MM))
+        jumps = _jumps(records, self._last_xy_mm)
         self._last_xy_mm = float(records["x_mm"][-1]), float(records["y_mm"][-1])
         kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
-        pen = self.run.spec.robot.pen
-        turn = np.radians(records["heading_deg"] - 90.0)
-        xs = records["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
-        ys = records["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
-        lifted = (records["flags"] & FLAG_PEN_DOWN) == 0
-        xs[lifted] = ys[lifted] = np.nan
+        xs, ys, lifted = _pen_points(records, self.recording.spec.robot.pen)
         # Of a stretch with the pen up one gap is enough.
         kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
         self._lifted = bool(lifted[-1])
-        xs, ys, jumps = xs[kept], ys[kept], jumps[kept]
-        gaps = np.flatnonzero(np.diff(jumps, prepend=0))
-        return np.insert(xs, gaps, np.nan).tolist(), np.insert(ys, gaps, np.nan).tolist()
+        return _with_gaps(xs[kept], ys[kept], jumps[kept])
+
+
+def trace_until(run: Recording, tick: int) -> Points:
+    """Return where the pen of a run had drawn when a tick was done, thinned alike for all ticks."""
+    import numpy as np
+
+    records = run.telemetry.array()
+    stride = max(1, len(records) // TRACE_POINTS_A_FEED)
+    records = records[: tick + 1]
+    if not (records["flags"] & FLAG_PEN_DOWN).any():
+        return [], []
+    kept_at = np.append(np.arange(0, tick, stride), tick)
+    jumps = _jumps(records, None)[kept_at]
+    xs, ys, lifted = _pen_points(records[kept_at], run.spec.robot.pen)
+    kept = ~(lifted & np.concatenate(([False], lifted[:-1])))
+    return _with_gaps(xs[kept], ys[kept], jumps[kept])
+
+
+def _jumps(records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None) -> npt.NDArray[np.int64]:
+    """Count how often the robot was put somewhere else, up to each record."""
+    import numpy as np
+
+    before_x, before_y = before_mm or (np.nan, np.nan)
+    way = np.hypot(np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y))
+    # NaN, before the first record, counts as a jump: the traces of two runs are not joined.
+    return np.cumsum(~(way < _JUMP_MM))
+
+
+def _pen_points(
+    records: np.ndarray[Any, Any], pen: PenSpec
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
+    """Return where the pen was at each record, NaN where it was up, and whether it was up."""
+    import numpy as np
+
+    turn = np.radians(records["heading_deg"] - 90.0)
+    xs = records["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
+    ys = records["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
+    lifted = (records["flags"] & FLAG_PEN_DOWN) == 0
+    xs[lifted] = ys[lifted] = np.nan
+    return xs, ys, lifted
+
+
+def _with_gaps(xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: npt.NDArray[np.int64]) -> Points:
+    import numpy as np
+
+    gaps = np.flatnonzero(np.diff(jumps, prepend=0))
+    return np.insert(xs, gaps, np.nan).tolist(), np.insert(ys, gaps, np.nan).tolist()
 
 
 def _thinned(start: int, end: int, most: int) -> list[int]:

@@ -28,7 +28,8 @@ class Mat:
     """A mat ready to be read and drawn."""
 
     key: MatKey
-    field: Field
+    field: Field | None
+    """None for one that is no longer to be had: then no sensor can be measured."""
     pixels: NDArray[np.uint8]
     """Shape (height, width, 3), rows from the top."""
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tuisim.core.field import Field
+from tuisim.core.geometry import Pose
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -43,6 +44,13 @@ class Snapshot:
     """Whether the left and the right motor are told to run but cannot turn."""
     next_spec: RunSpec | None = None
     """What the next run will be; differs from `spec` in what was changed during the run. None: the same."""
+
+    past: bool = False
+    """Whether this is an instant that is looked back at, and not the newest one."""
+    now_tick: int = 0
+    """The newest tick of the run."""
+    now_pose: Pose | None = None
+    """Where the robot is now, while another instant is looked at."""
 
     @property
     def planned(self) -> RunSpec:

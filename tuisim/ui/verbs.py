@@ -10,7 +10,6 @@ from tuisim.core.geometry import Pose
 from tuisim.ui import plan as plans
 from tuisim.ui.panels import PANELS
 from tuisim.ui.plan import Plan
-from tuisim.ui.snapshot import PAUSED
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
@@ -42,19 +41,6 @@ def run(lab: Lab) -> None:
 def stop(lab: Lab) -> None:
     """End the program."""
     lab.bridge.stop()
-
-
-def pause(lab: Lab) -> None:
-    """Stand still, or go on."""
-    if lab.bridge.state == PAUSED:
-        lab.bridge.resume()
-    else:
-        lab.bridge.pause()
-
-
-def tick(lab: Lab) -> None:
-    """Let one tick pass."""
-    lab.bridge.step()
 
 
 def _change_speed(lab: Lab, by: int) -> None:

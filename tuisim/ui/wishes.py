@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from textual.app import App
 
 from tuisim.errors import TuisimError
+from tuisim.ui import travel
 from tuisim.ui.plan import with_obstacles
 
 if TYPE_CHECKING:
+    from tuisim.ui.app import Lab
     from tuisim.ui.bridge import Bridge
     from tuisim.ui.desk import Desk
-    from tuisim.ui.feed import Feed
     from tuisim.ui.loading import Loading
     from tuisim.ui.panels.chart import Chart
     from tuisim.ui.panels.noise import Noise
     from tuisim.ui.panels.obstacles import Obstacles
     from tuisim.ui.panels.positioning import Positioning
     from tuisim.ui.panels.settings import Settings
+    from tuisim.ui.panels.timebar import TimeBar
     from tuisim.ui.panels.world import World
 
 
@@ -28,17 +30,18 @@ class Wishes(App[None]):
     bridge: Bridge
     desk: Desk
     loading: Loading
-    feed: Feed | None
-    """The run at hand or the last one, as the chart and the trace are fed from it."""
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """The robot was dragged with the mouse."""
         self.bridge.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
-        """Show where the robot was at the chart's cursor."""
-        if self.desk.world and self.feed:
-            self.desk.world.set_ghost(self.feed.pose_at(message.time_s))
+        """Look at the time that the chart's cursor is at."""
+        travel.to_time(cast("Lab", self), message.time_s)
+
+    def on_time_bar_scrubbed(self, message: TimeBar.Scrubbed) -> None:
+        """Look at the instant that the mouse has chosen."""
+        travel.to_tick(cast("Lab", self), message.tick)
 
     def on_positioning_applied(self, message: Positioning.Applied) -> None:
         """A pose was typed in."""

@@ -49,7 +49,7 @@ class Chart(Widget, can_focus=True):
 
     @dataclass
     class CursorMoved(Message):
-        """The cursor is at another simulated time, or gone."""
+        """The cursor was put at another simulated time, or taken away: that time is looked at everywhere."""
 
         time_s: float | None
 
@@ -90,6 +90,10 @@ class Chart(Widget, can_focus=True):
 
     def show(self, snapshot: Snapshot) -> None:
         """Draw what has come, a few times a second at most."""
+        cursor_s = snapshot.time_s if snapshot.past else None
+        if cursor_s != self._state.cursor_s and not self._dragging:
+            self._state = replace(self._state, cursor_s=cursor_s)
+            self._dirty = True
         if self._dirty:
             self._throttle.ask()
 
@@ -162,14 +166,11 @@ class Chart(Widget, can_focus=True):
         self.clear()
 
     def action_move_cursor(self, columns: int) -> None:
-        """Move the cursor; the first time it appears at the newest point."""
+        """Move the cursor, the first time from the newest point."""
         picture = self._picture
         if picture is None or not picture.columns:
             return
-        now = self._state.cursor_s
-        if now is None:
-            self._put_cursor(self._traces.end_s())
-            return
+        now = self._traces.end_s() if self._state.cursor_s is None else self._state.cursor_s
         column = axes.column_of(now, picture.x_limits, picture.columns) + columns
         self._put_cursor(axes.at_column(column, picture.x_limits, picture.columns))
 

@@ -49,16 +49,27 @@ class Output(Vertical):
         super().__init__()
         self.border_title = self.TITLE
         self._log = Log()
+        self._past_log = Log()
+        """What there was at a former time, shown instead of all of it."""
+        self._past_log.display = False
         self.asking = False
         """Whether the field for `input()` is there."""
 
     def compose(self) -> ComposeResult:
         """The lines; the field comes when it is wanted."""
         yield self._log
+        yield self._past_log
 
     def clear(self) -> None:
         """Forget every line."""
         self._log.clear()
+
+    def look_back(self, rows: Sequence[OutputRow] | None, before: int = 0) -> None:
+        """Show what there was at a former time: its last rows, after `before` others. None: all again."""
+        self._log.display, self._past_log.display = rows is None, rows is not None
+        if rows is not None:
+            self._past_log.clear()
+            self._past_log.add(rows, before)
 
     def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
         """Append rows; `skipped` ones before them are only counted."""

@@ -17,6 +17,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 from tuisim.ui.cellview import PixelView
 from tuisim.ui.panels.boxdrag import BoxGrip, box_at
+from tuisim.ui.panels.timebar import TimeBar
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.pentrace import PenTrace
 from tuisim.ui.render.robot import drawn_scale, shape_of
@@ -55,6 +56,7 @@ class World(Widget, can_focus=True):
     TITLE: ClassVar[str] = "World"
 
     DEFAULT_CSS = """
+    World { layout: vertical; }
     World > WorldView { width: 1fr; height: 1fr; }
     """
 
@@ -80,10 +82,12 @@ class World(Widget, can_focus=True):
         super().__init__()
         self.border_title = self.TITLE
         self._view = WorldView(self._dragged, self._boxes_dragged)
+        self.time_bar = TimeBar()
 
     def compose(self) -> ComposeResult:
-        """The picture is the only child."""
+        """The picture, and the time below it."""
         yield self._view
+        yield self.time_bar
 
     def _dragged(self, pose: Pose, done: bool) -> None:
         self.post_message(self.PoseDragged(pose, done))
@@ -133,14 +137,21 @@ class World(Widget, can_focus=True):
         """Forget the trace."""
         self._view.clear_trace()
 
-    def set_ghost(self, pose: Pose | None) -> None:
-        """Show a second robot where it was read, or none."""
-        self._view.ghost = pose
+    def show_past_trace(
+        self, points_mm: tuple[Sequence[float], Sequence[float]] | None, pen: PenSpec = _ANY_PEN
+    ) -> None:
+        """Show what a pen had drawn at a former time, x and y, instead of all that was drawn; None: all again."""
+        past = None
+        if points_mm is not None:
+            past = PenTrace()
+            past.add(np.array(points_mm[0]), np.array(points_mm[1]), pen)
+        self._view.past_trace = past
         self._view.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
         self._view.show(snapshot)
+        self.time_bar.show(snapshot)
 
 
 class WorldView(PixelView):
@@ -159,7 +170,6 @@ class WorldView(PixelView):
         super().__init__()
         self.show_rays = False
         self.zoom = 1
-        self.ghost: Pose | None = None
         self._tell = dragged
         self._tell_boxes = boxes_dragged
         self._edits_boxes = False
@@ -169,6 +179,8 @@ class WorldView(PixelView):
         self._marked: int | None = None
         self._mat: Pixels | None = None
         self.trace = PenTrace()
+        self.past_trace: PenTrace | None = None
+        """Shown instead of `trace` while a former time is looked at."""
         self._trace_drawn = 0
         self._painter: ScenePainter | None = None
         self._port: Viewport | None = None
@@ -224,16 +236,18 @@ class WorldView(PixelView):
         port = following(self.size.width, 2 * self.size.height, self.zoom, scene.pose, self._port)
         if self._painter is None:
             self._painter = ScenePainter(self._mat, self.ground_rgb, self.trace, self.color_mode.grey)
-        if scene == self._scene and port == self._port and self._trace_drawn == self.trace.count:
+        trace = self.trace if self.past_trace is None else self.past_trace
+        if scene == self._scene and port == self._port and self._trace_drawn == trace.count:
             return
-        self._scene, self._port, self._trace_drawn = scene, port, self.trace.count
+        self._scene, self._port, self._trace_drawn = scene, port, trace.count
+        self._painter.trace = trace
         self.set_picture(self._painter.paint(port, scene))
 
     def _scene_of(self, snapshot: Snapshot) -> SceneState:
         spec = snapshot.spec
         pose = self._held or snapshot.instant.pose
         boxes = spec.world.obstacles if self._draft is None else self._draft
-        scene = SceneState(spec.robot, pose, boxes, ghost=self.ghost, marked=self._marked)
+        scene = SceneState(spec.robot, pose, boxes, ghost=snapshot.now_pose, marked=self._marked)
         if not self.show_rays or self._held is not None:
             return scene
         last = self._scene

@@ -38,7 +38,7 @@ class ScenePainter:
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
         outside_rgb: Colour of what lies off the mat.
-        trace: What the pen has drawn; it may grow.
+        trace: What the pen has drawn; it may grow, and be exchanged for another.
         grey: Draw the robot for a terminal without colours.
     """
 
@@ -67,7 +67,7 @@ class ScenePainter:
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return mat, obstacles and trace."""
-        key = (view, scene.obstacles, scene.marked, self.trace.wiped)
+        key = (view, scene.obstacles, scene.marked, self.trace, self.trace.wiped)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
             draw_obstacles(self._ground, view, scene.obstacles, scene.marked)
