@@ -52,7 +52,7 @@ BUTTON = Table(
         Check("Half()", "MissingButton: Button 'shift' is not available on this platform", "MissingButton"),
         Check("Grown().up, Grown().any(), Grown().down, str(Grown())", "(True, True, False, 'Grown')",
               "ButtonCommon EV3ButtonCommon"),
-        Check("ButtonCommon().buttons_pressed", "NotImplementedError", "ButtonCommon.buttons_pressed"),
+        Check("ButtonCommon().buttons_pressed", "NotImplemented", "ButtonCommon.buttons_pressed"),
         Check("ButtonCommon.on_change([]), ButtonBase().process(set())", "(None, None)",
               "ButtonCommon.on_change ButtonBase"),
         Check("str(b), b.on_up, b.on_down, b.on_left, b.on_right, b.on_enter, b.on_backspace",
