@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.datalog.analysis.arrays import FloatArray
+from tuisim.datalog.arrays import FloatArray
 
 MIN_SAMPLES = 2
 """A plateau has at least so many samples, with noise one more but for the ends of the log."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tuisim.datalog.analysis.arrays import FloatArray
+from tuisim.datalog.arrays import FloatArray
 from tuisim.errors import LogError
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tuisim.datalog.analysis.arrays import FloatArray
+from tuisim.datalog.arrays import FloatArray
 from tuisim.errors import LogError
 
 MAX_CHARS = 1000

@@ -9,7 +9,7 @@ import numpy as np
 from tuisim.core.drive import mm_per_degree
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec
-from tuisim.datalog.analysis.arrays import FloatArray
+from tuisim.datalog.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

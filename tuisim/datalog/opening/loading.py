@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import Protocol
+from typing import Any, Protocol
 
 import pyarrow as pa
 
+from tuisim.datalog.formats import companion_of
 from tuisim.datalog.opening.binary import ARROW_MAGIC, PARQUET_MAGIC, arrow_parts, metadata_in, parquet_parts
 from tuisim.datalog.opening.csv_text import CsvReader
 from tuisim.datalog.opening.json_lines import JsonReader
@@ -106,7 +108,17 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, time: str | None, 
         layout = chosen(table, time, values)
     except LogError as error:
         raise LogError(str(error), file=title) from error
-    return Log(title, table, layout, notes.texts(), notes.left_out, metadata_in(parts[0].schema))
+    metadata = metadata_in(parts[0].schema) or _metadata_beside(Path(title))
+    return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
+
+
+def _metadata_beside(path: Path) -> Mapping[str, Any]:
+    """What our own export of a text file says in the file beside it; empty if there is none."""
+    try:
+        found = json.loads(companion_of(path).read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 def joined(parts: Sequence[pa.Table]) -> pa.Table:

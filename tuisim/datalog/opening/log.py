@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.datalog.analysis.arrays import FloatArray, IntArray
+from tuisim.datalog.arrays import FloatArray, IntArray
 from tuisim.datalog.opening.layout import ROW, Layout
 from tuisim.datalog.opening.moments import seconds_of
 from tuisim.errors import LogError

@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.datalog.analysis.arrays import FloatArray
+from tuisim.datalog.arrays import FloatArray
 
 _SPAN = r"^(?P<sign>-?)(?:(?P<days>\d+) days? )?(?P<h>\d+):(?P<m>\d{2}):(?P<s>\d{2}(?:\.\d+)?)$"
 """A span as pandas prints it, or hours, minutes and seconds."""

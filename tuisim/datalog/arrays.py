@@ -1,4 +1,4 @@
-"""The array types of this package."""
+"""The array types of logs."""
 
 from __future__ import annotations
 

@@ -1,0 +1,70 @@
+"""The bands of a log have the levels, greys, places and widths of what the robot drove over."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from tuisim.core.noise import disturb_pixels
+from tuisim.datalog.analysis.levels import greys, nearest_grey, without_clamping
+from tuisim.datalog.analysis.logbands import band_report, light_noise, light_scale
+from tuisim.datalog.opening import Log
+from tuisim.datalog.opening.layout import guessed
+
+
+@pytest.mark.parametrize("value", [0, 3, 10, 128, 240, 250, 255])
+@pytest.mark.parametrize("noise", [5, 20, 128])
+def test_clamping_is_undone(value: int, noise: int) -> None:
+    pixels = disturb_pixels(bytes([value]) * 200_000, noise, 1, 1, "left")
+    mean_percent = sum(pixels) / len(pixels) / 2.55
+    assert without_clamping(mean_percent, noise) == pytest.approx(value / 2.55, abs=0.8 if noise < 128 else 4.0)
+
+
+def test_greys_have_names() -> None:
+    assert {grey.name for value, grey in greys().items() if value in (0, 128, 211, 220, 255)} == {
+        "black",
+        "grey",
+        "light grey",
+        "pale grey",
+        "white",
+    }
+    assert nearest_grey(86.0).name == "pale grey"  # type: ignore[union-attr]
+    assert nearest_grey(9.0) is None
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [([0.0, 100.0], 1.0), ([0.0, 255.0], 100 / 255), ([0.0, 2550.0], 0.0), ([-3.0, 5.0], 0.0), ([], 0.0)],
+    ids=["percent", "bytes", "distance", "angle", "nothing"],
+)
+def test_scale_of_light(values: list[float], expected: float) -> None:
+    assert light_scale(np.array(values)) == expected
+
+
+def test_places_and_widths() -> None:
+    light = [100.0] * 5 + [60.0] + [50.0] * 10 + [100.0] * 5
+    table = pa.table(
+        {
+            "time": np.arange(21) / 10,
+            "variable": ["Light"] * 21,
+            "value": light,
+            "x_mm": np.arange(21) * 10.0,
+            "y_mm": np.zeros(21),
+        }
+    )
+    report = band_report(Log("log", table, guessed(table)), "Light")
+    middle = report.bands[1]
+    assert [(band.level, band.grey) for band in report.bands] == [(100, "white"), (50, "grey"), (100, "white")]
+    assert (middle.start_s, middle.stop_s, middle.samples) == (0.6, 1.5, 10)
+    assert (middle.start_mm, middle.stop_mm, middle.width_mm) == (60.0, 150.0, 100.0)
+    assert (middle.first_row, middle.last_row) == (6, 15)
+    assert (report.transitions, report.total) == (1, 21)
+
+
+@pytest.mark.parametrize(
+    "metadata",
+    [{}, {"runs": []}, {"runs": [{"world": {}}]}, {"runs": ["x"]}, {"runs": [{"world": {"noise": {"light": "?"}}}]}],
+)
+def test_log_that_does_not_know_its_noise(metadata: dict[str, object]) -> None:
+    assert light_noise(metadata, 0) == 0

@@ -1,0 +1,137 @@
+"""The bands of a log: its plateaus with times, places, widths and the names of their greys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tuisim.datalog.analysis.bands import Plateau, plateaus
+from tuisim.datalog.analysis.levels import nearest_grey, without_clamping
+from tuisim.datalog.analysis.reckoning import distance_mm
+from tuisim.datalog.arrays import FloatArray
+from tuisim.datalog.opening.log import Log, Series, numbers_of
+
+NAN = float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """One plateau of one variable."""
+
+    variable: str
+    number: int
+    """From 1, in order of time."""
+    start_s: float
+    """Time of its first sample."""
+    stop_s: float
+    """Time of its last sample."""
+    samples: int
+    level: float
+    """Mean without strays."""
+    spread: float
+    """Standard deviation."""
+    strays: int
+    grey: str
+    """Name of the nearest known grey, empty if there is none or the variable is no light level."""
+    grey_percent: float
+    """The level of that grey."""
+    true_level: float
+    """The level that the noise of the run has pulled away from an end of the scale, put back; else the level."""
+    start_mm: float
+    """Distance driven at the first sample; not a number where the log knows no places."""
+    stop_mm: float
+    """Distance driven at the last sample."""
+    width_mm: float
+    """From halfway to the sample before it to halfway to the one after it."""
+    first_row: int
+    """Row of its first sample in the table, from 0."""
+    last_row: int
+
+
+@dataclass(frozen=True, slots=True)
+class BandReport:
+    """The bands of one variable."""
+
+    variable: str
+    bands: tuple[Band, ...]
+    transitions: int
+    """Samples on edges, which belong to no band."""
+    total: int
+
+
+def band_report(log: Log, name: str) -> BandReport:
+    """Return the bands of a variable.
+
+    Raises:
+        LogError: there is no such variable.
+    """
+    series = log.series(name)
+    found = plateaus(series.values)
+    driven = _driven_mm(log, series)
+    scale, noise = light_scale(series.values), light_noise(log.metadata, series.run)
+    bands = tuple(_band(series, number, plateau, driven, scale, noise) for number, plateau in enumerate(found, 1))
+    total = int(np.isfinite(series.values).sum())
+    return BandReport(name, bands, total - sum(band.samples for band in bands), total)
+
+
+def _band(series: Series, number: int, plateau: Plateau, driven: FloatArray | None, scale: float, noise: int) -> Band:
+    first, last = plateau.start, plateau.stop - 1
+    start_mm = stop_mm = width_mm = NAN
+    if driven is not None:
+        before, after = max(first - 1, 0), min(last + 1, len(driven) - 1)
+        start_mm, stop_mm = float(driven[first]), float(driven[last])
+        width_mm = float(driven[last] + driven[after] - driven[first] - driven[before]) / 2.0
+    true_level, grey = plateau.level, None
+    if scale:
+        percent = without_clamping(plateau.level * scale, noise)
+        true_level = percent / scale if noise else plateau.level
+        grey = nearest_grey(percent)
+    return Band(
+        variable=series.name,
+        number=number,
+        start_s=float(series.time_s[first]),
+        stop_s=float(series.time_s[last]),
+        samples=plateau.samples,
+        level=plateau.level,
+        spread=plateau.spread,
+        strays=plateau.strays,
+        grey=grey.name if grey else "",
+        grey_percent=grey.percent if grey else NAN,
+        true_level=true_level,
+        start_mm=start_mm,
+        stop_mm=stop_mm,
+        width_mm=width_mm,
+        first_row=int(series.rows[first]),
+        last_row=int(series.rows[last]),
+    )
+
+
+def light_scale(values: FloatArray) -> float:
+    """Return what turns readings of light into percent: 1 for 0 to 100, 100/255 for 0 to 255, 0 for other things."""
+    finite = values[np.isfinite(values)]
+    if not len(finite) or finite.min() < 0.0 or finite.max() > 255.0:
+        return 0.0
+    return 1.0 if finite.max() <= 100.0 else 100.0 / 255.0
+
+
+def light_noise(metadata: Mapping[str, Any], run: int) -> int:
+    """Return the light noise of a run (0: the first) by what its export says of it, 0 if it says nothing."""
+    runs = metadata.get("runs", ())
+    found = [entry for entry in runs if isinstance(entry, Mapping) and run in (0, entry.get("run"))]
+    try:
+        return int(found[0]["world"]["noise"]["light"])
+    except (IndexError, KeyError, TypeError, ValueError):
+        return 0
+
+
+def _driven_mm(log: Log, series: Series) -> FloatArray | None:
+    names = log.table.column_names
+    if "x_mm" not in names or "y_mm" not in names or not len(series.rows):
+        return None
+    x_mm, y_mm = (numbers_of(log.table.column(name))[series.rows] for name in ("x_mm", "y_mm"))
+    if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
+        return None
+    return distance_mm(x_mm, y_mm)
