@@ -14,8 +14,16 @@ from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
 from tuisim.errors import ConfigError
+from tuisim.held import FrameState, MetLine, ThreadState, Variable, Watched
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
+
+AFTER_TICK = 0
+"""Ordinal of the moment at which a tick has just been done."""
+BEFORE_NEXT_TICK = -1
+"""Ordinal of the moment right before the next tick: where a pause holds."""
+UNKNOWN_ORDINAL = -2
+"""Ordinal of a line that was met in a tick whose lines were not counted from its start."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +67,74 @@ class StepTicks(Message):
 
     kind = "step_ticks"
     ticks: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class StepLine(Message):
+    """Go on to the next line of the program, then stand still; a program that runs holds at its next line."""
+
+    kind = "step_line"
+    how: str = "over"
+    """One of `STEPS`: over calls, into them, out of this function."""
+
+    def __post_init__(self) -> None:
+        if self.how not in STEPS:
+            raise ValueError(f"no such step {self.how!r}")
+
+
+@dataclass(frozen=True, slots=True)
+class RunToLine(Message):
+    """Go on until a line of the program is about to run, in any thread, then stand still."""
+
+    kind = "run_to_line"
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class RunToInstant(Message):
+    """Go on at full speed to a later instant and stand still there, or at the end if it never comes."""
+
+    kind = "run_to_instant"
+    tick: int
+    ordinal: int = BEFORE_NEXT_TICK
+    """As in `Paused`."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetBreaks(Message):
+    """From now on these breaks hold the run, and no others."""
+
+    kind = "set_breaks"
+    breaks: tuple[str, ...]
+    """Texts in the language of `tuisim.breaks`; switched-off ones are passed over."""
+
+    def __post_init__(self) -> None:
+        # A pipe brings a list.
+        object.__setattr__(self, "breaks", tuple(self.breaks))
+
+
+@dataclass(frozen=True, slots=True)
+class Look(Message):
+    """Ask a run that stands still for its state; `Looked` is the answer."""
+
+    kind = "look"
+    watches: tuple[str, ...] = ()
+    """Expressions, evaluated in the frame."""
+    thread: str = ""
+    """Name of the thread to look at; empty for the one that was held."""
+    frame: int = 0
+    """Which of its frames: 0 is the innermost of the program's own."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "watches", tuple(self.watches))
+
+
+@dataclass(frozen=True, slots=True)
+class WantHistory(Message):
+    """Ask for the lines that were met last; `LineHistory` is the answer."""
+
+    kind = "want_history"
+    count: int = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +198,9 @@ class Answer(Message):
 
 ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer)
 """The commands that are user actions."""
-_CONTROLS: tuple[type[Message], ...] = (Stop, Pause, Resume, StepTicks, SetSpeed)
+_CONTROLS: tuple[type[Message], ...] = (
+    Stop, Pause, Resume, StepTicks, StepLine, RunToLine, RunToInstant, SetBreaks, Look, WantHistory, SetSpeed,
+)  # fmt: skip
 COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CONTROLS, *ACTIONS)}
 
 
@@ -154,6 +232,9 @@ class ScriptedAction:
         return cls(int(row["tick"]), COMMANDS[row["kind"]](**fields))
 
 
+STEPS = ("over", "into", "out")
+"""The ways to step from line to line."""
+
 BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 """The brick's buttons, as the library names them."""
 
@@ -172,12 +253,30 @@ class Started(Message):
 
 @dataclass(frozen=True, slots=True)
 class Paused(Message):
-    """The run stands still."""
+    """The run stands still: program and world together."""
 
     kind = "paused"
     tick: int
     time_ns: int
     line: int
+    """Line of the program that is about to run, or that lets the time pass; 0 if there is none."""
+    reason: str = "asked"
+    """One of `PAUSES`."""
+    detail: str = ""
+    """Text of the break that was met, as it was set."""
+    value: str = ""
+    """What met it: the value, the printed line, or why its condition could not be evaluated."""
+    ordinal: int = BEFORE_NEXT_TICK
+    """With `tick` the exact instant. From 1: so many lines of the program were met since the tick was done,
+    the last of them is about to run; otherwise `AFTER_TICK`, `BEFORE_NEXT_TICK` or `UNKNOWN_ORDINAL`."""
+    thread: str = ""
+    """Name of the thread that was held."""
+    file: str = ""
+    """File of the line, if that is not the program itself but a module beside it."""
+
+
+PAUSES = ("asked", "ticks", "step", "line", "break", "instant", "end")
+"""Why a run stands still: asked to, ticks done, step done, line reached, break met, instant reached, program over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,8 +331,39 @@ class Ended(Message):
     deterministic: bool = True
 
 
+@dataclass(frozen=True, slots=True)
+class Looked(Message):
+    """The state of a run that stands still."""
+
+    kind = "looked"
+    tick: int
+    time_ns: int
+    thread: str
+    frame: int
+    waiting: str
+    """What the thread waits for and until when, such as `sleeps until 1.23 s`; empty if it could run on."""
+    threads: tuple[ThreadState, ...]
+    stack: tuple[FrameState, ...]
+    """Frames of the thread in the program's own files, innermost first."""
+    variables: tuple[Variable, ...]
+    """Local names of the frame; of the module's own frame, its global ones."""
+    globals: tuple[Variable, ...]
+    """Global names of the program, where the frame is not the module's own; modules and functions left out."""
+    watches: tuple[Watched, ...]
+    note: str = ""
+    """Why something is missing, such as values that took too long."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineHistory(Message):
+    """The lines that were met last, oldest first; the last one is about to run."""
+
+    kind = "line_history"
+    lines: tuple[MetLine, ...]
+
+
 EVENTS: dict[str, type[Message]] = {
-    event.kind: event for event in (Started, Paused, Resumed, Spoke, InputWanted, Ended)
+    event.kind: event for event in (Started, Paused, Resumed, Looked, LineHistory, Spoke, InputWanted, Ended)
 }
 
 
