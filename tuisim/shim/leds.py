@@ -180,7 +180,7 @@ def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -
     running: dict[int, int] = {}
     """By number of an animation, the thread it runs in."""
 
-    def start_new_thread(function: Callable[..., None], arguments: tuple[Any, ...]) -> int | None:
+    def start_new_thread(function: Callable[..., None], arguments: tuple[Any, ...]) -> int:
         number = next(numbers)
 
         def animate() -> None:
@@ -191,7 +191,7 @@ def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -
                 del running[number]
 
         _thread.start_new_thread(animate, ())
-        return number if number in running else None
+        return number
 
     def animate_stop(self: Any) -> None:
         """Let the animation end, and wait until it has."""
