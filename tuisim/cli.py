@@ -22,6 +22,7 @@ COMMANDS: Mapping[str, str] = {
     "open": "open the app (also without this word)",
     "run": "run programs without the app",
     "runs": "list, show, export or remove stored runs",
+    "log": "analyse logs: figures, bands, events, signals",
     "backgrounds": "list the mats",
     "robots": "list the robots, or show one as a file",
     "obstacles": "list the obstacles, or show some as a file",
@@ -58,6 +59,7 @@ def _parser(command: str) -> SwitchParser:
         )
         parser.add_argument("words", nargs="*", metavar="PROGRAM", help="a Python file, or an example's name")
         parser.add_world()
+        parser.add_argument("--run", metavar="RUN", help="a stored run, to look back at: see `tuisim runs`")
         parser.add_argument("--version", action="version", version=f"tuisim {__version__}")
         parser.add_switches()
         return parser
@@ -71,9 +73,13 @@ def _parser(command: str) -> SwitchParser:
 
 def _open(arguments: Namespace) -> int:
     """Start the app."""
-    from tuisim.commands.prepare import prepare_app
+    from tuisim.commands.prepare import prepare_app, prepare_replay
 
-    prepared = prepare_app(arguments.words, arguments)
+    replay = None
+    if arguments.run is None:
+        prepared = prepare_app(arguments.words, arguments)
+    else:
+        replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise ConfigError("the app needs a terminal", "use `tuisim run PROGRAM` where there is none")
     from tuisim.ui.app import run_app
@@ -82,7 +88,8 @@ def _open(arguments: Namespace) -> int:
     settings = prepared.settings
     app_settings = AppSettings(
         spec=prepared.spec,
-        settings=settings,
+        settings=None if replay else settings,
+        replay=replay,
         world_file=prepared.world.path if prepared.world else None,
         program=prepared.program,
         background=prepared.spec.world.background,

@@ -1,0 +1,100 @@
+"""`tuisim log`: analysis of logs in the shell.
+
+To add a subcommand: write its function in `commands/logs/` and add a line to `SUBCOMMANDS`.
+"""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+
+from tuisim.errors import ConfigError
+from tuisim.switches import SwitchParser, nearest
+
+COMMON = ("time", "value", "variable", "telemetry", "json", "out")
+
+
+@dataclass(frozen=True, slots=True)
+class Subcommand:
+    """One line of `SUBCOMMANDS`."""
+
+    does: str
+    path: str
+    """Module in `commands/logs`, and function; imported when it is asked for."""
+    options: tuple[str, ...] = ()
+    """Its options besides `COMMON`."""
+
+
+SUBCOMMANDS: Mapping[str, Subcommand] = {
+    "summary": Subcommand("count, extremes, mean, spread, quantiles of each variable", "figures:summary"),
+    "bands": Subcommand("plateaus: level, name, times, width", "figures:bands"),
+    "events": Subcommand("where a variable crosses --at", "figures:events", ("at", "hysteresis")),
+    "derive": Subcommand("slope, in units a second", "signals:derive"),
+    "integrate": Subcommand("integral, in units times seconds", "signals:integrate", ("between",)),
+    "average": Subcommand("mean of --width samples around each", "signals:average", ("width",)),
+    "resample": Subcommand("all variables every --period seconds", "signals:even", ("period", "between")),
+    "calc": Subcommand("--expression over the columns", "signals:calculate", ("expression",)),
+    "reckon": Subcommand("dead reckoning from the wheels, and its error", "signals:reckon"),
+    "export": Subcommand("the log in another format", "signals:export"),
+}
+"""What `tuisim log` does, by name."""
+
+_DEFAULTS: Mapping[str, object] = {
+    "at": None, "hysteresis": 0.0, "between": "hold", "width": 5, "period": None, "expression": "",
+}  # fmt: skip
+
+
+def add_arguments(parser: SwitchParser) -> None:
+    """Declare the arguments of `tuisim log`."""
+    parser.usage = "tuisim log SUBCOMMAND LOG… [options]"
+    listing = "\n".join(f"  {name:<10} {entry.does}" for name, entry in SUBCOMMANDS.items())
+    parser.description = (
+        "Analysis of logs. A LOG is a stored run (its number, its id, `last`), a CSV, Parquet, JSONL, Arrow or text\n"
+        "file, or - for the standard input.\n\nsubcommands:\n" + listing
+    )
+    parser.epilog = (
+        "examples:\n  tuisim log bands last\n  tuisim log events log.csv --at 50 --hysteresis 5 --json\n"
+        "  tuisim run prog.py | tuisim log summary -\n"
+        "  tuisim log resample last --telemetry --period 0.5 --out half.parquet"
+    )
+    parser.add_argument("action", metavar="SUBCOMMAND", help="what to do")
+    parser.add_argument("words", nargs="*", metavar="LOG", help="runs or files")
+    parser.add_argument(
+        "--variable", action="append", default=[], metavar="NAME", help="only this one; may be repeated"
+    )
+    parser.add_argument("--telemetry", action="store_true", help="every tick of a run instead of its samples")
+    parser.add_argument("--time", metavar="COLUMN", help="column with the time; empty counts the rows")
+    parser.add_argument(
+        "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
+    )
+    parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.add_argument("--out", metavar="FILE", help="write the result: .csv, .parquet, .jsonl, .arrow")
+    parser.add_argument("--at", type=float, metavar="VALUE", help="threshold of events")
+    parser.add_argument("--hysteresis", type=float, default=0.0, metavar="VALUE", help="events: how far beyond counts")
+    parser.add_argument(
+        "--between", choices=("hold", "linear"), default="hold", help="what a signal is between samples"
+    )
+    parser.add_argument("--width", type=int, default=5, metavar="N", help="samples of an average, odd")
+    parser.add_argument("--period", type=float, metavar="S", help="seconds between rows of resample")
+    parser.add_argument("--expression", default="", metavar="TEXT", help="such as '(left + right) / 2', see README")
+
+
+def execute(arguments: Namespace) -> int:
+    """Do what the subcommand says.
+
+    Raises:
+        ConfigError: no such subcommand, or an option that it does not take.
+        LogError: a log cannot be read.
+        ExportError: a file cannot be written.
+    """
+    entry = SUBCOMMANDS.get(arguments.action)
+    if entry is None:
+        raise ConfigError(f"no such subcommand {arguments.action!r}", nearest(arguments.action, SUBCOMMANDS), key="log")
+    for option, default in _DEFAULTS.items():
+        if option not in entry.options and getattr(arguments, option) != default:
+            takes = " ".join(f"--{name}" for name in (*entry.options, *COMMON))
+            raise ConfigError(f"does not take --{option}", f"it takes {takes}", key=arguments.action)
+    module, _, function = entry.path.partition(":")
+    return int(getattr(import_module(f"tuisim.commands.logs.{module}"), function)(arguments))

@@ -1,0 +1,1 @@
+"""What `tuisim log` does: one file a group of subcommands."""

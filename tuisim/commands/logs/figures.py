@@ -1,0 +1,80 @@
+"""Figures of a log: summary, bands, events."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from dataclasses import asdict
+from typing import Any
+
+from tuisim.commands.logs.results import show_rows
+from tuisim.commands.logs.sources import names_of, open_sources
+from tuisim.datalog.analysis.crossings import crossings
+from tuisim.datalog.analysis.logbands import Band, BandReport, band_report
+from tuisim.datalog.analysis.statistics import QUANTILES, summary_of
+from tuisim.errors import ConfigError
+
+_QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
+
+
+def summary(arguments: Namespace) -> int:
+    """Count, extremes, mean, spread and quantiles of every variable."""
+    rows: list[dict[str, Any]] = []
+    for log in open_sources(arguments):
+        for name in names_of(log, arguments):
+            series = log.series(name)
+            figures = asdict(summary_of(series.values))
+            quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
+            span = {"first_s": float(series.time_s[0]), "last_s": float(series.time_s[-1])}
+            rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
+    number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), ".4g")
+    show_rows(rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number})
+    return 0
+
+
+def bands(arguments: Namespace) -> int:
+    """Plateaus of every variable: level, name, times, width."""
+    rows: list[dict[str, Any]] = []
+    notes = []
+    for log in open_sources(arguments):
+        for name in names_of(log, arguments):
+            report = band_report(log, name)
+            rows += [{"log": log.title, **asdict(band)} for band in report.bands]
+            notes.append(_in_words(report))
+    formats = {
+        "variable": "", "number": "", "start_s": ".2f", "stop_s": ".2f", "samples": "", "level": ".2f",
+        "true_level": ".2f", "spread": ".2f", "grey": "", "width_mm": ".0f",
+    }  # fmt: skip
+    show_rows(rows, arguments, formats)
+    if not arguments.json and not arguments.out:
+        print("\n".join(notes))
+    return 0
+
+
+def _in_words(report: BandReport) -> str:
+    """The answer to what value each band has."""
+    levels: dict[str, list[Band]] = {}
+    for band in report.bands:
+        levels.setdefault(band.grey or f"{band.true_level:.4g}", []).append(band)
+    said = []
+    for grey, bands in levels.items():
+        level = sum(band.true_level * band.samples for band in bands) / sum(band.samples for band in bands)
+        said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{f' ({len(bands)}x)' if len(bands) > 1 else ''}")
+    edges = f"{report.transitions} of {report.total} samples lie on edges"
+    return f"{report.variable}: {len(levels)} levels: {', '.join(said)}; {edges}"
+
+
+def events(arguments: Namespace) -> int:
+    """Where each variable crosses a threshold."""
+    if arguments.at is None:
+        raise ConfigError("at which threshold?", "such as --at 50", key="events")
+    rows: list[dict[str, Any]] = []
+    for log in open_sources(arguments):
+        for name in names_of(log, arguments):
+            series = log.series(name)
+            for found in crossings(series.time_s, series.values, arguments.at, arguments.hysteresis):
+                way = "rises" if found.rising else "falls"
+                row = int(series.rows[found.at])
+                rows.append({"log": log.title, "variable": name, "time_s": found.time_s, "crossing": way,
+                             "value": found.value, "row": row})  # fmt: skip
+    show_rows(rows, arguments, {"variable": "", "time_s": ".3f", "crossing": "", "value": ".4g", "row": ""})
+    return 0

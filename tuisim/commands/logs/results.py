@@ -1,0 +1,76 @@
+"""How results come out: as a table for people, as JSON, or as a file."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from argparse import Namespace
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from tuisim.commands.tables import table
+from tuisim.datalog.export import check_target, export_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ANALYSIS_FORMAT = 1
+
+
+def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Namespace, formats: Mapping[str, str]) -> None:
+    """Show rows that all have the same keys.
+
+    Args:
+        rows: Values by column.
+        arguments: `json` and `out` say how.
+        formats: Columns of the table for people, and how each is written, such as `.2f`.
+    """
+    if arguments.out:
+        import pandas as pd
+
+        write_frame(pd.DataFrame(list(rows), columns=list(rows[0]) if rows else list(formats)), arguments)
+    elif arguments.json:
+        print(json.dumps([{name: _plain(value) for name, value in row.items()} for row in rows]))
+    else:
+        heads = [name.upper().replace("_", " ") for name in formats]
+        print(table(heads, [[_written(row[name], how) for name, how in formats.items()] for row in rows]))
+
+
+def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
+    """Show a frame: to a file, as JSON lines, or as CSV that another program can read."""
+    if arguments.out:
+        write_frame(frame, arguments)
+    elif arguments.json:
+        print(frame.to_json(orient="records", lines=True, double_precision=15), end="")
+    else:
+        frame.to_csv(sys.stdout, index=False, lineterminator="\n")
+
+
+def write_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
+    """Write a frame to the file that `out` names; the suffix says in which format."""
+    check_target(arguments.out)
+    metadata = {"format": ANALYSIS_FORMAT, "table": arguments.action, "columns": list(frame.columns)}
+    export_frame(frame, arguments.out, metadata)
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+class _Number(float):
+    """A number that is written in a given way."""
+
+    def __new__(cls, value: float, how: str) -> _Number:
+        number = super().__new__(cls, value)
+        number.how = how
+        return number
+
+    how: str
+
+    def __str__(self) -> str:
+        return "" if math.isnan(self) else format(float(self), self.how)
+
+
+def _written(value: Any, how: str) -> Any:
+    return _Number(value, how) if how and isinstance(value, float) else value

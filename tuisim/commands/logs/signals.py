@@ -1,0 +1,135 @@
+"""Signals made of a log: derivative, average, integral, even moments, expressions, dead reckoning, export."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.commands.logs.results import show_frame
+from tuisim.commands.logs.sources import names_of, the_source
+from tuisim.core.spec import from_plain
+from tuisim.datalog.analysis.expressions import evaluate
+from tuisim.datalog.analysis.reckoning import dead_reckoning, error_mm
+from tuisim.datalog.analysis.signals import HOLD, derivative, integral, moving_average, resample, value_at
+from tuisim.datalog.arrays import FloatArray
+from tuisim.datalog.opening import Log, Series
+from tuisim.datalog.opening.layout import is_numeric
+from tuisim.datalog.opening.log import numbers_of
+from tuisim.errors import ConfigError, LogError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def _each(arguments: Namespace, column: str, change: Callable[[Series], FloatArray]) -> int:
+    """Show a long frame with one more column, made of each variable."""
+    import pandas as pd
+
+    log = the_source(arguments)
+    parts = []
+    for name in names_of(log, arguments):
+        series = log.series(name)
+        columns = {"time": series.time_s, "variable": name, "value": series.values, column: change(series)}
+        parts.append(pd.DataFrame(columns))
+    show_frame(pd.concat(parts, ignore_index=True), arguments)
+    return 0
+
+
+def derive(arguments: Namespace) -> int:
+    """The slope of each variable, in units a second."""
+    return _each(arguments, "derivative", lambda series: derivative(series.time_s, series.values))
+
+
+def integrate(arguments: Namespace) -> int:
+    """The integral of each variable, in units times seconds."""
+    return _each(arguments, "integral", lambda s: integral(s.time_s, s.values, arguments.between))
+
+
+def average(arguments: Namespace) -> int:
+    """The mean of the samples around each sample."""
+    return _each(arguments, "average", lambda series: moving_average(series.values, arguments.width))
+
+
+def even(arguments: Namespace) -> int:
+    """Every variable at even moments: one column each."""
+    import pandas as pd
+
+    log = the_source(arguments)
+    if arguments.period is None:
+        raise ConfigError("at which period?", "such as --period 0.1", key="resample")
+    columns: dict[str, FloatArray] = {}
+    names = names_of(log, arguments)
+    all_series = [log.series(name) for name in names]
+    start = min(float(series.time_s[0]) for series in all_series)
+    stop = max(float(series.time_s[-1]) for series in all_series)
+    moments, _ = resample(np.array([start, stop]), np.zeros(2), arguments.period, HOLD)
+    for name, series in zip(names, all_series, strict=True):
+        columns[name] = value_at(series.time_s, series.values, moments, arguments.between)
+    show_frame(pd.DataFrame({"time": moments, **columns}), arguments)
+    return 0
+
+
+def calculate(arguments: Namespace) -> int:
+    """An expression over the columns, in each row."""
+    if not arguments.expression:
+        raise ConfigError("which expression?", "such as --expression '(left + right) / 2'", key="calc")
+    log = the_source(arguments)
+    frame = wide_frame(log)
+    columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
+    show_frame(frame.assign(result=evaluate(arguments.expression, columns)), arguments)
+    return 0
+
+
+def wide_frame(log: Log) -> pd.DataFrame:
+    """Return a log with a column each variable; of a long one a row each sample, other variables as they were last."""
+    import pandas as pd
+
+    if not log.layout.variable:
+        numeric = [n for n in log.table.column_names if is_numeric(log.table.schema.field(n).type)]
+        return pd.DataFrame({name: numbers_of(log.table.column(name)) for name in numeric})
+    series = [log.series(name) for name in log.names]
+    moments = np.unique(np.concatenate([one.time_s for one in series]))
+    return pd.DataFrame(
+        {"time": moments, **{one.name: value_at(one.time_s, one.values, moments, HOLD) for one in series}}
+    )
+
+
+def reckon(arguments: Namespace) -> int:
+    """Where the wheels' counts say that the robot is, and how far off that is."""
+    arguments.telemetry = True
+    log = the_source(arguments)
+    frame = log.table.to_pandas()
+    needed = ("left_position_deg", "right_position_deg", "x_mm", "y_mm", "heading_deg")
+    missing = [name for name in needed if name not in frame.columns]
+    try:
+        spec = from_plain({k: v for k, v in log.metadata["runs"][0].items() if k not in ("run", "program")})
+    except (KeyError, IndexError, TypeError) as error:
+        hint = "a stored run, or its telemetry exported to a file"
+        raise LogError("does not know the robot", hint, file=log.title) from error
+    if missing:
+        raise LogError(f"no column {missing[0]!r}", "a stored run, or its telemetry exported", file=log.title)
+    start = spec.world.start
+    found = dead_reckoning(
+        frame["left_position_deg"].to_numpy(), frame["right_position_deg"].to_numpy(), start, spec.robot
+    )
+    off = error_mm(found, frame["x_mm"].to_numpy(), frame["y_mm"].to_numpy())
+    kept = frame[["time", "x_mm", "y_mm", "heading_deg"]]
+    show_frame(
+        kept.assign(
+            reckoned_x_mm=found.x_mm, reckoned_y_mm=found.y_mm, reckoned_heading_deg=found.heading_deg, error_mm=off
+        ),
+        arguments,
+    )
+    return 0
+
+
+def export(arguments: Namespace) -> int:
+    """The log as it is, in another format."""
+    if not arguments.out:
+        raise ConfigError("to which file?", "such as --out log.parquet", key="export")
+    log = the_source(arguments)
+    show_frame(log.table.to_pandas(), arguments)
+    return 0

@@ -1,0 +1,107 @@
+"""Which log a word on the command line means."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from tuisim.datalog.opening import Log, loading
+from tuisim.datalog.opening.layout import chosen
+from tuisim.datalog.opening.loading import STDIN
+from tuisim.datalog.opening.runs import log_of_runs, telemetry_log
+from tuisim.datalog.store import RunStore
+from tuisim.errors import ConfigError, LogError
+
+
+def is_file(word: str) -> bool:
+    """Return whether a word means a file rather than a stored run: it is there, or could only be a file's name."""
+    path = Path(word)
+    return word == STDIN or path.is_file() or path.is_fifo() or bool(path.suffix)
+
+
+def open_sources(arguments: Namespace) -> Iterator[Log]:
+    """Yield the logs that the words name: each file by itself, runs that follow each other together.
+
+    Raises:
+        ConfigError: no word.
+        LogError: no such run or file, or it cannot be read.
+    """
+    words: Sequence[str] = arguments.words
+    if not words:
+        raise ConfigError("which log?", "a file, `-`, or a stored run such as `last`", key=arguments.action)
+    runs: list[str] = []
+    for word in words:
+        if is_file(word):
+            yield from _open_runs(runs, arguments)
+            runs = []
+            yield _open_file(word, arguments)
+        else:
+            runs.append(word)
+    yield from _open_runs(runs, arguments)
+
+
+def the_source(arguments: Namespace) -> Log:
+    """Return the one log that the words name.
+
+    Raises:
+        ConfigError: they name none or several.
+        LogError: it cannot be read.
+    """
+    logs = list(open_sources(arguments))
+    if len(logs) > 1:
+        raise ConfigError("takes one file, or runs", f"got {len(logs)}", key=arguments.action)
+    return logs[0]
+
+
+def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
+    if not words:
+        return
+    store = RunStore()
+    runs = [store.load_run(word) for word in words]
+    logs = [telemetry_log(run) for run in runs] if arguments.telemetry else [log_of_runs(runs)]
+    for log in logs:
+        if not log.rows:
+            hint = "a program logs by printing lines such as `Colour: 50`; --telemetry takes every tick instead"
+            raise LogError("no samples", hint, file=log.title)
+        layout = chosen(log.table, arguments.time, arguments.value)
+        yield _with_notes(log.with_layout(layout))
+
+
+def _open_file(word: str, arguments: Namespace) -> Log:
+    shows = sys.stderr.isatty()
+    log = None
+    for loaded in loading(word, arguments.time, arguments.value):
+        log = loaded.log or log
+        if shows and not loaded.done:
+            part = f"{loaded.part:4.0%}" if loaded.part == loaded.part else ""
+            print(f"\rreading {word} {part}", end="", file=sys.stderr, flush=True)
+    if shows:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+    assert log is not None
+    return _with_notes(log)
+
+
+def _with_notes(log: Log) -> Log:
+    for note in log.notes:
+        print(f"note: {log.title}: {note}", file=sys.stderr)
+    return log
+
+
+def names_of(log: Log, arguments: Namespace) -> tuple[str, ...]:
+    """Return the variables that were asked for, all by default; `A` also means `A #1` and `A #2`.
+
+    Raises:
+        LogError: there is no such variable.
+    """
+    wanted: Sequence[str] = arguments.variable
+    if not wanted:
+        return log.names
+    found: list[str] = []
+    for word in wanted:
+        matching = [name for name in log.names if name == word or name.partition(" #")[0] == word]
+        if not matching:
+            raise LogError(f"no variable {word!r}", f"there are {', '.join(log.names)}", file=log.title)
+        found += matching
+    return tuple(dict.fromkeys(found))
