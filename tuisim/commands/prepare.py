@@ -13,10 +13,15 @@ from pathlib import Path
 
 from tuisim.config import WorldFile, build_run_spec, load_world, means_world
 from tuisim.core.spec import RunSpec
+from tuisim.datalog.runfile import StoredRun
+from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
 from tuisim.host import Program
 from tuisim.programfile import ProgramSource, read_program
 from tuisim.switches import Settings, given, settings_of
+
+_OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors"})
+"""Fields of `Settings` that have nothing to do with what is run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +89,28 @@ def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
         raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
     word = programs[0] if programs else world.program if world else None
     return _prepared(word, world, arguments)
+
+
+def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tuple[StoredRun, Prepared]:
+    """Read a stored run that the app is to show.
+
+    Args:
+        run: Its number, its id or the start of it, its folder's path, or `last`.
+        words: What else the user named, which must be nothing.
+        arguments: The parsed command line.
+
+    Raises:
+        ConfigError: a program, a world or a switch for one is named besides.
+        LogError: there is no such run, or it is damaged.
+    """
+    chosen = given(arguments)
+    if words or arguments.world or (wrong := sorted(chosen.keys() - _OF_THE_APP)):
+        what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
+        raise ConfigError(f"a stored run has a program and a world of its own, not {what}", "name one", key="--run")
+    stored = RunStore().load_run(Path(run) if "/" in run else run)
+    program = stored.program
+    opened = Program(name=program.name, text=program.text, prelude=program.prelude, path=program.path)
+    return stored, Prepared(opened, settings_of(chosen), stored.spec)
 
 
 def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared]:

@@ -15,10 +15,23 @@ def open_mat(run: StoredRun) -> Field:
     Raises:
         LogError: there is no such mat any more, or its picture is another one now.
     """
+    files = mat_files(run)
+    try:
+        return open_field(files)
+    except ConfigError as error:
+        raise _no_mat(run, error) from error
+
+
+def mat_files(run: StoredRun) -> FieldFiles:
+    """Return the files of what `open_mat` opens; they are there now, and are prepared again if need be.
+
+    Raises:
+        LogError: as `open_mat`.
+    """
     try:
         made_on = None if run.field is None else FieldFiles.from_plain(run.field)
         if made_on is not None and _all_there(made_on):
-            return open_field(made_on)
+            return made_on
         name = run.spec.world.background
         image = background(name).image
         diameters = {sensor.diameter_mm for sensor in run.spec.robot.color_sensors}
@@ -26,11 +39,15 @@ def open_mat(run: StoredRun) -> Field:
         # The files are called after the content of the picture.
         if made_on is not None and found.pixels.name != made_on.pixels.name:
             raise LogError(f"the mat {name} is not the one of the run any more", file=str(image))
-        return open_field(found)
     except ConfigError as error:
-        raise LogError(f"the mat of the run: {error.message}", error.hint, file=str(run.folder)) from error
+        raise _no_mat(run, error) from error
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
+    return found
+
+
+def _no_mat(run: StoredRun, error: ConfigError) -> LogError:
+    return LogError(f"the mat of the run: {error.message}", error.hint, file=str(run.folder))
 
 
 def _all_there(files: FieldFiles) -> bool:

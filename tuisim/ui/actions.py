@@ -189,6 +189,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("pen", "p", "Pen up or down", ROBOT, verbs.pen, footer="pen"),
         Action("slower", "left_square_bracket", "Slower", PROGRAM, verbs.slower, footer="speed", footer_key="[ ]"),
         Action("faster", "right_square_bracket", "Faster", PROGRAM, verbs.faster),
+        Action("runs", "h", "Open a stored run", FILES, travel.choose_run, _can_change_world, "runs"),
         Action("export", "e", "Export the log to a file", FILES, verbs.export, _can_export, "export"),
         Action("save-world", "ctrl+s", "Save the world to a file", FILES, verbs.save_world, footer="save"),
         Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, verbs.save_robot),

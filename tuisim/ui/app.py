@@ -26,6 +26,7 @@ from tuisim.ui.footer import KeyFooter
 from tuisim.ui.loading import Loading
 from tuisim.ui.lookback import Lookback
 from tuisim.ui.pacer import Pacer
+from tuisim.ui.replaying import open_run
 from tuisim.ui.session import AppSettings
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.speech import Voice
@@ -76,7 +77,7 @@ class Lab(Wishes):
         self.feed: Feed | None = None
         self._drawn: object = None
         self.loading = Loading(self)
-        self._run_when_ready = settings.autorun
+        self._run_when_ready = settings.autorun and settings.replay is None
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
 
@@ -105,8 +106,11 @@ class Lab(Wishes):
 
     def _begin(self) -> None:
         self.desk.ensure("world", "output", "chart")
-        self.loading.prepare_mat()
-        self.loading.begin()
+        if self.settings.replay:
+            open_run(self, self.settings.replay)
+        else:
+            self.loading.prepare_mat()
+            self.loading.begin()
         self.set_interval(1 / self.settings.fps, self._beat)
         self.set_interval(PERIOD_S, self.loading.look)
 

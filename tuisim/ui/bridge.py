@@ -58,7 +58,7 @@ class Bridge:
 
     def __init__(self, settings: AppSettings) -> None:
         self.program: Program | None = settings.program
-        self.plan: Plan = plans.plan_of(settings.settings) if settings.settings else plans.plan_of_spec(settings.spec)
+        self.plan: Plan = plans.plan_of(settings.settings) if settings.settings else plans.plan_of_run(settings.spec)
         """What the next run will be."""
         self.home: Pose = self.plan.spec.world.start
         """Where `back to start` puts the robot."""
@@ -192,10 +192,10 @@ class Bridge:
 
         if self.program is None or self.in_run:
             return
-        self.close()
-        self._end, self._moved = "", True
         options = RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)
-        self.run = start_run(self.program, self.plan.spec, options)
+        run = start_run(self.program, self.plan.spec, options)
+        self.close()
+        self.run, self._end = run, ""
         self._look_at(Recording(self.run))
 
     def replay(self, run: StoredRun) -> None:

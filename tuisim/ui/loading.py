@@ -99,6 +99,14 @@ class Loading:
             self._good = bridge.plan, mat
             self._lab.mat_ready(None if same_picture else mat.pixels)
 
+    def lay_out(self, plan: Plan, program: Program | None, mat: Mat) -> None:
+        """Take a plan and a program together with their mat, which has been prepared already."""
+        self._lab.bridge.mat = mat
+        self._good = plan, mat
+        self._note_program(program, {})
+        self._load(plan, program)
+        self._lab.mat_ready(mat.pixels)
+
     # What the user chooses
 
     def attempt(self, make: Callable[[Plan], Plan]) -> bool:

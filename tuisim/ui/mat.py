@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.core.field import Field
-from tuisim.core.spec import RunSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from tuisim.datalog.runfile import StoredRun
+    from tuisim.fields import FieldFiles
 
 
 MatKey = tuple[str, str, frozenset[int]]
@@ -54,5 +57,28 @@ def prepare_mat(spec: RunSpec) -> Mat:
 
     image = assets.background(spec.world.background).image
     key = mat_key(spec)
-    files = fields.prepare(image, key[2], fit=key[1])
+    return _opened(key, fields.prepare(image, key[2], fit=key[1]))
+
+
+def prepare_mat_of(run: StoredRun) -> Mat:
+    """Return the very mat that a stored run was made on; it may be slow as `prepare_mat`.
+
+    Raises:
+        LogError: it is not to be had any more.
+    """
+    from tuisim.datalog.mats import mat_files
+
+    return _opened(mat_key(run.spec), mat_files(run))
+
+
+def blank_mat(spec: RunSpec) -> Mat:
+    """Return a white sheet in the place of a mat that is gone; it has nothing for sensors to read."""
+    import numpy as np
+
+    return Mat(mat_key(spec), None, np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8))
+
+
+def _opened(key: MatKey, files: FieldFiles) -> Mat:
+    from tuisim import fields
+
     return Mat(key, fields.open_field(files), fields.mat_pixels(files))

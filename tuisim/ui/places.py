@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 FORMS = (
     ("3.5", "a time in seconds"),
     ("tick 120", "a tick"),
-    ("line 12", "the next time that line 12 let time pass or printed"),
-    ("sample Colour", "the next sample of that name; `sample` alone: of any"),
-    ("sample Colour < 90", "the next sample that is so: < <= > >= = !="),
+    ("line 12", "the next time that line 12 is met"),
+    ("sample Colour", "the next sample of that name, or of any"),
+    ("sample Colour < 90", "the next that is so: < <= > >= = !="),
     ("print REGEX", "the next printed line that matches"),
     ("start, end", "the first instant, and now"),
-    ("… back", "after line, sample or print: the time before instead"),
+    ("… back", "after line, sample or print: the last before"),
 )
 """What is understood, and what it means."""
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
+from tuisim.errors import BackgroundError
 from tuisim.switches import RobotChoice, Settings, settings_of
 
 POSE_FIELDS = ("x_mm", "y_mm", "heading_deg")
@@ -20,6 +21,8 @@ WORLD_FIELDS = (
     "motor_noise", "pen_down", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
 )  # fmt: skip
 """Fields of `Settings` that a run is made of."""
+
+_ANY_MAT = "Empty_Map"
 
 _OF_THE_MAT: Mapping[str, Any] = {**dict.fromkeys(("obstacles", *POSE_FIELDS)), "background_fit": "stretch"}
 """What another mat brings with it."""
@@ -67,6 +70,15 @@ def plan_of_spec(spec: RunSpec) -> Plan:
     from tuisim.config import settings_from
 
     return replace(plan_of(settings_of(settings_from(spec))), spec=spec)
+
+
+def plan_of_run(spec: RunSpec) -> Plan:
+    """Return the plan of doing a run again, also when its mat is gone: then it has to be found before it can start."""
+    try:
+        return plan_of_spec(spec)
+    except BackgroundError:
+        elsewhere = replace(spec, world=replace(spec.world, background=_ANY_MAT))
+        return replace(plan_of_spec(elsewhere), spec=spec)
 
 
 def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:

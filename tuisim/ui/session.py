@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tuisim.core.spec import RunSpec
+from tuisim.datalog.runfile import StoredRun
 from tuisim.host import Program
 from tuisim.switches import Settings
 
@@ -23,6 +24,8 @@ class AppSettings:
     """The world file that was opened, to be watched and saved again."""
     program: Program | None = None
     """None opens the app without a program."""
+    replay: StoredRun | None = None
+    """A stored run to be shown; spec and program are its own."""
     background: str = "Empty_Map"
     """Name of the mat; `spec.world.background` agrees with it."""
     panels_on: frozenset[str] = field(default_factory=frozenset)

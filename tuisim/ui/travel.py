@@ -141,3 +141,15 @@ def next_sample(lab: Lab) -> None:
 def sample_before(lab: Lab) -> None:
     """The sample before, of any name."""
     _to_sample(lab, "sample back")
+
+
+def choose_run(lab: Lab) -> None:
+    """Ask for a stored run and open it."""
+    from tuisim.ui.replaying import open_run
+    from tuisim.ui.screens.runs import RunChooser
+
+    def take(run_id: str | None) -> None:
+        if run_id:
+            open_run(lab, run_id)
+
+    lab.push_screen(RunChooser(), take)

@@ -1,0 +1,74 @@
+"""Stored runs on their way into the app, where they are shown as runs that are over."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.errors import LogError, TuisimError
+from tuisim.host import Program
+from tuisim.ui.loading import NOT_NOW
+from tuisim.ui.plan import plan_of_run
+from tuisim.ui.verbs import end_label
+
+if TYPE_CHECKING:
+    from tuisim.datalog.runfile import StoredRun
+    from tuisim.ui.app import Lab
+    from tuisim.ui.mat import Mat
+
+
+def program_of(run: StoredRun) -> Program:
+    """Return the program of a run as it was then; it stands for its file only if that still says the same."""
+    stored = run.program
+    try:
+        same = Path(stored.path).read_text("utf-8") == stored.text if stored.path else False
+    except (OSError, ValueError):
+        same = False
+    return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path if same else "")
+
+
+def open_run(lab: Lab, run: str | StoredRun) -> None:
+    """Show a stored run, given by itself or by its number or id; what is wrong with it is said."""
+    if lab.bridge.in_run:
+        lab.say(NOT_NOW)
+        return
+    lab.run_worker(partial(_prepare_in_thread, lab, run), thread=True, group="mat", exclusive=True)
+
+
+def _prepare_in_thread(lab: Lab, word: str | StoredRun) -> None:
+    from tuisim.datalog.store import RunStore
+    from tuisim.ui.mat import blank_mat, prepare_mat_of
+
+    try:
+        run = RunStore().load_run(word) if isinstance(word, str) else word
+        if not run.telemetry.count:
+            raise LogError("has no recording: it ended before its first tick", file=str(run.folder))
+    except TuisimError as error:
+        lab.call_from_thread(lab.complain, error)
+        return
+    try:
+        mat = prepare_mat_of(run)
+    except TuisimError as error:
+        lab.call_from_thread(lab.complain, error)
+        mat = blank_mat(run.spec)
+    lab.call_from_thread(_show, lab, run, mat)
+
+
+def _show(lab: Lab, run: StoredRun, mat: Mat) -> None:
+    if lab.bridge.in_run:
+        lab.say(NOT_NOW)
+        return
+    lab.loading.lay_out(plan_of_run(run.spec), program_of(run), mat)
+    lab.bridge.replay(run)
+    end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
+    words = f"— {end_label(run.state)} at {end_s:.2f} s · {_title(run)}"
+    lab.run_changed(words, run.end.error_line if run.end else 0)
+    for note in run.notes:
+        lab.say(note)
+    lab.say(f"{_title(run)} is open: , < and g go back in it, R runs it anew")
+    lab.draw(force=True)
+
+
+def _title(run: StoredRun) -> str:
+    return f"Run {run.number}" if run.number else f"Run {run.id}"

@@ -1,0 +1,129 @@
+"""The stored runs, to look back at one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from datetime import datetime
+
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.widgets import Input, OptionList, Static
+from textual.widgets.option_list import Option
+
+from tuisim.datalog.catalogue import RunInfo
+from tuisim.errors import TuisimError
+from tuisim.ui.screens.choosing import ListDialog
+from tuisim.ui.verbs import end_label
+
+MOST_LISTED = 300
+"""So many runs are listed at once; the others are found by searching."""
+
+_GOOD = ("finished", "stopped")
+
+
+def matching(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
+    """Return the runs, the newest first, of which each word of a search stands somewhere in their lines."""
+    words = search.lower().split()
+    return [run for run in reversed(list(runs)) if all(word in _searched(run) for word in words)]
+
+
+def _searched(run: RunInfo) -> str:
+    facts = (run.number, run.program, run.background, run.profile, run.end, end_label(run.end), run.summary, run.tags)
+    return " ".join(map(str, (*facts, _when(run)))).lower()
+
+
+def _when(run: RunInfo) -> str:
+    """When it was, in the time of this place."""
+    try:
+        return datetime.fromisoformat(run.created).astimezone().strftime("%Y-%m-%d %H:%M")
+    except ValueError:
+        return run.created[:16]
+
+
+_HEADS = f"{'run':>5} {'when':<11} {'program':<14} {'mat':<11} {'end':<9} {'s':>7} {'samples':>7}"
+
+
+def run_line(run: RunInfo) -> Text:
+    """Return one line of the list, below `_HEADS`."""
+    line = Text(no_wrap=True, overflow="ellipsis")
+    line.append(f"{run.number:>4} ", "bold")
+    line.append(f"{_when(run)[5:]:<11} ", "#9fb0c3")
+    line.append(f"{run.program:<14.14} ", "bold")
+    line.append(f"{run.background:<11.11} ")
+    line.append(f"{end_label(run.end):<9.9} ", "" if run.end in _GOOD else "#ff6e6e")
+    line.append(f"{run.time_s or 0:>7.2f} {run.samples or 0:>7,}")
+    if run.tags or run.summary:
+        line.append(f"  {run.tags or run.summary}", "#9fb0c3")
+    return line
+
+
+class RunChooser(ListDialog):
+    """Gives the id of the run that was chosen."""
+
+    DEFAULT_CSS = """
+    RunChooser .dialog { width: 110; padding: 1 0; }
+    RunChooser .heads { height: 1; text-wrap: nowrap; color: #9fb0c3; }
+    RunChooser OptionList { text-wrap: nowrap; text-overflow: ellipsis; }
+    """
+    TITLE_TEXT: str = "Runs"
+    HINT: str = "Enter opens · type to search · Escape closes"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._runs: list[RunInfo] = []
+
+    def content(self) -> ComposeResult:
+        """A field for searching, and the list."""
+        yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
+        yield Static(_HEADS, markup=False, classes="heads")
+        yield OptionList()
+        yield Static("Reading the list …", id="message", markup=False)
+
+    def on_mount(self) -> None:
+        """Read the list off the event loop: there may be thousands."""
+        super().on_mount()
+        self.run_worker(self._read, thread=True)
+
+    def _read(self) -> None:
+        from tuisim.datalog.store import RunStore
+
+        try:
+            runs = RunStore().runs()
+        except TuisimError as error:
+            self.app.call_from_thread(self._say, str(error))
+            return
+        self.app.call_from_thread(self._fill, runs)
+
+    def _fill(self, runs: list[RunInfo]) -> None:
+        self._runs = runs
+        self._list("")
+
+    def _say(self, text: str) -> None:
+        self.query_one("#message", Static).update(text)
+
+    def _list(self, search: str) -> None:
+        found = matching(self._runs, search)
+        options = self.query_one(OptionList)
+        options.clear_options()
+        options.add_options(Option(run_line(run), id=run.id) for run in found[:MOST_LISTED])
+        options.highlighted = 0 if found else None
+        if not self._runs:
+            self._say("No runs yet: R runs a program, and every run is kept")
+        elif len(found) > MOST_LISTED:
+            self._say(f"The newest {MOST_LISTED} of {len(found):,} runs: search for the others")
+        else:
+            self._say(f"{len(found):,} of {len(self._runs):,} runs")
+
+    @on(Input.Changed)
+    def _search(self, event: Input.Changed) -> None:
+        self._list(event.value)
+
+    @on(Input.Submitted)
+    def _typed(self, event: Input.Submitted) -> None:
+        event.stop()
+        # What is typed here is no choice by itself, as it is in other lists.
+        event.prevent_default()
+        options = self.query_one(OptionList)
+        if options.highlighted is not None:
+            self.dismiss(options.get_option_at_index(options.highlighted).id)
