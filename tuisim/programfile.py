@@ -170,8 +170,22 @@ def read_program(path: Path) -> ProgramSource:
         raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", "name a Python file", file=shown)
     if path.suffix == ".ipynb":
         raise ConfigError("is a notebook", "name a Python file", file=shown)
-    program = parse_program(_decode(data, shown), path.name, shown)
-    return replace(program, switches=_beside(path.parent, program.switches))
+    return program_of_text(_decode(data, shown), path, path.name)
+
+
+def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
+    """Return a program from its text as if it had been read; files that its magic line names are found beside it.
+
+    Args:
+        text: With `\\n` as line ends.
+        path: Its file, which need not be there; None for none.
+        name: What it is called.
+
+    Raises:
+        ConfigError: its magic line is wrong.
+    """
+    program = parse_program(text, name, str(path) if path else "")
+    return replace(program, switches=_beside(path.parent if path else Path.cwd(), program.switches))
 
 
 def _decode(data: bytes, shown: str) -> str:

@@ -7,7 +7,7 @@ from textual.app import App, ComposeResult
 from textual.widget import Widget
 
 from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
-from tuisim.ui.panels.code import Code, coloured_lines, plain_lines, wrapped
+from tuisim.ui.panels.code import Code
 from tuisim.ui.panels.log import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
 
 
@@ -87,23 +87,6 @@ async def test_lines_wrap_anew_when_the_panel_gets_narrower() -> None:
         await pilot.resize_terminal(16, 6)
         await pilot.pause()
         assert lines(pilot.app)[:2] == ["one two three", "four five six"]
-
-
-SOURCES = ["x = 1\n", "print('a')\n\n\nif x:\n    y = '''two\nlines'''\n", "# nothing", "\n\nz = 3\n", "a = (\n"]
-
-
-@pytest.mark.parametrize("text", SOURCES)
-def test_colours_change_no_text(text: str) -> None:
-    plain = ["".join(part for part, _ in line) for line in plain_lines(text)]
-    assert ["".join(part for part, _ in line) for line in coloured_lines(text)] == plain
-
-
-@pytest.mark.parametrize("width", [8, 13, 20, 200])
-def test_wrapped_code_fits_and_loses_nothing(width: int) -> None:
-    text = "    result = function_with_a_long_name(argument, 'a string with blanks', other)"
-    rows = wrapped(coloured_lines(text)[0], width)
-    assert all(sum(len(part) for part, _ in pieces) <= width for pieces in rows)
-    assert "".join(part for pieces in rows for part, _ in pieces).replace(" ", "") == text.replace(" ", "")
 
 
 async def test_the_line_of_an_error_is_brought_into_view() -> None:

@@ -21,6 +21,7 @@ from tuisim.ui import travel
 from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
 from tuisim.ui.bridge import ROWS_A_POLL, Bridge, News
 from tuisim.ui.desk import Desk
+from tuisim.ui.editor.work import Work
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
 from tuisim.ui.loading import Loading
@@ -77,6 +78,7 @@ class Lab(Wishes):
         self.feed: Feed | None = None
         self._drawn: object = None
         self.loading = Loading(self)
+        self.work = Work(self)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
@@ -115,7 +117,8 @@ class Lab(Wishes):
         self.set_interval(PERIOD_S, self.loading.look)
 
     def on_unmount(self) -> None:
-        """Leave no child behind."""
+        """Leave no child behind, and no unsaved work."""
+        self.work.keep()
         self.bridge.close()
         self.voice.hush()
 
@@ -146,6 +149,8 @@ class Lab(Wishes):
             self._run_when_ready = True
             self.say("The mat is being prepared; the program starts at once after that")
             return
+        if not self.work.apply():
+            return
         try:
             self.bridge.start()
         except TuisimError as error:
@@ -164,6 +169,7 @@ class Lab(Wishes):
             self.desk.chart.clear()
         if self.desk.code:
             self.desk.code.mark_error(error_line)
+        self.work.run_changed()
         self.situation_changed()
 
     def _beat(self) -> None:
@@ -182,6 +188,8 @@ class Lab(Wishes):
     def _take(self, news: News) -> None:
         for text in news.spoken:
             self.voice.speak(text)
+            if self.desk.brick:
+                self.desk.brick.heard(text)
         if news.rows:
             self._take_rows(news)
         if output := self.desk.output:
@@ -212,6 +220,8 @@ class Lab(Wishes):
             self.desk.output.ask(prompt)
 
     def _ended(self, ended: Ended) -> None:
+        if self.desk.brick:
+            self.desk.brick.release_all()
         good = ended.end in ("finished", "stopped")
         words = ended.summary or end_label(ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
@@ -231,6 +241,7 @@ class Lab(Wishes):
         now = (
             (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
             (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
+            (snapshot.face, snapshot.pressed),
         )
         if now == self._drawn and not force and not (self.feed and self.feed.is_behind):
             return
@@ -301,11 +312,7 @@ class Lab(Wishes):
         self.call_after_refresh(self.draw, force=True)
 
     def _introduce_program(self) -> None:
-        program = self.bridge.program
-        if code := self.desk.code:
-            code.set_program(program.name if program else "", program.text if program else "")
-        if controls := self.desk.controls:
-            controls.set_program(program.name if program else "")
+        self.work.introduce()
 
     # What the user does
 

@@ -18,6 +18,7 @@ from tuisim.ui.watch import Watch
 if TYPE_CHECKING:
     from tuisim.core.spec import RunSpec
     from tuisim.host import Program
+    from tuisim.programfile import ProgramSource
     from tuisim.ui.app import Lab
     from tuisim.ui.mat import Mat
 
@@ -59,6 +60,7 @@ class Loading:
             # It was read a moment ago and is wrong now: looking for changes will tell.
             pass
         self._follow()
+        self._lab.work.begin()
 
     # The mat
 
@@ -141,7 +143,13 @@ class Loading:
             self._lab.complain(error)
 
     def open_file(self, path: str) -> None:
-        """Open a program, with the world that it asks for, or a world, with the program that it names."""
+        """Open a program, with the world that it asks for, or a world, with the program that it names.
+
+        With unsaved changes of the program that is open, after a question.
+        """
+        self._lab.work.when_safe(partial(self._open_file, path))
+
+    def _open_file(self, path: str) -> None:
         from tuisim.config import means_world
 
         opened = self._open_world if means_world(path) else self._open_program
@@ -233,9 +241,11 @@ class Loading:
             return
         changed, self._later = [*self._later, *(path for path in changed if path not in self._later)], []
         for path in changed:
-            self._reload(path)
+            if not self._lab.work.stands_against(path):
+                self.reload(path)
 
-    def _reload(self, path: Path) -> None:
+    def reload(self, path: Path) -> None:
+        """Take in a file as it is now."""
         lab = self._lab
         try:
             known = self._reread(path)
@@ -250,10 +260,7 @@ class Loading:
         lab, plan = self._lab, self._lab.bridge.plan
         program = lab.bridge.program
         if program and program.path and Path(program.path) == path:
-            new, said = _read_program(program.path)
-            as_said = new.prelude if new.prelude != self._prelude_said else program.prelude
-            self._take_said(_differences(self._magic_said, said), replace(new, prelude=as_said))
-            self._note_program(new, said)
+            self._take_program(*_read_program(program.path))
             return True
         if path == self.world_file:
             before = self._world_said
@@ -271,6 +278,37 @@ class Loading:
             return True
         return bool(fields)
 
+    def take_text(self, text: str, path: str, name: str) -> None:
+        """Take the edited text of the program that is open. Not during a run.
+
+        Args:
+            text: As it would stand in the file.
+            path: Of the file, empty for none.
+            name: Of the file.
+
+        Raises:
+            TuisimError: its magic line is wrong.
+        """
+        from tuisim.programfile import program_of_text
+
+        self._take_program(*_program_of(program_of_text(text, Path(path) if path else None, name)))
+
+    def take_new(self, text: str, name: str) -> None:
+        """Take a new program without a file and without a magic line. Not during a run."""
+        from tuisim.programfile import program_of_text
+
+        program, said = _program_of(program_of_text(text, None, name))
+        self._note_program(program, said)
+        self._lab.bridge.program = program
+        self._loaded()
+
+    def _take_program(self, new: Program, said: Mapping[str, Any]) -> None:
+        """Take another text of the program that is open, with what its magic line says anew."""
+        program = self._lab.bridge.program
+        as_said = new.prelude if new.prelude != self._prelude_said or program is None else program.prelude
+        self._take_said(_differences(self._magic_said, said), replace(new, prelude=as_said))
+        self._note_program(new, said)
+
     def _take_said(self, differences: Mapping[str, Any], program: Program | None) -> None:
         """Take what a file says anew; what it says as before stays as the user has made it since."""
         lab = self._lab
@@ -284,10 +322,14 @@ class Loading:
 
 def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
     """Read a program; returns it and what its magic line says."""
-    from tuisim.host import Program
     from tuisim.programfile import read_program
 
-    file = read_program(Path(path).expanduser())
+    return _program_of(read_program(Path(path).expanduser()))
+
+
+def _program_of(file: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
+    from tuisim.host import Program
+
     return Program(name=file.name, text=file.text, prelude=file.prelude, path=file.path), file.switches
 
 

@@ -150,6 +150,6 @@ def choose_run(lab: Lab) -> None:
 
     def take(run_id: str | None) -> None:
         if run_id:
-            open_run(lab, run_id)
+            lab.work.when_safe(lambda: open_run(lab, run_id))
 
     lab.push_screen(RunChooser(), take)

@@ -257,7 +257,11 @@ def show_help(lab: Lab) -> None:
 
 
 def leave(lab: Lab) -> None:
-    """Quit, after a question if a program runs."""
+    """Quit, after a question if there are unsaved changes or a program runs."""
+    lab.work.when_safe(lambda: _leave(lab))
+
+
+def _leave(lab: Lab) -> None:
     if not lab.bridge.in_run:
         lab.exit()
         return

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from textual.app import App
-
 from tuisim.errors import TuisimError
 from tuisim.ui import travel
+from tuisim.ui.editor.wishes import EditorWishes
 from tuisim.ui.plan import with_obstacles
 
 if TYPE_CHECKING:
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
     from tuisim.ui.bridge import Bridge
     from tuisim.ui.desk import Desk
     from tuisim.ui.loading import Loading
+    from tuisim.ui.panels.brick import Brick
     from tuisim.ui.panels.chart import Chart
     from tuisim.ui.panels.noise import Noise
     from tuisim.ui.panels.obstacles import Obstacles
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tuisim.ui.panels.world import World
 
 
-class Wishes(App[None]):
+class Wishes(EditorWishes):
     """The part of the app that answers messages of panels; Textual finds the methods by their names."""
 
     bridge: Bridge
@@ -81,6 +81,12 @@ class Wishes(App[None]):
         """An obstacle was drawn or moved with the mouse."""
         if self.loading.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and self.desk.obstacles:
             self.desk.obstacles.mark(message.index)
+
+    def on_brick_pressed(self, message: Brick.Pressed) -> None:
+        """The user presses the brick's buttons, or lets them go."""
+        if message.buttons and not self.bridge.in_run:
+            self.notify("The brick's buttons work while a program runs: R runs it", timeout=3)
+        self.bridge.press(message.buttons)
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
         """Noise was set."""

@@ -1,203 +1,261 @@
-"""Code panel: the program, its running line lit, the line of an error marked."""
+"""Code panel: the program, to be read and edited; the running line lit, the line of an error marked."""
 
 from __future__ import annotations
 
 import time
+from bisect import bisect_left, bisect_right
+from collections.abc import Mapping
 from typing import ClassVar
 
-from rich.segment import Segment
-from rich.style import Style
-from textual import events
-from textual.geometry import Region, Size
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
+from textual.app import ComposeResult
+from textual.containers import Vertical
+from textual.message import Message
+from textual.widgets import TextArea
+from textual.widgets.text_area import Selection
 
-from tuisim.ui.panels.log import plain
+from tuisim.ui.editor.area import CodeArea
+from tuisim.ui.editor.editing import places
+from tuisim.ui.editor.findbar import FIND, LINE, FindBar
 from tuisim.ui.snapshot import ENDED, IDLE, RUNNING, Snapshot
 
 LIT_GAP_S = 0.1
 """The light moves no more often while the program runs: the eye would see only flicker."""
 
-Piece = tuple[str, str]
-"""Text and the kind of its token, one of `_KINDS` or empty."""
-
-_KINDS = {
-    "Keyword": "code--keyword",
-    "String": "code--string",
-    "Comment": "code--comment",
-    "Number": "code--number",
-    "Function": "code--name",
-    "Class": "code--name",
-    "Builtin": "code--name",
-}
+NOTHING_OPEN = "No program: o opens one, ctrl+t begins a new one"
+_TYPING_KEYS = "esc done  ^s save  ^r run  ^f find"
 
 
-def _kind(token: tuple[str, ...]) -> str:
-    for part in token:
-        if part in _KINDS:
-            return _KINDS[part]
-    return ""
-
-
-def plain_lines(text: str) -> list[list[Piece]]:
-    """Return the lines of a program without colours."""
-    return [[(plain(line), "")] for line in text.rstrip("\n").split("\n")]
-
-
-def coloured_lines(text: str) -> list[list[Piece]]:
-    """Return the lines of a program in pieces of one colour."""
-    from pygments.lexers.python import PythonLexer
-
-    lines: list[list[Piece]] = [[]]
-    for token, value in PythonLexer(stripnl=False, ensurenl=False).get_tokens(text.rstrip("\n")):
-        first, *more = value.split("\n")
-        lines[-1].append((plain(first), _kind(token)))
-        lines.extend([(plain(part), _kind(token))] for part in more)
-    return lines
-
-
-def wrapped(pieces: list[Piece], width: int) -> list[list[Piece]]:
-    """Break a line into rows of at most `width` characters; what follows is indented."""
-    rows: list[list[Piece]] = [[]]
-    text = "".join(part for part, _ in pieces)
-    indent = " " * min(len(text) - len(text.lstrip()) + 2, width // 3)
-    left, fresh = width, True
-    for part, kind in pieces:
-        while len(part) > left:
-            # A break at a blank reads better than one in a word; a word longer than a row must be cut.
-            cut = part.rfind(" ", 0, left) + 1 or (left if fresh else 0)
-            rows[-1].append((part[:cut], kind))
-            rows.append([(indent, "")])
-            part, left, fresh = part[cut:], width - len(indent), True
-        rows[-1].append((part, kind))
-        left -= len(part)
-        fresh = fresh and not part.strip()
-    return rows
-
-
-class Code(ScrollView, can_focus=True):
+class Code(Vertical):
     """The program's text."""
 
     PANEL_ID: ClassVar[str] = "code"
     TITLE: ClassVar[str] = "Code"
-    ALLOW_SELECT = False
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "code--number-column", "code--lit", "code--error", *_KINDS.values(),
-    }  # fmt: skip
+
+    class Edited(Message):
+        """The text was changed here."""
+
+        def __init__(self, text: str) -> None:
+            super().__init__()
+            self.text = text
+
+    class Wanted(Message):
+        """The program is to be saved (`save`), to run (`run`), or nothing is open to be edited (`new`)."""
+
+        def __init__(self, what: str) -> None:
+            super().__init__()
+            self.what = what
+
+    class BreakpointToggled(Message):
+        """The number of a line, from 1, was clicked on."""
+
+        def __init__(self, line: int) -> None:
+            super().__init__()
+            self.line = line
 
     def __init__(self) -> None:
         super().__init__()
         self.border_title = self.TITLE
-        self._text = ""
-        self._lines: list[list[Piece]] = []
-        self._rows: list[tuple[int, bool, list[Piece]]] = []
-        """Line number, whether it is the line's first row, and its pieces."""
-        self._first_row: list[int] = [0]
-        """Of each line, from line 1, the number of its first row; then the number of rows."""
-        self._lit = 0
+        self._area = CodeArea()
+        self._bar = FindBar()
+        self._key: str | None = None
+        self._shown = ""
+        """The text as it was last given or told of."""
+        self._run_lines: list[str] | None = None
+        self._tells_run = self._in_run = False
         self._lit_at_s = 0.0
-        self._error = 0
+        self._line = 0
+        self._said = (self.TITLE, "")
+
+    def compose(self) -> ComposeResult:
+        """The text, and the bar below it."""
+        self._area.placeholder = NOTHING_OPEN
+        yield self._area
+        yield self._bar
 
     # What is shown
 
-    def set_program(self, name: str, text: str) -> None:
-        """Show a program; an empty text says how to open one."""
-        self.border_title = f"{self.TITLE}: {name}" if name else self.TITLE
-        self._text = text
-        self._lit = self._error = 0
-        self._lines = plain_lines(text) if text else []
-        self._wrap()
-        self.scroll_to(y=0, animate=False, force=True)
-        if text:
-            # The lexer is imported once the plain text is on the screen.
-            self.set_timer(0.1, self._colour)
+    @property
+    def cursor_line(self) -> int:
+        """The line that the cursor is on, from 1."""
+        return self._area.cursor_location[0] + 1
 
-    def _colour(self) -> None:
-        self._lines = coloured_lines(self._text)
-        self._wrap()
+    @property
+    def typing(self) -> bool:
+        """Whether letters go into the text."""
+        return self._area.typing
+
+    def set_program(self, name: str, text: str, key: str = "") -> None:
+        """Show a program.
+
+        Args:
+            name: Of its file; empty for no program.
+            text: As it stands in the file.
+            key: Tells one program from another; of the same one, cursor and scroll stay.
+        """
+        key = key or name
+        if key != self._key:
+            self._key, self._run_lines, self._line = key, None, 0
+            self._area.light(0)
+            self._area.set_error(0)
+            self._area.placeholder = "" if name else NOTHING_OPEN
+            self._area.load_program(text)
+            self._area.scroll_to(y=0, animate=False, force=True)
+            if not name:
+                self.stop_typing()
+        elif text != self._shown:
+            self._area.replace_program(text)
+        self._shown = text
+        self.set_title(name)
+
+    def set_title(self, name: str, edited: bool = False) -> None:
+        """Say what program it is, and whether it has unsaved changes."""
+        self._said = (f"{self.TITLE}: {name}" if name else self.TITLE, " • edited" if edited else "")
+        self._say()
+
+    def _say(self) -> None:
+        title, edited = self._said
+        # A file's name is no markup.
+        self.border_title = title.replace("[", "\\[") + edited
+        tells = self._run_lines is not None and self._tells_run and self._in_run
+        differs = tells and self._run_lines != self._shown.split("\n")
+        keys = _TYPING_KEYS if self.typing else ""
+        self.border_subtitle = "  ".join(filter(None, ["running text differs" if differs else "", keys]))
+
+    def set_running(self, text: str | None, tells: bool = True) -> None:
+        """Say what text the run has that is looked at.
+
+        Args:
+            text: None without a run.
+            tells: Whether it is a run of this program, so that it is told when the two texts differ.
+        """
+        self._run_lines = text.split("\n") if text is not None else None
+        self._tells_run = tells
+        self._say()
+
+    def set_marks(self, breaks: Mapping[int, str]) -> None:
+        """Put marks before lines: `●` a breakpoint, `○` one switched off, `◆` one with a condition."""
+        self._area.set_breaks(breaks)
 
     def mark_error(self, line: int) -> None:
         """Mark the line of an error; 0 takes the mark away."""
-        before, self._error = self._error, line
-        self._refresh_line(before)
-        self._refresh_line(line)
+        self._area.set_error(line)
         if line:
-            self._scroll_to_line(line)
+            self._area.scroll_to_line(line)
 
     def show(self, snapshot: Snapshot) -> None:
         """Light the line that lets the time pass."""
-        line = 0 if snapshot.state in (IDLE, ENDED) else snapshot.line
-        if line == self._lit:
+        in_run = snapshot.state not in (IDLE, ENDED) or snapshot.past
+        if in_run != self._in_run:
+            self._in_run = in_run
+            self._say()
+        line = snapshot.line if in_run else 0
+        if line == self._line:
             return
         now = time.monotonic()
-        if snapshot.state == RUNNING and now - self._lit_at_s < LIT_GAP_S:
+        if snapshot.state == RUNNING and not snapshot.past and now - self._lit_at_s < LIT_GAP_S:
             return
-        before, self._lit, self._lit_at_s = self._lit, line, now
-        self._refresh_line(before)
-        self._refresh_line(line)
-        if line:
-            self._scroll_to_line(line)
+        self._lit_at_s = now
+        self.show_line(line)
 
-    # Rows
+    def show_line(self, line: int) -> None:
+        """Light a line of the run's text, 0 for none, if it is still the same in the text that is shown."""
+        self._line = line
+        lit = line if self._is_the_same(line) else 0
+        self._area.light(lit)
+        if lit and not self.typing:
+            self._area.scroll_to_line(lit)
 
-    @property
-    def _gutter(self) -> int:
-        return max(2, len(str(len(self._lines)))) + 2
+    def _is_the_same(self, line: int) -> bool:
+        if self._run_lines is None:
+            return True
+        lines = self._area.document.lines
+        if not 1 <= line <= min(len(lines), len(self._run_lines)):
+            return False
+        return bool(lines[line - 1] == self._run_lines[line - 1])
 
-    def _wrap(self) -> None:
-        width = max(8, self.scrollable_content_region.width - self._gutter)
-        self._rows, self._first_row = [], []
-        for number, pieces in enumerate(self._lines, start=1):
-            self._first_row.append(len(self._rows))
-            self._rows.extend((number, at == 0, row) for at, row in enumerate(wrapped(pieces, width)))
-        self._first_row.append(len(self._rows))
-        self.virtual_size = Size(self.scrollable_content_region.width, len(self._rows))
-        self.refresh()
+    # Typing
 
-    def on_resize(self, event: events.Resize) -> None:
-        """Wrap anew."""
-        self._wrap()
-        if self._lit or self._error:
-            self._scroll_to_line(self._lit or self._error)
+    def start_typing(self) -> None:
+        """Let letters go into the text."""
+        if not self._key:
+            self.post_message(self.Wanted("new"))
+            return
+        self._area.read_only = False
+        self._area.focus()
+        self._say()
 
-    def _rows_of(self, line: int) -> range:
-        if not 1 <= line < len(self._first_row):
-            return range(0)
-        return range(self._first_row[line - 1], self._first_row[line])
+    def stop_typing(self) -> None:
+        """Let letters be the app's keys again."""
+        self._area.read_only = True
+        self._say()
 
-    def _refresh_line(self, line: int) -> None:
-        top = self.scroll_offset.y
-        visible = [row - top for row in self._rows_of(line) if 0 <= row - top < self.size.height]
-        if visible:
-            self.refresh(*(Region(0, y, self.size.width, 1) for y in visible))
+    def on_text_area_changed(self, event: TextArea.Changed) -> None:
+        """Tell of an edit."""
+        event.stop()
+        text = self._area.program_text
+        if text != self._shown:
+            self._shown = text
+            self._area.set_error(0)
+            self.show_line(self._line)
+            self._say()
+            self.post_message(self.Edited(text))
 
-    def _scroll_to_line(self, line: int) -> None:
-        rows = self._rows_of(line)
-        height = self.scrollable_content_region.height
-        if rows and not (self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height):
-            self.scroll_to(y=max(0, rows.start - height // 3), animate=False, force=True)
+    def on_code_area_gutter_clicked(self, event: CodeArea.GutterClicked) -> None:
+        """A breakpoint, there or away."""
+        event.stop()
+        self.post_message(self.BreakpointToggled(event.line))
 
-    def render_line(self, y: int) -> Strip:
-        """Return one row of the screen."""
-        width = self.scrollable_content_region.width
-        at = y + self.scroll_offset.y
-        base = self.rich_style
-        if not self._rows and y == 0:
-            return Strip([Segment("No program: o opens one", base)]).adjust_cell_length(width, base)
-        if at >= len(self._rows):
-            return Strip.blank(width, base)
-        line, first, pieces = self._rows[at]
-        mark = " "
-        number_style = base + self.get_component_rich_style("code--number-column", partial=True)
-        if line == self._error:
-            base += self.get_component_rich_style("code--error", partial=True)
-            mark, number_style = "✗" if first else " ", base
-        elif line == self._lit:
-            base += self.get_component_rich_style("code--lit", partial=True)
-            mark, number_style = "▶" if first else " ", base
-        number = f"{mark}{line if first else '':>{self._gutter - 2}} "
-        segments = [Segment(number, number_style), *(Segment(part, self._style(base, kind)) for part, kind in pieces)]
-        return Strip(segments).adjust_cell_length(width, base)
+    def on_code_area_wanted(self, event: CodeArea.Wanted) -> None:
+        """Do what a key stands for."""
+        event.stop()
+        match event.what:
+            case "type":
+                self.start_typing()
+            case "done":
+                self.stop_typing()
+            case "find":
+                self._bar.open(FIND)
+            case "line":
+                self._bar.open(LINE)
+            case "next":
+                self._find(self._bar.wanted, 1)
+            case "previous":
+                self._find(self._bar.wanted, -1)
+            case what:
+                self.post_message(self.Wanted(what))
 
-    def _style(self, base: Style, kind: str) -> Style:
-        return base + self.get_component_rich_style(kind, partial=True) if kind else base
+    # Finding
+
+    def on_find_bar_asked(self, event: FindBar.Asked) -> None:
+        """Go to a place in the text."""
+        event.stop()
+        if event.mode == FIND:
+            self._find(event.text, event.by)
+        elif event.text.strip().isdecimal():
+            line = min(max(1, int(event.text)), self._area.document.line_count)
+            self._area.move_cursor((line - 1, 0), center=True)
+        else:
+            self._bar.say("a number, please")
+
+    def on_find_bar_closed(self, event: FindBar.Closed) -> None:
+        """Back to the text."""
+        event.stop()
+        self._area.focus()
+
+    def _find(self, wanted: str, by: int) -> None:
+        found = places(self._area.document.lines, wanted)
+        if not found:
+            self._bar.say("not found" if wanted else "")
+            return
+        here = self._area.selection.start if by else min(self._area.selection)
+        if by > 0:
+            at = bisect_right(found, here)
+        elif by < 0:
+            at = bisect_left(found, here) - 1
+        else:
+            at = bisect_left(found, here)
+        at %= len(found)
+        row, column = found[at]
+        self._area.selection = Selection((row, column), (row, column + len(wanted)))
+        self._area.scroll_cursor_visible(center=True)
+        self._bar.say(f"{at + 1} of {len(found)}")

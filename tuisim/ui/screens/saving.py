@@ -119,3 +119,9 @@ class SaveDialog(FileDialog):
         self._save(target)
         self.app.notify(f"The {self._what} is in {target}", markup=False)
         self.dismiss(target)
+
+
+class ProgramDialog(SaveDialog):
+    """Writes a program."""
+
+    SUFFIXES: ClassVar[str] = ".py"

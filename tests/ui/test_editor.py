@@ -1,0 +1,399 @@
+"""Editing a program in the app: typing, saving, running, unsaved work, files that change elsewhere."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.ui.app_help import ENDLESS, notices, ready, screen_text, settings, until
+from tests.ui.panel_help import PanelApp, moment
+from tuisim.assets import programs
+from tuisim.config import build_run_spec
+from tuisim.host import Program
+from tuisim.programfile import read_program
+from tuisim.switches import Settings
+from tuisim.ui.app import Lab
+from tuisim.ui.editor.area import CodeArea
+from tuisim.ui.editor.drafts import find_draft, keep_draft
+from tuisim.ui.editor.work import TEMPLATE
+from tuisim.ui.panels.code import Code
+from tuisim.ui.screens.question import Question
+from tuisim.ui.screens.saving import ProgramDialog
+from tuisim.ui.session import AppSettings
+from tuisim.ui.snapshot import ENDED, RUNNING
+
+pytestmark = pytest.mark.usefixtures("home")
+
+TEXT = "print('A: 1')\nfor n in range(3):\n    print('B: ' + str(n))\n"
+
+
+class CodeApp(PanelApp):
+    """The code panel alone."""
+
+    def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
+        """Keep the line."""
+        self.messages.append(message.line)
+
+    def on_code_wanted(self, message: Code.Wanted) -> None:
+        """Keep what is wanted."""
+        self.messages.append(message.what)
+
+
+async def alone(pilot: Pilot[Any], text: str = TEXT) -> tuple[Code, CodeArea]:
+    code = pilot.app.query_one(Code)
+    code.set_program("prog.py", text, "prog")
+    area = code.query_one(CodeArea)
+    area.focus()
+    await pilot.pause()
+    return code, area
+
+
+Keys = list[str]
+
+
+@pytest.mark.parametrize(
+    ("keys", "after"),
+    [
+        (["x", "R", "space"], TEXT),
+        (["enter", "x"], "x" + TEXT),
+        (["enter", "x", "escape", "y"], "x" + TEXT),
+        (["enter", "x", "ctrl+z"], TEXT),
+        (["enter", "x", "ctrl+z", "ctrl+y"], "x" + TEXT),
+        (["enter", "tab"], "    " + TEXT),
+        (["enter", "shift+down", "shift+down", "tab"], "    " + TEXT.replace("for", "    for")),
+        (["down", "down", "enter", "shift+tab"], TEXT.replace("    ", "")),
+        (["enter", "ctrl+underscore"], "# " + TEXT),
+        (["down", "enter", "end", "enter", "p"], TEXT.replace(":\n", ":\n    p\n")),
+        (["down", "down", "down", "enter", "i", "f", "colon", "enter", "p"], TEXT + "if:\n    p"),
+        (["enter", "shift+end", "ctrl+x", "down", "ctrl+v"], "\nprint('A: 1')" + TEXT.split("\n", 1)[1]),
+    ],
+    ids=[
+        "letters are no text", "typing", "escape ends it", "undo", "redo", "tab", "indent", "outdent",
+        "comment", "indented line", "after a colon", "cut and paste",
+    ],
+)  # fmt: skip
+async def test_keys_change_the_text(keys: Keys, after: str) -> None:
+    async with CodeApp(Code()).run_test(size=(60, 12)) as pilot:
+        _, area = await alone(pilot)
+        await pilot.press(*keys)
+        assert area.program_text == after
+
+
+async def test_the_gutter_shows_marks_and_tells_of_clicks() -> None:
+    app = CodeApp(Code())
+    async with app.run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot)
+        code.set_marks({1: "●", 2: "◆"})
+        code.mark_error(3)
+        code.show(moment(line=1))
+        await pilot.pause()
+        text = "\n".join(strip.text.rstrip() for strip in app.screen._compositor.render_strips())
+        assert text.splitlines()[:3] == [
+            "●▶ 1 print('A: 1')",
+            "◆  2 for n in range(3):",
+            " ✗ 3     print('B: ' + str(n))",
+        ]
+        await pilot.click(area, offset=(2, 1))
+        await pilot.click(area, offset=(2, 9))
+        await pilot.click(area, offset=(9, 2))
+        assert app.messages == [2]
+        assert code.cursor_line == 3
+
+
+async def test_a_line_is_lit_only_while_it_is_the_one_that_runs() -> None:
+    app = CodeApp(Code())
+    async with app.run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot)
+        code.set_running(TEXT)
+        code.show(moment(line=2))
+        await pilot.press("down", "enter", "x")
+        await pilot.pause()
+        assert "▶" not in "".join(area.render_line(y).text for y in range(4))
+        assert str(code.border_subtitle).startswith("running text differs")
+        await pilot.press("backspace")
+        await pilot.pause()
+        assert area.render_line(1).text.startswith(" ▶ 2")
+        assert "differs" not in str(code.border_subtitle)
+
+
+async def test_finding_goes_round_and_says_where_it_is() -> None:
+    app = CodeApp(Code())
+    async with app.run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot)
+        await pilot.press("ctrl+f", *"print")
+        await pilot.pause()
+        assert area.selected_text == "print"
+        assert code.cursor_line == 1
+        await pilot.press("enter")
+        await pilot.pause()
+        assert code.cursor_line == 3
+        assert "2 of 2" in app.screen._compositor.render_strips()[-1].text
+        await pilot.press("down")
+        await pilot.pause()
+        assert code.cursor_line == 1
+        await pilot.press("escape", "shift+f3")
+        await pilot.pause()
+        assert code.cursor_line == 3
+        await pilot.press("ctrl+g", "2", "enter")
+        await pilot.pause()
+        assert code.cursor_line == 2
+
+
+async def test_a_reload_keeps_cursor_and_scroll_and_can_be_undone() -> None:
+    lines = [f"x{n} = {n}" for n in range(200)]
+    async with CodeApp(Code()).run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot, "\n".join(lines))
+        await pilot.press(*["pagedown"] * 5)
+        await pilot.pause()
+        before = area.scroll_offset.y, code.cursor_line
+        lines[10] = "new"
+        code.set_program("prog.py", "\n".join(lines), "prog")
+        await pilot.pause()
+        assert (area.scroll_offset.y, code.cursor_line) == before
+        assert area.document.get_line(10) == "new"
+
+
+@pytest.mark.parametrize("text", ["", "\n", "a\n\n", "x = '\x0c\u2028\x85'\n", "\x1b[31m", "漢字 = 1\n", "\ta\n"])
+async def test_no_text_is_changed_by_being_shown(text: str) -> None:
+    async with CodeApp(Code()).run_test(size=(40, 8)) as pilot:
+        _, area = await alone(pilot, text)
+        assert area.program_text == text
+
+
+# In the app
+
+
+def own(path: Path, text: str = TEXT) -> AppSettings:
+    """The app with a program that is in a file."""
+    if not path.exists():
+        path.write_text(text)
+    source = read_program(path)
+    program = Program(name=source.name, text=source.text, prelude=source.prelude, path=source.path)
+    spec = build_run_spec(Settings(background="Empty_Map"))
+    return AppSettings(spec=spec, program=program, background="Empty_Map")
+
+
+async def begun(pilot: Pilot[Any]) -> tuple[Lab, Code]:
+    app = await ready(pilot)
+    await until(pilot, lambda: app.desk.code is not None)
+    assert app.desk.code is not None
+    return app, app.desk.code
+
+
+async def typed(pilot: Pilot[Any], code: Code, *keys: str) -> None:
+    """Type at the start of the text."""
+    await pilot.press("E")
+    await until(pilot, lambda: code.typing)
+    await pilot.press(*keys)
+    await pilot.pause()
+
+
+async def asked(pilot: Pilot[Any]) -> Question:
+    await until(pilot, lambda: isinstance(pilot.app.screen, Question))
+    await pilot.pause()
+    assert isinstance(pilot.app.screen, Question)
+    return pilot.app.screen
+
+
+async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, *"print", "left_parenthesis", "7", "right_parenthesis", "enter")
+        assert str(code.border_title) == "Code: prog.py • edited"
+        await pilot.press("ctrl+r")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await pilot.pause()
+        assert app.bridge.timeline.recording is not None
+        assert app.bridge.timeline.recording.program.text == "print(7)\n" + TEXT
+        assert path.read_text() == TEXT
+        await pilot.press("ctrl+s")
+        await pilot.pause()
+        assert path.read_text() == "print(7)\n" + TEXT
+        assert str(code.border_title) == "Code: prog.py"
+        assert find_draft(str(path)) is None
+
+
+async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "enter", "i", "f", "space", "ctrl+s")
+        assert path.read_text() == "\nif " + TEXT
+        assert any("line 2" in text and "is saved" in text for text in notices(app))
+        assert "✗ 2 if print" in screen_text(app)
+
+
+async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    example = programs()[0]
+    before = example.path.read_bytes()
+    async with Lab(own(example.path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "#", "enter", "ctrl+s")
+        await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
+        await pilot.press("enter")
+        await until(pilot, lambda: not isinstance(app.screen, ProgramDialog))
+        assert (tmp_path / example.name).read_bytes() == b"#\n" + before
+        assert example.path.read_bytes() == before
+        assert app.bridge.program is not None
+        assert app.bridge.program.path == str(tmp_path / example.name)
+
+
+async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None:
+    async with Lab(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape", "escape")
+        await pilot.press("ctrl+s")
+        await until(pilot, lambda: "Save the world" in screen_text(app))
+
+
+@pytest.mark.parametrize(
+    ("answer", "in_file", "left"),
+    [("s", "x" + TEXT, True), ("d", TEXT, True), ("escape", TEXT, False)],
+    ids=["save", "discard", "stay"],
+)
+async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, left: bool, tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape", "escape", "q")
+        await asked(pilot)
+        await pilot.press(answer)
+        await pilot.pause()
+        assert path.read_text() == in_file
+        assert app._exit is left
+    assert (find_draft(str(path)) is None) is left
+
+
+async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path) -> None:
+    path, other = tmp_path / "prog.py", tmp_path / "other.py"
+    other.write_text("print('other')\n")
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape")
+        app.loading.open_file(str(other))
+        await asked(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: "print('other')" in screen_text(app))
+        assert path.read_text() == TEXT
+        assert not app.work.dirty
+
+
+@pytest.mark.parametrize(
+    ("answer", "shown", "kept"),
+    [("r", "draft = 1\n", True), ("d", TEXT, False), ("escape", TEXT, True)],
+    ids=["restore", "discard", "later"],
+)
+async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    keep_draft(str(path), "draft = 1\n")
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await asked(pilot)
+        assert "3 lines differ" in screen_text(app)
+        await pilot.press(answer)
+        await pilot.pause()
+        assert code.query_one(CodeArea).program_text == shown
+        assert app.work.dirty is (answer == "r")
+    assert (find_draft(str(path)) is not None) is kept
+
+
+async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x")
+        await until(pilot, lambda: find_draft(str(path)) is not None)
+        await pilot.press("ctrl+z")
+        await until(pilot, lambda: find_draft(str(path)) is None)
+        assert not app.work.dirty
+
+
+@pytest.mark.parametrize(("answer", "shown"), [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"])
+async def test_a_file_that_changes_under_unsaved_edits(answer: str, shown: str, tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape")
+        path.write_text("other = 1\n")
+        app.loading.look()
+        await asked(pilot)
+        await pilot.press(answer)
+        await pilot.pause()
+        assert code.query_one(CodeArea).program_text == shown
+        assert app.work.dirty is (answer == "k")
+
+
+async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
+    async with Lab(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape")
+        app.loading.change_mat("Grey_bands")
+        await pilot.pause()
+        assert code.query_one(CodeArea).program_text == "x" + TEXT
+        assert app.work.dirty
+
+
+async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    async with Lab(settings(speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await pilot.press("ctrl+t")
+        await until(pilot, lambda: code.typing)
+        assert code.query_one(CodeArea).program_text == TEMPLATE
+        await pilot.press("f5")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        assert app.bridge._end == "finished"
+        await pilot.press("ctrl+s")
+        await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
+        await pilot.press("enter")
+        await until(pilot, lambda: (tmp_path / "new.py").exists())
+        assert (tmp_path / "new.py").read_text() == TEMPLATE
+
+
+async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    text = "%%sim_magic_preloaded -x 300\nprint('A: 1')\n"
+    async with Lab(own(path, text)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        assert "%%sim_magic_preloaded -x 300" in screen_text(app)
+        await typed(pilot, code, *["right"] * 25, "delete", "5", "escape")
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        assert app.bridge.timeline.recording is not None
+        assert app.bridge.timeline.recording.spec.world.start.x_mm == 500
+
+
+async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: "▶" in screen_text(app))
+        await typed(pilot, code, "#", "enter", "ctrl+s")
+        await until(pilot, lambda: "running text differs" in screen_text(app))
+        assert path.read_text().startswith("#\n# %%")
+        assert "▶ 4" not in screen_text(app)
+        app.bridge.stop()
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: "running text differs" not in screen_text(app))
+
+
+async def test_a_file_that_may_not_be_written_is_saved_elsewhere(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        path.chmod(0o444)
+        if os.access(path, os.W_OK):
+            # The superuser may write it all the same, and does.
+            await typed(pilot, code, "x", "ctrl+s")
+            assert path.read_text() == "x" + TEXT
+            return
+        await typed(pilot, code, "x", "ctrl+s")
+        await until(pilot, lambda: isinstance(app.screen, ProgramDialog))

@@ -1,0 +1,88 @@
+"""Colours of Python text, line by line, so that an edit costs no more than the lines that it changes.
+
+All that one line has to know of those above is whether it begins in a string of three
+quotes. So the state before each line is kept, and an edit is followed only until the
+states agree again.
+"""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+import re
+from collections.abc import Sequence
+
+Span = tuple[int, int, str]
+"""Start and end in characters, and one of `KINDS`."""
+
+KINDS = ("keyword", "string", "comment", "number", "name")
+
+_BUILTINS = frozenset(name for name in dir(builtins) if not name.startswith("_"))
+_TOKEN = re.compile(
+    r"""
+    (?P<comment>\#.*)
+    | (?P<triple>[rRbBuUfF]{0,2}(?:\"\"\"|'''))
+    | (?P<string>[rRbBuUfF]{0,2}(?:"(?:[^"\\]|\\.)*(?:"|\\?$)|'(?:[^'\\]|\\.)*(?:'|\\?$)))
+    | (?P<number>\b(?:0[xXoObB][\da-fA-F_]+|\d[\d_]*\.?[\d_]*(?:[eE][+-]?\d+)?[jJ]?)|\B\.\d[\d_]*(?:[eE][+-]?\d+)?)
+    | (?P<word>[^\W\d]\w*)
+    """,
+    re.VERBOSE,
+)
+_CLOSING = {quote: re.compile(rf"(?:[^\\]|\\.)*?{quote}") for quote in ('"""', "'''")}
+
+
+def spans(line: str, before: str = "") -> tuple[list[Span], str]:
+    """Return the coloured parts of a line, and the state after it.
+
+    Args:
+        line: Without its line end.
+        before: The quotes of the string that the line begins in, empty if in none.
+    """
+    found: list[Span] = []
+    at = 0
+    state = before
+    named = False
+    while True:
+        if state:
+            closed = _CLOSING[state].match(line, at)
+            start = found.pop()[0] if found and found[-1][1] == at and found[-1][2] == "string" else at
+            end = closed.end() if closed else len(line)
+            if end > start:
+                found.append((start, end, "string"))
+            if not closed:
+                return found, state
+            at, state = end, ""
+        match = _TOKEN.search(line, at)
+        if match is None:
+            return found, ""
+        at, kind = match.end(), str(match.lastgroup)
+        if kind == "triple":
+            state = match.group()[-3:]
+            kind = "string"
+        elif kind == "word":
+            word = match.group()
+            kind = "keyword" if keyword.iskeyword(word) else "name" if named or word in _BUILTINS else ""
+            named = word in ("def", "class")
+        if kind:
+            found.append((match.start(), at, kind))
+
+
+class Colouring:
+    """The states before each line of a text that is being edited."""
+
+    def __init__(self) -> None:
+        self._before: list[str] = [""]
+
+    def forget(self, line: int) -> None:
+        """A line, from 0, and perhaps those below have changed."""
+        del self._before[line + 1 :]
+
+    def of(self, lines: Sequence[str], line: int) -> list[Span]:
+        """Return the coloured parts of one line, from 0."""
+        before = self._before
+        while len(before) <= line:
+            above = lines[len(before) - 1]
+            # Most lines have no quotes of three and need no closer look.
+            plain = '"""' not in above and "'''" not in above
+            before.append(before[-1] if plain else spans(above, before[-1])[1])
+        return spans(lines[line], before[line])[0]

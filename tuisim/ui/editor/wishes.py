@@ -1,0 +1,52 @@
+"""What the code panel asks of the app, and what the editor's keys do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from textual.app import App
+
+from tuisim.ui.editor.work import Work
+
+if TYPE_CHECKING:
+    from tuisim.ui.app import Lab
+    from tuisim.ui.panels.code import Code
+
+
+class EditorWishes(App[None]):
+    """The part of the app that answers the code panel; Textual finds the methods by their names."""
+
+    work: Work
+
+    def on_code_edited(self, message: Code.Edited) -> None:
+        """The text was changed."""
+        self.work.edited(message.text)
+
+    def on_code_wanted(self, message: Code.Wanted) -> None:
+        """A key of the editor was pressed."""
+        match message.what:
+            case "save":
+                self.work.save()
+            case "run":
+                cast("Lab", self).action_act("run")
+            case _:
+                cast("Lab", self).say("No program to edit: o opens one, ctrl+t begins a new one")
+
+
+def edit(lab: Lab) -> None:
+    """Show the code, and let letters go into it."""
+    if not lab.desk.shown("code"):
+        lab.desk.toggle("code")
+    lab.call_after_refresh(_type, lab)
+
+
+def _type(lab: Lab) -> None:
+    if lab.desk.shown("code") and (code := lab.desk.code):
+        code.start_typing()
+
+
+def new_program(lab: Lab) -> None:
+    """Begin a new program in the code panel."""
+    if not lab.desk.shown("code"):
+        lab.desk.toggle("code")
+    lab.call_after_refresh(lab.work.new)
