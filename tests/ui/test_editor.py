@@ -186,7 +186,7 @@ async def begun(pilot: Pilot[Any]) -> tuple[Lab, Code]:
 
 async def typed(pilot: Pilot[Any], code: Code, *keys: str) -> None:
     """Type at the start of the text."""
-    await pilot.press("E")
+    await pilot.press("d")
     await until(pilot, lambda: code.typing)
     await pilot.press(*keys)
     await pilot.pause()
@@ -242,6 +242,20 @@ async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch:
         assert example.path.read_bytes() == before
         assert app.bridge.program is not None
         assert app.bridge.program.path == str(tmp_path / example.name)
+
+
+async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path) -> None:
+    async with Lab(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.size.height > 20)
+        assert not app.desk.shown("world")
+        await pilot.press("x", "escape")
+        await until(pilot, lambda: app.desk.shown("world"))
+        assert app.desk.shown("code")
+        await pilot.press("d", "ctrl+r")
+        await until(pilot, lambda: app.bridge.state == ENDED and app.desk.shown("world"))
+        assert app.work.dirty
 
 
 async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None:

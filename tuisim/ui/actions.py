@@ -179,7 +179,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("back", "comma", "One tick back", TIME, travel.tick_back, _can_look_back, "back"),
         *_travels(),
         Action("open", "o", "Open a program or a world", FILES, verbs.open_program, _can_change_world, "open"),
-        Action("edit", "E", "Edit the program", FILES, editor.edit, footer="edit"),
+        Action("edit", "d", "Edit the program", FILES, editor.edit, footer="edit"),
         Action("new", "ctrl+t", "New program", FILES, editor.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, verbs.choose_mat, _can_change_world, "mats"),
         Action("home", "m", "Robot back to its start", ROBOT, verbs.home, footer="start"),

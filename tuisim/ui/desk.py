@@ -48,6 +48,8 @@ class Desk(Container):
         asked = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
         self._asked = {panel: asked[panel] for panel in PANELS if panel in asked}
         """What was asked for, the latest last."""
+        self._alone = ""
+        """Id of the panel that has the whole place, empty for none."""
         self._left_out: tuple[str, ...] = ()
 
     # A hidden panel still takes what it is fed; one never shown is None.
@@ -92,6 +94,7 @@ class Desk(Container):
 
     def toggle(self, panel: str) -> None:
         """Show a panel, or hide it; one asked for is given room before the others."""
+        self._alone = ""
         show = not self.shown(panel)
         self._asked.pop(panel, None)
         self._asked[panel] = show
@@ -106,8 +109,16 @@ class Desk(Container):
             names = ", ".join(f"{info.title} ({info.key})" for info in gone)
             self.app.notify(f"{title} takes the room of {names}")
 
+    def give_all(self, panel: str) -> None:
+        """Let one panel have the whole place; with an empty id the others are back."""
+        if panel != self._alone:
+            self._alone = panel
+            self.lay_out()
+
     def _wanted(self) -> list[str]:
         """Ids of the panels to show, the most wanted first."""
+        if self._alone:
+            return [self._alone]
         size = size_class(self.size.width, self.size.height + 1)
         asked = [panel for panel, on in reversed(self._asked.items()) if on]
         rest = [info.id for info in PANELS.values() if size in info.sizes and info.id not in self._asked]

@@ -10,13 +10,25 @@ from tuisim.ui.editor.work import Work
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
+    from tuisim.ui.desk import Desk
     from tuisim.ui.panels.code import Code
+
+ROOMY_ROWS = 12
+"""A code panel of fewer rows grows while one types."""
 
 
 class EditorWishes(App[None]):
     """The part of the app that answers the code panel; Textual finds the methods by their names."""
 
     work: Work
+    desk: Desk
+
+    def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
+        """While one types, a panel of a few lines has the whole place."""
+        if not message.typing:
+            self.desk.give_all("")
+        elif self.desk.code and self.desk.code.size.height < ROOMY_ROWS:
+            self.desk.give_all("code")
 
     def on_code_edited(self, message: Code.Edited) -> None:
         """The text was changed."""
@@ -28,6 +40,8 @@ class EditorWishes(App[None]):
             case "save":
                 self.work.save()
             case "run":
+                # The robot is to be seen.
+                self.desk.give_all("")
                 cast("Lab", self).action_act("run")
             case _:
                 cast("Lab", self).say("No program to edit: o opens one, ctrl+t begins a new one")

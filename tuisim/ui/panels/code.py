@@ -45,6 +45,13 @@ class Code(Vertical):
             super().__init__()
             self.what = what
 
+    class TypingChanged(Message):
+        """Letters go into the text from now on, or no more."""
+
+        def __init__(self, typing: bool) -> None:
+            super().__init__()
+            self.typing = typing
+
     class BreakpointToggled(Message):
         """The number of a line, from 1, was clicked on."""
 
@@ -180,14 +187,18 @@ class Code(Vertical):
         if not self._key:
             self.post_message(self.Wanted("new"))
             return
-        self._area.read_only = False
         self._area.focus()
-        self._say()
+        self._type(True)
 
     def stop_typing(self) -> None:
         """Let letters be the app's keys again."""
-        self._area.read_only = True
-        self._say()
+        self._type(False)
+
+    def _type(self, typing: bool) -> None:
+        if typing != self.typing:
+            self._area.read_only = not typing
+            self._say()
+            self.post_message(self.TypingChanged(typing))
 
     def on_text_area_changed(self, event: TextArea.Changed) -> None:
         """Tell of an edit."""
