@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim import assets
+from tuisim.breaks import parse_breaks
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView
@@ -76,6 +77,12 @@ class RunOptions:
     """Whether input() asks the user when there are no scripted answers left; otherwise that is the end of the input."""
     actions: tuple[ScriptedAction, ...] = ()
     """User actions that are known already, in the order of their ticks."""
+    breaks: tuple[str, ...] = ()
+    """Where the run is to hold from the start, in the language of `tuisim.breaks`."""
+    trace_from_tick: int | None = None
+    """Count lines from here on, so that `LineHistory` knows them; until the run first stands still."""
+    hold_at: tuple[int, int] | None = None
+    """Run at full speed to this instant and hold: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
 
     def to_plain(self) -> dict[str, Any]:
         """Return the options as they are stored with a run."""
@@ -389,4 +396,5 @@ def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunSt
         BackgroundError: there is no such mat.
         LogError: the run cannot be stored.
     """
+    parse_breaks(options.breaks, spec.robot)
     return RunHandle(program, spec, field_files(spec), options, store or RunStore())

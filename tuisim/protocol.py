@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
+from tuisim.breaks import parse_breaks
 from tuisim.errors import ConfigError
 from tuisim.held import FrameState, MetLine, ThreadState, Variable, Watched
 
@@ -109,8 +110,9 @@ class SetBreaks(Message):
     """Texts in the language of `tuisim.breaks`; switched-off ones are passed over."""
 
     def __post_init__(self) -> None:
-        # A pipe brings a list.
+        # A pipe brings a list. What cannot be read is refused where it is made, not in the child.
         object.__setattr__(self, "breaks", tuple(self.breaks))
+        parse_breaks(self.breaks)
 
 
 @dataclass(frozen=True, slots=True)

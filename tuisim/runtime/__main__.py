@@ -8,7 +8,7 @@ from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - its import is al
 import os
 import sys
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from tuisim import protocol
 from tuisim.core.extra_motors import simulation_of
@@ -25,6 +25,11 @@ from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.output import Output
 from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
 from tuisim.runtime.steering import Steering
+
+if TYPE_CHECKING:
+    from tuisim.runtime.baton import Baton
+    from tuisim.runtime.debugger.debugger import Debugger
+    from tuisim.runtime.program import ProgramRunner
 
 LOOP_TURNS = 500
 LOOP_COST_NS = 5_000_000
@@ -81,8 +86,8 @@ class Child:
         patch_time(session)
         patch_datetime(session, session.program_file)
         patch_urandom(self._config.spec.seed)
-        patch_threads(baton)
         refuse_processes()
+        patch_threads(baton)
         limit_memory()
         install(
             session,
@@ -98,6 +103,7 @@ class Child:
             self._end(outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line)
 
         runner = ProgramRunner(self._config, session, self._output, baton, turn, leave)
+        session.make_debugger = lambda: _debugger(session, baton, runner)
         interrupts.install(self._folder)
         self._channel.send(protocol.Started(protocol.PROTOCOL_VERSION, os.getpid()))
         leave(runner.run())
@@ -109,6 +115,12 @@ class Child:
             protocol.Ended(end, self._sim.tick, self._session.now, exit_code, summary, error, error_line)
         )
         real.exit_process(0)
+
+
+def _debugger(session: Session, baton: Baton, runner: ProgramRunner) -> Debugger:
+    from tuisim.runtime.debugger.debugger import Debugger
+
+    return Debugger(session, baton, runner.names, runner.prepared)
 
 
 main(sys.argv[1:])

@@ -24,9 +24,13 @@ FOREVER = -1
 class Task:
     """One thread of the program."""
 
-    __slots__ = ("daemon", "done", "free", "gate", "joiners", "on_change", "order", "pending", "wake_ns", "woken")
+    __slots__ = (
+        "daemon", "done", "free", "gate", "ident", "joiners", "on_change", "order", "pending", "wake_ns", "woken",
+    )  # fmt: skip
 
     def __init__(self, daemon: bool) -> None:
+        self.ident = 0
+        """Python's number of the thread, once it runs."""
         self.gate = real.allocate_lock()
         self.gate.acquire()
         self.daemon = daemon
@@ -54,7 +58,10 @@ class Baton:
     def __init__(self, session: Session, parked: Callable[[bool], None]) -> None:
         self._session = session
         self._parked = parked
+        self.entered: Callable[[], None] | None = None
+        """Called in each thread when it begins to run, or runs again."""
         self.main = Task(daemon=False)
+        self.main.ident = real.get_ident()
         self.current = self.main
         self._ready: deque[Task] = deque()
         self._timed: list[tuple[int, int, Task]] = []
@@ -95,6 +102,8 @@ class Baton:
         me.free, session.free = session.free, 0
         self._hand_over(me)
         session.free = me.free
+        if self.entered is not None:
+            self.entered()
         if me.pending is not None:
             pending, me.pending = me.pending, None
             raise pending
@@ -163,6 +172,15 @@ class Baton:
         self.main.order = 0
         return self.main
 
+    def hand_to_main(self, stop: StopProgram) -> None:
+        """Let the main thread run next and be stopped: the current one is about to end."""
+        self._ready.appendleft(self._send_to_main(stop))
+
+    @property
+    def tasks(self) -> tuple[Task, ...]:
+        """Every thread that is not over, the main one first."""
+        return (self.main, *self._alive)
+
     def _leave_if_stopping(self, me: Task) -> None:
         reason = self._session.stop_reason
         if me is not self.main and reason is not None:
@@ -181,7 +199,10 @@ class Baton:
 
         def run() -> None:
             task.gate.acquire()
+            task.ident = real.get_ident()
             try:
+                if self.entered is not None:
+                    self.entered()
                 function()
             except StopProgram:
                 # The main thread tells why the run stopped; this one just goes.

@@ -29,6 +29,14 @@ class RunConfig:
     answers: tuple[str, ...]
     asks_user: bool
     actions: tuple[ScriptedAction, ...]
+    breaks: tuple[str, ...]
+    trace_from_tick: int | None
+    hold_at: tuple[int, int] | None
+
+    @property
+    def debugged(self) -> bool:
+        """Whether the debugger is wanted from the first line on."""
+        return bool(self.breaks) or self.trace_from_tick is not None or self.hold_at is not None
 
 
 def read_config(folder: Path) -> RunConfig:
@@ -54,4 +62,7 @@ def read_config(folder: Path) -> RunConfig:
         answers=tuple(options["answers"]),
         asks_user=options["asks_user"],
         actions=tuple(ScriptedAction.from_plain(row) for row in options["actions"]),
+        breaks=tuple(options["breaks"]),
+        trace_from_tick=options["trace_from_tick"],
+        hold_at=None if options["hold_at"] is None else (int(options["hold_at"][0]), int(options["hold_at"][1])),
     )

@@ -40,6 +40,8 @@ def refuse_processes() -> None:
     for name in _PROCESS_CALLS:
         if hasattr(os, name):
             setattr(os, name, _refusal(f"os.{name}"))
+    # The debugger forks to look at values: nothing of the program's may run then.
+    os.register_at_fork = lambda **_functions: None
 
 
 def refuse_subprocess(module: types.ModuleType) -> None:

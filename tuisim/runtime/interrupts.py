@@ -77,6 +77,9 @@ class Interrupts:
     def _on_command(self, _number: int, frame: types.FrameType | None) -> None:
         session = self._session
         session.slow |= ATTENTION
+        if session.steering.holding:
+            # Commands are waited for, maybe in another thread: it takes them from the pipe itself.
+            return
         if self._may_raise(frame):
             try:
                 session.checkpoint()

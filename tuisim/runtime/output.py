@@ -21,11 +21,15 @@ class Output:
         self.place: Callable[[], tuple[int, int, int]] = lambda: (0, 0, 0)
         """Gives tick, simulated ns and source line; set once the session exists."""
         self.after_write: Callable[[], None] = lambda: None
+        self.watch: Callable[[str, int], None] | None = None
+        """Called with text and stream of each row that was written, where somebody waits for one."""
 
     def row(self, text: str, stream: int) -> None:
         """Write one row."""
         tick, now, line = self.place()
         self._writer.write(text.encode("utf-8", "replace"), tick, now, line, stream)
+        if self.watch is not None:
+            self.watch(text, stream)
 
     def close(self) -> None:
         """Cut the file to its size."""

@@ -62,6 +62,10 @@ class ProgramRunner:
         self._answers = list(config.answers)
         self.stdout, self.stderr = LineStream(output), LineStream(output, STDERR)
         self._module = types.ModuleType("__main__")
+        self.prepared: dict[str, int] = {}
+        """By name, the identity of what the prelude has made."""
+        self.names = self._module.__dict__
+        """The program's global names."""
         self._builtins: Any = builtins
         setattr(builtins, LOOP_HOOK, loop_hook)
 
@@ -74,9 +78,20 @@ class ProgramRunner:
             outcome = Outcome("finished")
         except BaseException as error:  # whatever a program lets escape is an outcome, not an error of ours
             outcome = self._outcome_of(error)
+        outcome = self._hold_at_end(outcome)
         self._wind_up()
         self.stdout.finish()
         self.stderr.finish()
+        return outcome
+
+    def _hold_at_end(self, outcome: Outcome) -> Outcome:
+        """Let the debugger hold a program that is over before the instant that was wanted."""
+        if self._session.debugger is None or self._session.stop_reason is not None:
+            return outcome
+        try:
+            self._session.debugger.at_end()
+        except StopProgram as stop:
+            return Outcome(stop.end, 0, stop.summary)
         return outcome
 
     def _wind_up(self) -> None:
@@ -109,9 +124,12 @@ class ProgramRunner:
         self._session.free += 1
         exec(compile_prelude(self._config.prelude), module.__dict__)
         self._session.free -= 1
+        self.prepared |= {name: id(value) for name, value in module.__dict__.items()}
         # What is there now stays; the program's own garbage is looked for from here on.
         gc.freeze()
         gc.enable()
+        if self._config.debugged:
+            self._session.debug().begin(self._config)
         exec(code, module.__dict__)
 
     # Ends

@@ -36,7 +36,7 @@ def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
 
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     told = traceback.TracebackException.from_exception(error, compact=True)
-    _keep_program_frames(told, _own_files(file))
+    _keep_program_frames(told, own_files(file))
     text = "".join(told.format())
     for name in _OUR_NAMES:
         text = text.replace(name, "")
@@ -55,8 +55,8 @@ def _summary(told: traceback.TracebackException) -> str:
     return only[-1] if only[0].startswith("File ") else only[0]
 
 
-def _own_files(file: str) -> Callable[[str], bool]:
-    """Return which files are the program's: itself, and modules that lie beside it."""
+def own_files(file: str) -> Callable[[str], bool]:
+    """Return a function that says which files are the program's: itself, and modules that lie beside it."""
     folder = os.path.dirname(os.path.abspath(file)) + os.sep
     foreign = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
 

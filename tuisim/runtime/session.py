@@ -21,13 +21,14 @@ from tuisim.protocol import Spoke
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.halt import StopProgram
 from tuisim.runtime.output import Output
-from tuisim.runtime.steering import Steering
+from tuisim.runtime.steering import LIVE, Steering
 
 if TYPE_CHECKING:
     from tuisim.core.marks import PenMarks
+    from tuisim.runtime.debugger.debugger import Debugger
 
-LIVE, ATTENTION, THREADS, STOPPING = 1, 2, 4, 8
-"""Bits of `Session.slow`: the steering is asked before ticks, a command waits, more than one thread, unwinding."""
+ATTENTION, THREADS, STOPPING, DEBUG = 2, 4, 8, 16
+"""Further bits of `Session.slow`: a command waits, more than one thread, unwinding, tracing has been switched."""
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
@@ -98,6 +99,9 @@ class Session:
         self._commands, self._commands_at = 0, -1
         self.stop_reason: StopProgram | None = None
         self._stop_raised_at: int | None = None
+        self.debugger: Debugger | None = None
+        self.make_debugger: Callable[[], Debugger] | None = None
+        """Set once there is a program to debug."""
         self.sleep_threaded: Callable[[int, bool], None] | None = None
         """Set by the baton: waits until a time (or a motor change) while other threads run."""
 
@@ -177,6 +181,9 @@ class Session:
     def _pass(self, until: int, on_change: bool) -> None:
         if self.slow & (ATTENTION | STOPPING):
             self.checkpoint()
+        if self.slow & DEBUG:
+            self.slow &= ~DEBUG
+            self.debug().enter()
         if until > self.now:
             self.sim.line = self.program_line()
         if self.slow & THREADS and self.sleep_threaded is not None:
@@ -233,9 +240,18 @@ class Session:
             self.now = max(self.now, sim.due_ns(sim.tick))
             ticks = steering.before_ticks(self, target - sim.tick)
             sim.advance(ticks, on_change)
+            if steering.debugged:
+                self.debug().after_ticks()
             if on_change and sim.changed:
                 return True
         return False
+
+    def debug(self) -> Debugger:
+        """Return the debugger, which is made when it is first wanted."""
+        if self.debugger is None:
+            assert self.make_debugger is not None
+            self.debugger = self.make_debugger()
+        return self.debugger
 
     # Stopping
 

@@ -16,13 +16,15 @@ from typing import TYPE_CHECKING
 from tuisim import protocol
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
-from tuisim.protocol import Message, ScriptedAction
+from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, ScriptedAction
 from tuisim.runtime import real
 from tuisim.runtime.channel import Channel
 
 if TYPE_CHECKING:
     from tuisim.runtime.session import Session
 
+LIVE = 1
+"""Bit of `Session.slow`: the steering is asked before ticks."""
 ACTIONS_FILE = "actions.jsonl"
 SLICE_S = 0.02
 """Longest uninterrupted real wait."""
@@ -57,6 +59,15 @@ class Steering:
         self._steps = 0
         self._anchor: tuple[float, int] | None = None
         self._waiting: deque[Message] = deque()
+        self._reason = "asked"
+        self._rushing = False
+        """Whether the pace is left aside until the run stands still."""
+        self.debugged = False
+        """Whether the debugger is to be asked before and after ticks."""
+        self.holding = False
+        """Whether the run stands still and commands are waited for."""
+        self.between_ticks = False
+        """While it stands still: whether no code of the program runs before the next tick, or since the last."""
         self._actions_fd = -1
         self._stop_asked_at: float | None = None
         self.answers: deque[str | None] = deque()
@@ -71,15 +82,28 @@ class Steering:
                 case protocol.Stop():
                     session.ask_stop("stopped", "stopped")
                 case protocol.Pause():
-                    self._paused, self._steps = True, 0
+                    self._paused, self._steps, self._reason = True, 0, "asked"
+                    self._forget_goals(session)
                 case protocol.Resume():
                     self._paused, self._steps = False, 0
                 case protocol.StepTicks(ticks=ticks):
-                    self._steps += max(0, ticks)
+                    self._steps, self._reason = self._steps + max(0, ticks), "ticks"
+                    self._forget_goals(session)
                 case protocol.SetSpeed(speed=speed):
                     self._speed, self._anchor = max(0.0, speed), None
-                case _:
+                case _ if isinstance(command, protocol.ACTIONS):
                     self._waiting.append(command)
+                case _:
+                    session.debug().take(command)
+
+    def let_on(self, at_full_speed: bool = False) -> None:
+        """Let the run go on, to the next moment at which the debugger holds it."""
+        self._paused, self._steps, self._rushing = False, 0, at_full_speed
+
+    @staticmethod
+    def _forget_goals(session: Session) -> None:
+        if session.debugger is not None:
+            session.debugger.forget_goals()
 
     def stop_asked(self) -> None:
         """Begin the grace time."""
@@ -93,8 +117,8 @@ class Steering:
 
     @property
     def wanted(self) -> bool:
-        """Whether it must be asked before ticks: the run is live, or actions are still to come."""
-        return self.live or bool(self._script)
+        """Whether it must be asked before ticks: the run is live, actions are still to come, or the debugger asks."""
+        return self.live or self.debugged or bool(self._script)
 
     def before_ticks(self, session: Session, most: int) -> int:
         """Wait until ticks may be done.
@@ -117,22 +141,43 @@ class Steering:
         if self._script:
             # The next one must find its tick.
             most = min(most, self._script[0].tick - session.sim.tick)
+        if self.debugged:
+            debugger = session.debug()
+            debugger.before_tick()
+            most = debugger.most_ticks(most)
         if self._paused and not self._steps:
-            self._hold(session)
+            sim = session.sim
+            self.hold(session, protocol.Paused(sim.tick, session.now, sim.line, self._reason))
+            session.checkpoint()
         if self._steps:
             self._steps -= 1
             return 1
-        if not self._speed:
+        if not self._speed or self._rushing:
             return min(most, FAST_SLICE_TICKS)
         return self._pace(session, most)
 
-    def _hold(self, session: Session) -> None:
-        self._channel.send(protocol.Paused(session.sim.tick, session.now, session.sim.line))
+    def hold(self, session: Session, moment: protocol.Paused) -> None:
+        """Stand still until told to go on, or to stop.
+
+        Args:
+            session: The run.
+            moment: Where it stands. User actions take effect at once only right before a tick.
+        """
+        # From now on it is steered, however it began.
+        self.live, session.slow = True, session.slow | LIVE
+        self._paused, self._steps, self._rushing = True, 0, False
+        self.holding, self.between_ticks = True, moment.ordinal in (AFTER_TICK, BEFORE_NEXT_TICK)
+        self._channel.send(moment)
         while self._paused and not self._steps and session.stop_reason is None:
             self._channel.wait(1.0)
             self.receive(session)
-            self._apply_actions(session)
-        session.checkpoint()
+            if moment.ordinal == BEFORE_NEXT_TICK:
+                self._apply_actions(session)
+            if session.debugger is not None:
+                session.debugger.answer()
+        self.holding = False
+        if session.debugger is not None:
+            session.debugger.go_on()
         self._anchor = None
         if not self._paused:
             self._channel.send(protocol.Resumed())

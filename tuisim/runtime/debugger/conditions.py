@@ -1,0 +1,57 @@
+"""Conditions of breaks: at once where nothing of the program's own can run, otherwise in a copy of the process."""
+
+from __future__ import annotations
+
+import ast
+import types
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tuisim.runtime.debugger.rendering import evaluate_truth
+
+_SCALARS = (bool, int, float, str, types.NoneType)
+_PLAIN_NODES = (
+    ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd, ast.BinOp, ast.Add, ast.Sub,
+    ast.Div, ast.FloorDiv, ast.Mod, ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Is, ast.IsNot,
+    ast.Name, ast.Load, ast.Constant,
+)  # fmt: skip
+
+Apart = Callable[[Callable[[], bytes]], bytes | None]
+
+
+class Condition:
+    """The condition of one break.
+
+    Args:
+        text: An expression, already known to be one.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        tree = ast.parse(text, mode="eval")
+        nodes = list(ast.walk(tree))
+        self._code = compile(tree, "<break>", "eval", dont_inherit=True)
+        self._names = tuple({node.id for node in nodes if isinstance(node, ast.Name)})
+        # Of text, % and + with their like can make no more than what is there, * and ** could.
+        self._plain = all(isinstance(node, _PLAIN_NODES) for node in nodes)
+
+    def holds(self, frame: types.FrameType, apart: Apart) -> str:
+        """Return why the run is to hold, empty if it is not to.
+
+        Args:
+            frame: Where the expression is evaluated.
+            apart: Does something in a copy of the process.
+        """
+        names: Mapping[str, Any] = frame.f_locals
+        if self._plain and type(names) is dict:
+            values = {name: names.get(name, frame.f_globals.get(name, self)) for name in self._names}
+            if all(type(value) in _SCALARS for value in values.values()):
+                return self._at_once(values)
+        answer = apart(lambda: evaluate_truth(self._text, {**frame.f_globals, **names}, frame.f_builtins).encode())
+        return "takes too long" if answer is None else answer.decode()[1:]
+
+    def _at_once(self, values: dict[str, Any]) -> str:
+        try:
+            return "is true" if eval(self._code, {"__builtins__": {}}, values) else ""
+        except Exception as error:  # an expression can fail in any way; that is worth holding for
+            return f"cannot be evaluated: {type(error).__name__}: {error}"

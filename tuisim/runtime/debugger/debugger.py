@@ -1,0 +1,273 @@
+"""The debugger of one run: what its commands do, and when the run is to hold."""
+
+from __future__ import annotations
+
+import sys
+import types
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from tuisim import protocol
+from tuisim.breaks import Break, LineBreak, parse_breaks
+from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused
+from tuisim.runtime.baton import Baton
+from tuisim.runtime.debugger.apart import apart
+from tuisim.runtime.debugger.conditions import Condition
+from tuisim.runtime.debugger.looking import Looker
+from tuisim.runtime.debugger.stepping import NEXT_LINE, Step, step_from
+from tuisim.runtime.debugger.tracer import Tracer
+from tuisim.runtime.debugger.watching import Watcher
+from tuisim.runtime.halt import StopProgram
+from tuisim.runtime.session import DEBUG, Session
+from tuisim.runtime.steering import LIVE
+
+if TYPE_CHECKING:
+    from tuisim.runtime.config import RunConfig
+
+CONDITION_LIMIT_S = 0.2
+"""Real seconds that a condition gets."""
+
+Instant = tuple[int, int]
+"""Tick and ordinal."""
+
+
+class Debugger:
+    """Everything the debugger knows of a run.
+
+    Args:
+        session: The run.
+        baton: Its threads.
+        module: Gives the global names of the program.
+        prepared: By name, the identity of what was there before the program.
+    """
+
+    def __init__(self, session: Session, baton: Baton, module: Mapping[str, Any], prepared: Mapping[str, int]) -> None:
+        self._session, self._baton = session, baton
+        self._tracer = Tracer(session, baton, self._at_line)
+        self._looker = Looker(session, baton, self._tracer, module, prepared)
+        self._watcher = Watcher(session)
+        self._by_line: dict[int, list[tuple[Break, Condition | None]]] = {}
+        self._step: Step | None = None
+        self._line = 0
+        self._instant: Instant | None = None
+        self._trace_from: int | None = None
+        self._looks: list[Message] = []
+
+    def begin(self, config: RunConfig) -> None:
+        """Take over what is known before the program's first line."""
+        self._set_breaks(parse_breaks(config.breaks))
+        self._trace_from = config.trace_from_tick
+        if config.hold_at is not None:
+            self._set_instant(*config.hold_at)
+            self._session.steering.let_on(at_full_speed=True)
+        self._trace(at_tick=True)
+        self._tell_session()
+        if self._instant == (0, AFTER_TICK):
+            self._hold(Paused(0, 0, 0, "instant", ordinal=AFTER_TICK))
+
+    # Commands
+
+    def take(self, command: Message) -> None:
+        """Do what a command asks; the caller sees to pausing and going on."""
+        steering = self._session.steering
+        match command:
+            case protocol.StepLine(how=how):
+                self._forget_goals()
+                # A run that stands still waits for commands in the thread that was held.
+                depth = self._tracer.depth_of(sys._getframe())
+                self._step = step_from(how, self._baton.current, depth) if steering.holding else NEXT_LINE
+                steering.let_on()
+            case protocol.RunToLine(line=line):
+                self._forget_goals()
+                self._line = line
+                steering.let_on()
+            case protocol.RunToInstant(tick=tick, ordinal=ordinal):
+                self._forget_goals()
+                self._set_instant(tick, ordinal)
+                steering.let_on(at_full_speed=True)
+            case protocol.SetBreaks(breaks=texts):
+                self._set_breaks(parse_breaks(texts))
+            case protocol.Look() | protocol.WantHistory():
+                if steering.holding:
+                    self._looks.append(command)
+        if not steering.holding:
+            self._trace(at_tick=False)
+            self._tell_session()
+
+    def go_on(self) -> None:
+        """Prepare for what comes next: the run stood still and goes on."""
+        # Held between ticks, the next one is counted from its start.
+        self._trace(at_tick=self._session.steering.between_ticks)
+        self._tell_session()
+
+    def answer(self) -> None:
+        """Answer what was asked while the run stands still."""
+        looks, self._looks = self._looks, []
+        for asked in looks:
+            if isinstance(asked, protocol.Look):
+                self._session.channel.send(self._looker.look(asked, self._take_more))
+            elif isinstance(asked, protocol.WantHistory):
+                lines = self._tracer.history(max(0, asked.count), self._looker.name_of)
+                self._session.channel.send(protocol.LineHistory(lines))
+
+    def _take_more(self) -> bool:
+        """Take the commands that come in while something is looked at; False if it need not be any more."""
+        self._session.steering.receive(self._session)
+        return self._session.stop_reason is None
+
+    def forget_goals(self) -> None:
+        """Give up steps and goals: the user has asked for something else."""
+        self._forget_goals()
+        if not self._session.steering.holding:
+            self._trace(at_tick=False)
+            self._tell_session()
+
+    def _forget_goals(self) -> None:
+        self._step, self._line, self._instant = None, 0, None
+
+    def _set_instant(self, tick: int, ordinal: int) -> None:
+        self._instant = (tick, ordinal)
+        if ordinal > AFTER_TICK:
+            self._trace_from = tick if self._trace_from is None else min(tick, self._trace_from)
+
+    def _set_breaks(self, breaks: Iterable[Break]) -> None:
+        wanted = [one for one in breaks if not one.disabled]
+        before = {one.text: condition for found in self._by_line.values() for one, condition in found}
+        self._by_line = {}
+        for one in wanted:
+            if isinstance(one.rule, LineBreak):
+                text = one.rule.condition
+                condition = before.get(one.text) or (Condition(text) if text else None)
+                self._by_line.setdefault(one.rule.line, []).append((one, condition))
+        self._watcher.set(wanted)
+        self._session.output.watch = self._after_row if self._watcher.rows else None
+
+    def _trace(self, at_tick: bool) -> None:
+        """Trace if that is wanted now."""
+        tracer, tick = self._tracer, self._session.sim.tick
+        counting = self._trace_from is not None and tick >= self._trace_from
+        line_goal = bool(self._line or self._step)
+        tracer.lines = frozenset({*self._by_line, *((self._line,) if self._line else ())})
+        tracer.closely = self._step is not None or self._instant is not None
+        tracer.switch(bool(self._by_line) or line_goal or counting, at_tick)
+
+    def _tell_session(self) -> None:
+        """Let the session ask at ticks where that is wanted, and only there."""
+        tracing_to_come = self._trace_from is not None and not self._tracer.on
+        session = self._session
+        session.steering.debugged = self._watcher.ticks or self._instant is not None or tracing_to_come
+        session.slow |= DEBUG
+        if session.steering.debugged:
+            session.slow |= LIVE
+
+    # Ticks
+
+    def most_ticks(self, most: int) -> int:
+        """Return how many ticks may be done before `after_ticks` has to be called."""
+        tick = self._session.sim.tick
+        if self._watcher.ticks:
+            return 1
+        goals = [goal for goal in (self._instant and self._instant[0], self._trace_from) if goal is not None]
+        return min([most, *(goal - tick for goal in goals if goal > tick)])
+
+    def before_tick(self) -> None:
+        """Hold if this is the instant; right before a tick, when actions are done."""
+        tick = self._session.sim.tick
+        if self._instant is not None and self._instant <= (tick, BEFORE_NEXT_TICK):
+            self._hold_at_tick("instant", BEFORE_NEXT_TICK)
+
+    def after_ticks(self) -> None:
+        """Hold if the tick that was just done meets something."""
+        tick = self._session.sim.tick
+        met = self._watcher.after_tick() if self._watcher.ticks else None
+        self._trace(at_tick=True)
+        if met is not None:
+            self._hold_at_tick("break", AFTER_TICK, *met)
+        elif self._instant is not None and self._is_past(tick):
+            self._hold_at_tick("instant", AFTER_TICK)
+
+    def _is_past(self, tick: int) -> bool:
+        assert self._instant is not None
+        return self._instant == (tick, AFTER_TICK) or self._instant[0] < tick
+
+    def at_end(self) -> None:
+        """Hold at the end of the program if an instant was wanted that never came."""
+        if self._instant is not None:
+            self._hold_at_tick("end", self._tracer.ordinal)
+
+    def enter(self) -> None:
+        """Trace the thread that runs now as is wanted."""
+        self._tracer.enter()
+
+    # Lines and rows
+
+    def _at_line(self, frame: types.FrameType, line: int) -> None:
+        """See whether the run is to hold at a line that is about to run."""
+        session = self._session
+        if session.stop_reason is not None:
+            return
+        own = frame.f_code.co_filename == session.program_file
+        reason, text, value = "", "", ""
+        depth = self._tracer.depth_of(frame) if self._step is not None else 0
+        if self._instant is not None and self._is_reached(self._tracer.ordinal):
+            reason = "instant"
+        elif self._step is not None and self._step.is_done(self._baton.current, depth):
+            reason = "step"
+        elif own and line == self._line:
+            reason = "line"
+        elif own:
+            for one, condition in self._by_line.get(line, ()):
+                value = condition.holds(frame, self._apart) if condition is not None else ""
+                if condition is None or value:
+                    reason, text = "break", one.text
+                    break
+        if reason:
+            file = "" if own else frame.f_code.co_filename
+            moment = self._moment(line, reason, text, value, self._tracer.ordinal, file)
+            self._hold(moment, frame)
+
+    def _is_reached(self, ordinal: int) -> bool:
+        assert self._instant is not None
+        tick, wanted = self._instant
+        now = self._session.sim.tick
+        return now > tick or (now == tick and wanted > AFTER_TICK and ordinal >= wanted)
+
+    def _after_row(self, row: str, stream: int) -> None:
+        met = self._watcher.after_row(row, stream)
+        if met is not None and self._session.stop_reason is None:
+            line = self._session.program_line()
+            self._hold(self._moment(line, "break", *met, self._tracer.ordinal))
+
+    def _apart(self, work: Callable[[], bytes]) -> bytes | None:
+        return apart(self._session, self._baton, work, CONDITION_LIMIT_S, self._take_more)
+
+    # Holding
+
+    def _moment(
+        self, line: int, reason: str, text: str = "", value: str = "", ordinal: int = 0, file: str = ""
+    ) -> Paused:
+        session = self._session
+        thread = self._looker.name_of(self._baton.current)
+        return Paused(session.sim.tick, session.now, line, reason, text, value, ordinal, thread, file)
+
+    def _hold_at_tick(self, reason: str, ordinal: int, text: str = "", value: str = "") -> None:
+        session = self._session
+        session.now = max(session.now, session.sim.due_ns(session.sim.tick))
+        self._hold(self._moment(session.sim.line, reason, text, value, ordinal))
+
+    def _hold(self, moment: Paused, frame: types.FrameType | None = None) -> None:
+        """Stand still until told to go on.
+
+        Raises:
+            StopProgram: the run is to stop.
+        """
+        session = self._session
+        self._forget_goals()
+        self._trace_from = None if self._tracer.on else self._trace_from
+        session.steering.hold(session, moment)
+        try:
+            session.checkpoint()
+        except StopProgram as stop:
+            if frame is not None and self._baton.current is not self._baton.main:
+                self._baton.hand_to_main(stop)
+            raise

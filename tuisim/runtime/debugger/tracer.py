@@ -1,0 +1,155 @@
+"""Counts the program's lines and finds those at which it is to hold.
+
+Trace functions are installed only while this is wanted: otherwise a program runs as if
+there were no debugger. Only code of the program's own files gets line events.
+"""
+
+from __future__ import annotations
+
+import sys
+import types
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from tuisim.held import MetLine
+from tuisim.protocol import UNKNOWN_ORDINAL
+from tuisim.runtime import real
+from tuisim.runtime.baton import Baton, Task
+from tuisim.runtime.report import own_files
+from tuisim.runtime.session import Session
+
+HISTORY_LINES = 2000
+
+LineCheck = Callable[[types.FrameType, int], None]
+
+
+class Tracer:
+    """The trace functions of one run.
+
+    Args:
+        session: The run.
+        baton: Tells which thread runs, and when another one begins to.
+        check: Called for each line that `closely` or `lines` ask for; may hold the run.
+    """
+
+    def __init__(self, session: Session, baton: Baton, check: LineCheck) -> None:
+        self._session, self._baton, self._check = session, baton, check
+        self._own = own_files(session.program_file)
+        self._own_by_file: dict[str, bool] = {}
+        self.on = False
+        self.closely = False
+        """Whether every line is checked."""
+        self.lines: frozenset[int] = frozenset()
+        """Lines that are checked in any case."""
+        self._tick, self._ordinal = -1, 0
+        self._uncounted_tick = -1
+        """The tick in which counting began too late."""
+        self._frame_id, self._depth = 0, 0
+        self._met: deque[tuple[int, int, int, Task, int]] = deque(maxlen=HISTORY_LINES)
+        baton.entered = self.enter
+
+    # On and off
+
+    def switch(self, on: bool, at_tick: bool) -> None:
+        """Begin or end tracing.
+
+        Args:
+            on: What is wanted.
+            at_tick: Whether a tick has just been done, or the next one is right before us.
+        """
+        if on == self.on:
+            return
+        self.on = on
+        self._frame_id = 0
+        if on:
+            self._tick, self._ordinal = self._session.sim.tick, 0
+            self._uncounted_tick = -1 if at_tick else self._tick
+        self.enter()
+
+    def enter(self) -> None:
+        """Let the thread that begins to run be traced, or not, as is wanted."""
+        found = real.gettrace()
+        if found is not None and getattr(found, "__self__", None) is not self:
+            # The program traces itself: it keeps what it has set.
+            return
+        self._frame_id = 0
+        if not self.on:
+            if found is not None:
+                real.settrace(None)
+            return
+        frame: types.FrameType | None = sys._getframe(1)
+        while frame is not None:
+            if self.is_own(frame):
+                frame.f_trace = self._on_event
+            frame = frame.f_back
+        if found is None:
+            real.settrace(self._on_call)
+
+    def is_own(self, frame: types.FrameType) -> bool:
+        """Whether a frame is of the program's own files."""
+        file = frame.f_code.co_filename
+        own = self._own_by_file.get(file)
+        if own is None:
+            own = self._own_by_file[file] = self._own(file)
+        return own
+
+    # Events
+
+    def _on_call(self, frame: types.FrameType, _event: str, _arg: Any) -> Any:
+        if self.is_own(frame):
+            self._frame_id = 0
+            return self._on_event
+        return None
+
+    def _on_event(self, frame: types.FrameType, event: str, _arg: Any) -> Any:
+        if event == "line":
+            tick = self._session.sim.tick
+            if tick != self._tick:
+                self._tick, self._ordinal = tick, 0
+            self._ordinal += 1
+            if id(frame) != self._frame_id:
+                # Every call and return clears it, so that no frame is taken for another one.
+                self._frame_id, self._depth = id(frame), self.depth_of(frame)
+            line = frame.f_lineno
+            self._met.append((tick, self._ordinal, line, self._baton.current, self._depth))
+            if self.closely or line in self.lines:
+                self._check(frame, line)
+        elif event == "return":
+            self._frame_id = 0
+        return self._on_event
+
+    # What is known
+
+    @property
+    def ordinal(self) -> int:
+        """How many lines were met since the last tick was done."""
+        tick = self._session.sim.tick
+        if not self.on or tick == self._uncounted_tick:
+            return UNKNOWN_ORDINAL
+        return self._ordinal if tick == self._tick else 0
+
+    def depth_of(self, frame: types.FrameType | None) -> int:
+        """Return how many calls of the program's own code are open in a thread."""
+        depth = 0
+        while frame is not None:
+            depth += self.is_own(frame)
+            frame = frame.f_back
+        return depth
+
+    def own_frames(self, frame: types.FrameType | None) -> list[types.FrameType]:
+        """Return the frames of the program's own files, innermost first."""
+        found = []
+        while frame is not None:
+            if self.is_own(frame):
+                found.append(frame)
+            frame = frame.f_back
+        return found
+
+    def history(self, count: int, name_of: Callable[[Task], str]) -> tuple[MetLine, ...]:
+        """Return the lines that were met last and whose place in their tick is known."""
+        met = [row for row in self._met if row[0] != self._uncounted_tick]
+        return tuple(
+            MetLine(tick, ordinal, line, name_of(task), depth)
+            for tick, ordinal, line, task, depth in met[max(0, len(met) - count) :]
+        )
