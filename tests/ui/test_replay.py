@@ -56,7 +56,7 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
         app.bridge.timeline.go(50)
         assert app.bridge.snapshot().instant.noise.light == 0
         app.bridge.set_speed(0.0)
-        await pilot.press("R")
+        await pilot.press("R", "r")
         await until(pilot, lambda: app.bridge.run_id != run_id and app.bridge.state == ENDED)
         again, first = RunStore().load_run(app.bridge.run_id), RunStore().load_run(run_id)
         assert again.program.text == first.program.text

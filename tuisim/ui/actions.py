@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from textual.message import Message
 
-from tuisim.ui import travel, verbs
+from tuisim.ui import branching, travel, verbs
 from tuisim.ui.editor import wishes as editor
 from tuisim.ui.panels import PANELS
 from tuisim.ui.snapshot import PAUSED, RUNNING, STARTING, WAITING
@@ -93,6 +93,8 @@ _KEY_LABELS = {
 def _can_run(now: Situation) -> str:
     if not now.has_program:
         return "No program yet: o opens one"
+    if now.in_past:
+        return ""
     return "The program is running already: S stops it" if now.state in IN_RUN else ""
 
 
@@ -154,6 +156,10 @@ def _toggles() -> list[Action]:
     ]
 
 
+def _can_branch(now: Situation) -> str:
+    return "" if now.in_past else "A branch begins in the past: , goes back"
+
+
 def _travels() -> list[Action]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
@@ -163,6 +169,7 @@ def _travels() -> list[Action]:
         Action("sample-before", "left_parenthesis", "The sample before", TIME, travel.sample_before, back),
         Action("next-sample", "right_parenthesis", "The next sample", TIME, travel.next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, travel.ask_where, back, "go to"),
+        Action("branch", "y", "Branch: go on from this instant", TIME, branching.from_here, _can_branch, "branch"),
         Action("start-of-run", "home", "Start of the run", TIME, travel.to_start, back),
         Action("now", "end", "Back to now (also escape)", TIME, travel.to_now, on),
     ]
@@ -172,7 +179,7 @@ def _travels() -> list[Action]:
 ACTIONS: Mapping[str, Action] = {
     action.id: action
     for action in (
-        Action("run", "R", "Run the program", PROGRAM, verbs.run, _can_run, "run"),
+        Action("run", "R", "Run the program", PROGRAM, branching.run, _can_run, "run"),
         Action("stop", "S", "Stop the program", PROGRAM, verbs.stop, _can_stop, "stop"),
         Action("pause", "space", "Pause or go on; play the past", PROGRAM, travel.pause, _can_pause, "pause"),
         Action("tick", "full_stop", "One tick on, while paused", TIME, travel.tick_on, _can_step, "tick"),
@@ -200,6 +207,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("zoom", "v", "Zoom the world", ROBOT, verbs.zoom, footer="zoom"),
         Action("clear", "C", "Clear the pen trace", ROBOT, verbs.clear_trace, footer="clear"),
         *_toggles(),
+        Action("enlarge", "plus", "The panel with the focus alone, and back", PANEL, verbs.enlarge, shown_key="+"),
         Action("rays", "U", "Ultrasonic rays on or off", PANEL, verbs.rays, footer="rays"),
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, verbs.show_help, footer="help"),

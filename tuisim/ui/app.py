@@ -17,7 +17,7 @@ from textual.widget import Widget
 
 from tuisim.errors import TuisimError
 from tuisim.protocol import Ended
-from tuisim.ui import travel
+from tuisim.ui import branching, travel
 from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
 from tuisim.ui.bridge import ROWS_A_POLL, Bridge, News
 from tuisim.ui.desk import Desk
@@ -74,6 +74,7 @@ class Lab(Wishes):
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
         self.voice = Voice(settings.quiet)
+        self.bridge.propose = partial(branching.propose, self)
         self.lookback = Lookback(self.desk, self.bridge.timeline)
         self.feed: Feed | None = None
         self._drawn: object = None
@@ -110,6 +111,7 @@ class Lab(Wishes):
         self.desk.ensure("world", "output", "chart")
         if self.settings.replay:
             open_run(self, self.settings.replay)
+            self.work.begin()
         else:
             self.loading.prepare_mat()
             self.loading.begin()
@@ -197,6 +199,9 @@ class Lab(Wishes):
                 self._ask(news.prompt)
             elif news.prompt is None and output.asking:
                 output.stop_asking()
+        if news.branched and (recording := self.bridge.timeline.recording):
+            self.say(branching.told(news.branched, recording))
+            self.situation_changed()
         if news.ended:
             self._ended(news.ended)
         if self._last_words and len(news.rows) < ROWS_A_POLL and self.desk.output:

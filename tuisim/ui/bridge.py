@@ -7,6 +7,7 @@ user puts it, and its sensors are measured all the same.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from tuisim.datalog.runfile import StoredRun
     from tuisim.datalog.views import TickRecord
     from tuisim.host import Program, RunHandle
+    from tuisim.ui.branching import Branch
     from tuisim.ui.mat import Mat
     from tuisim.ui.session import AppSettings
 
@@ -47,6 +49,8 @@ class News:
     """What the program said."""
     prompt: str | None = None
     """The prompt while the program waits in `input()`."""
+    branched: Branch | None = None
+    """Set once, when a branch has come to its instant, or has ended before."""
 
 
 class Bridge:
@@ -67,6 +71,10 @@ class Bridge:
         self.run: RunHandle | None = None
         """The run at work or the last one; None before the first, and while one from the store is shown."""
         self.timeline = Timeline()
+        self.propose: Callable[[protocol.Message], None] = lambda _: None
+        """Called instead of a user action while a former instant is looked at: it can only be done in a branch."""
+        self._branch: Branch | None = None
+        """What the run at hand is becoming, while it is done again up to its instant."""
         self._still = self._at_rest(self.home)
         self._end = ""
         """How the run ended."""
@@ -101,6 +109,8 @@ class Bridge:
             return ENDED
         if run.waiting_for_input is not None:
             return WAITING
+        if self._branch is not None:
+            return STARTING
         if run.paused:
             return PAUSED
         return RUNNING if run.started else STARTING
@@ -198,6 +208,30 @@ class Bridge:
         self.run, self._end = run, ""
         self._look_at(Recording(self.run))
 
+    def branch(self, branch: Branch) -> None:
+        """Do a run again up to an instant of it, and go on from there. Ends the run at hand.
+
+        Raises:
+            TuisimError: the run cannot be started.
+        """
+        run = branch.start()
+        self.close()
+        self.run, self._end = run, ""
+        self._look_at(Recording(run, branch.of.answers))
+        self._send(protocol.StepTicks(branch.tick))
+        self._branch = branch
+
+    def _branch_is_there(self) -> Branch | None:
+        """Leave the former run, in the midst of which the new one has come to the instant of the branch."""
+        branch, self._branch = self._branch, None
+        if branch is not None and self.in_run:
+            self._send(protocol.SetSpeed(self.speed))
+            if branch.then is not None:
+                self._send(branch.then)
+            if branch.goes_on:
+                self._send(protocol.Resume())
+        return branch
+
     def replay(self, run: StoredRun) -> None:
         """Show a run from the store as one that is over. Not during a run."""
         self.close()
@@ -212,6 +246,11 @@ class Bridge:
         """End the program; the end comes with a later poll."""
         if self.run:
             self.run.stop()
+
+    def stop_now(self) -> None:
+        """End the program without waiting for it; its run stays the one at hand."""
+        if self.run:
+            self.run.close()
 
     def pause(self) -> None:
         """Let the run stand still."""
@@ -236,18 +275,23 @@ class Bridge:
 
     def set_pen(self, down: bool) -> None:
         """Put the pen down or up, for this run and the next."""
+        if self.in_past:
+            self.propose(protocol.SetPen(down))
+            return
         self._send(protocol.SetPen(down))
         self.plan = plans.with_pen(self.plan, down)
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
+        if self.in_past:
+            if noise != self._moment()[0].noise:
+                self.propose(protocol.SetNoise(noise.light, noise.motor))
+            return
         if noise == self.plan.spec.world.noise:
             return
         self.plan = plans.with_noise(self.plan, noise)
         self._still = replace(self._still, noise=noise)
         if self.in_run:
-            assert self.timeline.recording is not None
-            self.timeline.recording.noise_was_set()
             self._send(protocol.SetNoise(noise.light, noise.motor))
 
     def set_seed(self, seed: int) -> None:
@@ -257,8 +301,12 @@ class Bridge:
 
     def place(self, pose: Pose) -> None:
         """Put the robot somewhere: during a run as a user action, else as the start of the next run."""
+        command = protocol.SetPose(pose.x_mm, pose.y_mm, pose.heading_deg)
+        if self.in_past:
+            self.propose(command)
+            return
         if self.in_run:
-            self._send(protocol.SetPose(pose.x_mm, pose.y_mm, pose.heading_deg))
+            self._send(command)
             return
         self._start_at(pose)
 
@@ -284,10 +332,12 @@ class Bridge:
                 self.run.kill()
             self.run.close()
             self.run = None
+        self._branch = None
         self.timeline.take(None)
 
     def _send(self, command: protocol.Message) -> None:
-        if self.run is not None:
+        # On its way to its instant a branch is done again exactly as it was.
+        if self.run is not None and self._branch is None:
             self.run.send(command)
 
     # What comes from the run
@@ -302,14 +352,17 @@ class Bridge:
         recording = self.timeline.recording
         if recording is None:
             return News([])
-        ended = None
+        ended = branched = None
         spoken: list[str] = []
         for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
                     ended, self._end = event, event.end
-                case protocol.Spoke(text=text):
+                    branched = self._branch_is_there()
+                case protocol.Paused(tick=tick) if self._branch and tick >= self._branch.tick:
+                    branched = self._branch_is_there()
+                case protocol.Spoke(text=text) if self._branch is None:
                     spoken.append(text)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
-        return News(rows, 0, ended, tuple(spoken), prompt)
+        return News(rows, 0, ended, tuple(spoken), prompt, branched)

@@ -30,9 +30,10 @@ class Recording:
 
     Args:
         source: The run at work, or one from the store.
+        answers: What a run at work was given to answer `input()` with; one from the store knows it.
     """
 
-    def __init__(self, source: RunHandle | StoredRun) -> None:
+    def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = ()) -> None:
         self.run_id: str
         self.number: int = source.number
         """Number in the catalogue, 0 if it is in none."""
@@ -43,16 +44,17 @@ class Recording:
         stored = source.program
         self.program = Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path)
         self._actions: tuple[Action, ...] = ()
-        self._quiet = True
-        """Whether nobody has changed the noise, so that the user's actions need not be read for it."""
         self._marks: _TimedMarks | None = None
+        self.answers = answers
+        """Scripted answers to `input()`."""
         self._take_source(source)
 
     def _take_source(self, source: RunHandle | StoredRun) -> None:
         from tuisim.datalog.runfile import StoredRun
 
         if isinstance(source, StoredRun):
-            self.run_id, self._actions, self._quiet = source.id, source.actions, False
+            self.run_id, self._actions = source.id, source.actions
+            self.answers = tuple(source.options.get("answers", ()))
         else:
             self.run_id = source.run_id
 
@@ -78,14 +80,8 @@ class Recording:
             self._actions = read_actions(self.folder)[0]
         return self._actions
 
-    def noise_was_set(self) -> None:
-        """The user has changed the noise."""
-        self._quiet = False
-
     def noise_at(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a record."""
-        if self._quiet:
-            return self.spec.world.noise
         return noise_at(self.spec, self.actions(), record)
 
     def field_at(self, tick: int, mat: Field) -> Field:

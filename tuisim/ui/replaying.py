@@ -20,10 +20,12 @@ if TYPE_CHECKING:
 
 def program_of(run: StoredRun) -> Program:
     """Return the program of a run as it was then; it stands for its file only if that still says the same."""
+    from tuisim.programfile import read_program
+
     stored = run.program
     try:
-        same = Path(stored.path).read_text("utf-8") == stored.text if stored.path else False
-    except (OSError, ValueError):
+        same = bool(stored.path) and read_program(Path(stored.path)).text == stored.text
+    except TuisimError:
         same = False
     return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path if same else "")
 

@@ -152,4 +152,7 @@ def choose_run(lab: Lab) -> None:
         if run_id:
             lab.work.when_safe(lambda: open_run(lab, run_id))
 
-    lab.push_screen(RunChooser(), take)
+    def ask() -> None:
+        lab.push_screen(RunChooser(), take)
+
+    lab.work.when_safe(ask)

@@ -33,11 +33,6 @@ def end_label(end: str) -> str:
     return _END_LABELS.get(end, end)
 
 
-def run(lab: Lab) -> None:
-    """Start the program."""
-    lab.start_run()
-
-
 def stop(lab: Lab) -> None:
     """End the program."""
     lab.bridge.stop()
@@ -85,6 +80,18 @@ def toggle(lab: Lab, panel: str) -> None:
     lab.desk.toggle(panel)
     lab.situation_changed()
     lab.call_after_refresh(lab.attend, panel)
+
+
+def enlarge(lab: Lab) -> None:
+    """Let the panel with the focus fill the desk, or give the others their places back."""
+    focused = lab.focused
+    panel = next(
+        (name for name, widget in lab.desk.panels.items() if focused and widget in focused.ancestors_with_self), ""
+    )
+    if panel or lab.desk.enlarged:
+        lab.desk.enlarge(panel)
+    else:
+        lab.say("No panel has the focus: tab or a click gives it to one")
 
 
 def _world(lab: Lab) -> World | None:

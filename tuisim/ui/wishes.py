@@ -32,8 +32,9 @@ class Wishes(EditorWishes):
     loading: Loading
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
-        """The robot was dragged with the mouse."""
-        self.bridge.place(message.pose)
+        """The robot was dragged with the mouse; in the past it is asked only at the end what is to come of that."""
+        if message.done or not self.bridge.in_past:
+            self.bridge.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
         """Look at the time that the chart's cursor is at."""
