@@ -56,6 +56,8 @@ def edit(lab: Lab) -> None:
 
 def _type(lab: Lab) -> None:
     if lab.desk.shown("code") and (code := lab.desk.code):
+        # A panel that has just been made has not been given the program yet.
+        lab.work.introduce()
         code.start_typing()
 
 
