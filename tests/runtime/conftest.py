@@ -59,9 +59,12 @@ def start() -> Iterator[Start]:
         background: str = "Grey_bands",
         pen: PenSpec | None = None,
         pen_marks: bool = False,
+        solid: bool = False,
         **options: Any,
     ) -> RunHandle:
-        world = WorldSpec(background=background, start=Pose(*pose), noise=NoiseSpec(*noise), pen_marks=pen_marks)
+        world = WorldSpec(
+            background=background, start=Pose(*pose), noise=NoiseSpec(*noise), pen_marks=pen_marks, solid=solid
+        )
         spec = RunSpec(RobotSpec(pen=pen or PenSpec()), world, PROFILES[profile], seed)
         options.setdefault("time_limit_s", 20.0)
         handle = start_run(Program(FILE, text, prelude), spec, RunOptions(**options))
