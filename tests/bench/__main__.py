@@ -8,6 +8,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from tests.bench.back import back
 from tests.bench.crowded import crowded
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
 from tests.bench.frames import chart, frames
@@ -26,6 +27,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "stop": stop_latency,
     "frames": frames,
     "chart": chart,
+    "back": back,
 }
 """Every bench by name."""
 

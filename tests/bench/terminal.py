@@ -61,6 +61,10 @@ class Terminal:
         self._process.wait()
         os.close(self._fd)
 
+    def type(self, keys: bytes) -> None:
+        """Send what keys send."""
+        os.write(self._fd, keys)
+
     def read_until(self, condition: Callable[[], bool], patience_s: float = PATIENCE_S) -> None:
         """Take what the app writes, and answer it, until something is so.
 
