@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import groupby
 from types import FrameType
@@ -13,7 +13,7 @@ from typing import TextIO
 from tuisim.commands.outcome import EXIT_BROKEN_PIPE
 from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow
 from tuisim.host import RunHandle
-from tuisim.protocol import Ended
+from tuisim.protocol import Ended, Message
 
 _ERROR_FORMS = {STDERR: "{}\n", SPEECH: "says: {}\n"}
 """By stream, how a row is shown on stderr; the others are not."""
@@ -28,9 +28,11 @@ class Follower:
     Args:
         handle: The run.
         out: Where its printed lines go; error text and speech go to stderr.
+        listen: Called with each event of the run, after what was printed before it.
     """
 
-    def __init__(self, handle: RunHandle, out: TextIO) -> None:
+    def __init__(self, handle: RunHandle, out: TextIO, listen: Callable[[Message], None] | None = None) -> None:
+        self._listen = listen
         self._handle = handle
         self._out = out
         self._cut = 0
@@ -48,8 +50,17 @@ class Follower:
         """
         with self._signals():
             while True:
-                ended = self._handle.wait(POLL_S)
+                events: list[Message] = []
+                if self._listen is None:
+                    ended = self._handle.wait(POLL_S)
+                else:
+                    self._handle.wait_for_event(POLL_S)
+                    events = self._handle.pump()
+                    ended = self._handle.ended
                 self._pass_on(self._handle.output.new_rows())
+                for event in events:
+                    if self._listen is not None:
+                        self._listen(event)
                 if ended:
                     return ended, self._cut
 

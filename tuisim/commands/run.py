@@ -8,6 +8,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 
 from tuisim.commands import outcome
+from tuisim.commands.breaks import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
 from tuisim.commands.follow import Follower
 from tuisim.commands.prepare import Prepared, prepare_runs
 from tuisim.commands.press import parse_press, press_actions
@@ -27,7 +28,7 @@ def add_arguments(parser: SwitchParser) -> None:
     limit = number(0.001, MAX_TIME_LIMIT_S)
     parser.description = (
         "Run programs without the app. What a program prints goes to stdout, the rest to stderr. "
-        "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit; the worst of several."
+        "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or a break; the worst counts."
     )
     parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--telemetry FILE] [--json] …"
     parser.add_argument("programs", nargs="*", metavar="PROGRAM", help="a Python file, or an example's name")
@@ -41,6 +42,7 @@ def add_arguments(parser: SwitchParser) -> None:
     add("--input", action="append", default=[], metavar="TEXT", help="answer to an input(); may be repeated")
     add("--press", action="append", default=[], metavar="BUTTON@S", type=parse_press,
         help="hold a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated")  # fmt: skip
+    add_break_arguments(parser)
     add("--json", action="store_true", help="one JSON object a program on stdout; what programs print goes to stderr")
     parser.add_switches()
 
@@ -59,6 +61,7 @@ def execute(arguments: Namespace) -> int:
         # A damaged picture shows only when it is read; the catalogue's are whole, and are read when they are needed.
         if os.path.isabs(one.spec.world.background):
             field_files(one.spec)
+    check_breaks(arguments.breaks, prepared)
     telemetry = arguments.telemetry
     for target in (*arguments.export, telemetry):
         if target is not None:
@@ -102,14 +105,18 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int,
         time_limit_s=arguments.timeout,
         answers=tuple(arguments.input),
         actions=press_actions(arguments.press, one.spec.profile.tick_hz),
+        breaks=tuple(arguments.breaks),
     )
     handle = start_run(one.program, one.spec, options, store)
+    stops = arguments.break_then == STOP
+    teller = BreakTeller(handle, BreakOptions(options.breaks, tuple(arguments.watches), stops))
     try:
-        follower = Follower(handle, sys.stderr if arguments.json else sys.stdout)
+        out = sys.stderr if arguments.json else sys.stdout
+        follower = Follower(handle, out, teller.take if options.breaks else None)
         ended, cut = follower.to_the_end()
     finally:
         handle.close()
     if follower.lost:
         print(f"tuisim: {follower.lost} (run {handle.number} has every line)", file=sys.stderr)
-    code = cut or outcome.exit_code_of(ended)
+    code = cut or (outcome.EXIT_LIMIT if teller.stopped else outcome.exit_code_of(ended))
     return max(code, outcome.EXIT_BAD_OUTPUT) if follower.lost else code, handle.run_id

@@ -1,0 +1,104 @@
+"""`tuisim run --break …`: prints what a program is doing where a break holds it, then lets it go on or ends it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tuisim.breaks import parse_breaks
+from tuisim.host import RunHandle
+from tuisim.protocol import Look, Looked, Message, Paused, Resume
+
+if TYPE_CHECKING:
+    from tuisim.commands.prepare import Prepared
+    from tuisim.switches import SwitchParser
+
+NS_PER_S = 1_000_000_000
+MOST_CHARACTERS = 200
+GO, STOP = "go", "stop"
+
+
+@dataclass(frozen=True, slots=True)
+class BreakOptions:
+    """What `--break` and its companions ask for."""
+
+    breaks: tuple[str, ...]
+    watches: tuple[str, ...]
+    stops: bool
+    """Whether the first break ends the run."""
+
+
+def add_break_arguments(parser: SwitchParser) -> None:
+    """Declare `--break`, `--watch` and `--break-then`."""
+    add = parser.add_argument_group("breaks").add_argument
+    add("--break", dest="breaks", action="append", default=[], metavar="TEXT",
+        help="tell on stderr where the run is when this is met: 12, 12 if x > 3, left.red%% < 10, "
+        "left.color changes, ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; "
+        "may be repeated")  # fmt: skip
+    add("--watch", dest="watches", action="append", default=[], metavar="EXPR",
+        help="an expression to tell at each break; may be repeated")  # fmt: skip
+    add("--break-then", choices=(GO, STOP), default=GO, help="what follows a break (go); stop ends with exit code 3")
+
+
+def check_breaks(texts: Iterable[str], prepared: Iterable[Prepared]) -> None:
+    """Check breaks before anything is run.
+
+    Raises:
+        ConfigError: a text is no break, or not one for the robot of one of the programs.
+    """
+    for one in prepared:
+        parse_breaks(texts, one.spec.robot)
+
+
+class BreakTeller:
+    """Tells the breaks of one run.
+
+    Args:
+        handle: The run.
+        options: What is asked for.
+    """
+
+    def __init__(self, handle: RunHandle, options: BreakOptions) -> None:
+        self._handle, self._options = handle, options
+        self._held: Paused | None = None
+        self._source = handle.program.text.splitlines()
+        self.stopped = False
+        """Whether a break has ended the run."""
+
+    def take(self, event: Message) -> None:
+        """Take an event of the run: ask for its state where it holds, and tell it."""
+        match event:
+            case Paused():
+                self._held = event
+                self._handle.send(Look(self._options.watches))
+            case Looked() if self._held is not None:
+                sys.stderr.write("".join(line + "\n" for line in self._told(self._held, event)))
+                sys.stderr.flush()
+                self._held = None
+                self._go_on()
+
+    def _go_on(self) -> None:
+        if self._options.stops:
+            self.stopped = True
+            self._handle.stop()
+        else:
+            self._handle.send(Resume())
+
+    def _told(self, held: Paused, looked: Looked) -> list[str]:
+        """Return the lines that say where the run is and what it is doing."""
+        name = held.file or self._handle.program.path or self._handle.program.name
+        value = f" ({held.value})" if held.value else ""
+        thread = f", thread {held.thread}" if len(looked.threads) > 1 else ""
+        last = self._handle.telemetry.last()
+        pose = f", x {last.x_mm:.2f} mm, y {last.y_mm:.2f} mm, heading {last.heading_deg:.2f}°" if last else ""
+        where = f"{name}:{held.line}, {held.time_ns / NS_PER_S:.3f} s, tick {held.tick}{pose}{thread}"
+        lines = [f"break {held.detail}{value}: {where}"]
+        if not held.file and 0 < held.line <= len(self._source):
+            lines.append(f"    {held.line} | {self._source[held.line - 1].strip()}")
+        lines += [f"    {variable.name} = {variable.value}" for variable in looked.variables]
+        lines += [f"    {watch.text} → {watch.value or watch.error}" for watch in looked.watches]
+        lines += [f"    {note}" for note in (looked.waiting, looked.note) if note]
+        return [line if len(line) <= MOST_CHARACTERS or at == 0 else line[:MOST_CHARACTERS] + "…"
+                for at, line in enumerate(lines)]  # fmt: skip
