@@ -24,7 +24,7 @@ from tuisim.ui.panels.code import Code
 from tuisim.ui.screens.question import Question
 from tuisim.ui.screens.saving import ProgramDialog
 from tuisim.ui.session import AppSettings
-from tuisim.ui.snapshot import ENDED, RUNNING
+from tuisim.ui.snapshot import ENDED, IDLE, RUNNING
 
 pytestmark = pytest.mark.usefixtures("home")
 
@@ -226,6 +226,20 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
         assert path.read_text() == "\nif " + TEXT
         assert any("line 2" in text and "is saved" in text for text in notices(app))
         assert "✗ 2 if print" in screen_text(app)
+
+
+async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        start = app.bridge.plan.spec.world.start
+        await typed(pilot, code, "i", "f", "enter", "ctrl+r")
+        assert app.bridge.state == IDLE
+        assert app.bridge.plan.spec.world.start == start
+        assert "✗ 1 if" in screen_text(app)
+        assert any("cannot run: line 1" in text for text in notices(app))
+        await pilot.press(*["backspace"] * 3, "ctrl+r")
+        await until(pilot, lambda: app.bridge.state == ENDED)
 
 
 async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -215,6 +215,9 @@ class CodeArea(TextArea):
         elif change := _CHANGES.get(event.key):
             self._done(event)
             self._change_lines(change)
+        elif event.key.startswith("alt+"):
+            # It comes with a character that nobody has typed.
+            self._done(event)
 
     def _done(self, event: events.Key) -> None:
         event.stop()

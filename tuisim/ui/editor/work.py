@@ -14,6 +14,7 @@ from tuisim.ui.editor.textfile import Form, is_protected, read_text, write_text
 if TYPE_CHECKING:
     from tuisim.host import Program
     from tuisim.ui.app import Lab
+    from tuisim.ui.editor.check import Mistake
 
 DRAFT_AFTER_S = 1.0
 """So long after a key unsaved text is kept for the case of a crash."""
@@ -190,14 +191,34 @@ class Work:
         self.show()
 
     def apply(self) -> bool:
-        """Make the edited text the program that runs next; says what is wrong with its magic line.
+        """Make the edited text the program that runs next, or mark and say what is wrong with it.
 
         Returns:
             Whether the program may run.
         """
         self.introduce()
-        if self._program is None or (self._text, self._path) == (self._applied, self._program.path):
+        if self._is_applied:
             return True
+        # A slip of the finger is not to lay out another mat because the magic line is not found for it.
+        if mistake := self._mistake():
+            self._lab.complain(TuisimError(f"{self._name} cannot run: {mistake.message}"))
+            return False
+        return self._take_text()
+
+    @property
+    def _is_applied(self) -> bool:
+        return self._program is None or (self._text, self._path) == (self._applied, self._program.path)
+
+    def _mistake(self) -> Mistake | None:
+        """What is wrong with the text; its line is marked."""
+        from tuisim.ui.editor.check import mistake_in
+
+        mistake = mistake_in(self._text, self._name)
+        if code := self._lab.desk.code:
+            code.mark_error(mistake.line if mistake else 0)
+        return mistake
+
+    def _take_text(self) -> bool:
         try:
             self._lab.loading.take_text(self._text, self._path, self._name)
         except TuisimError as error:
@@ -260,22 +281,19 @@ class Work:
 
     def _saved_to(self, path: Path, then: Callable[[], None]) -> None:
         """Take note that the text is in a file now, and say whether it can run."""
-        from tuisim.ui.editor.check import mistake_in
-
         drop_draft(self._path)
         self._saved, self._is_file = self._text, True
-        self._path, self._name = (str(path), path.name) if str(path) != self._path else (self._path, self._name)
-        if not self._lab.bridge.in_run:
-            self.apply()
-        self._lab.loading.saved(path)
+        moved = str(path) != self._path
+        self._path, self._name = str(path), path.name
         self.show()
-        mistake = mistake_in(self._text, self._name)
-        if mistake is None:
-            self._lab.say(f"{self._name} is saved")
-        else:
-            if code := self._lab.desk.code:
-                code.mark_error(mistake.line)
+        mistake = self._mistake()
+        if not self._lab.bridge.in_run and not self._is_applied and (moved or not mistake):
+            self._take_text()
+        self._lab.loading.saved(path)
+        if mistake:
             self._lab.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))
+        else:
+            self._lab.say(f"{self._name} is saved")
         then()
 
     # The file changes elsewhere

@@ -1,0 +1,65 @@
+"""The editor in a real terminal: what was typed and not saved outlives a crash."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.ui.test_app_tmux import PATIENCE_S, Terminal
+
+pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
+
+
+@pytest.fixture
+def terminal(tmp_path: Path) -> Iterator[Terminal]:
+    made = Terminal(f"tuisim-{os.getpid()}-{tmp_path.name[-20:]}", tmp_path)
+    yield made
+    made.end()
+
+
+def kill_the_app(terminal: Terminal) -> None:
+    """Kill the one child of the terminal's shell without a warning."""
+    shell = terminal._run("display-message", "-p", "#{pane_pid}").strip()
+    children = subprocess.run(["ps", "-o", "pid=", "--ppid", shell], capture_output=True, text=True, check=True)
+    os.kill(int(children.stdout.split()[0]), signal.SIGKILL)
+
+
+def test_unsaved_text_outlives_a_kill_and_is_saved_and_run(terminal: Terminal, home: Path, tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    path.write_text("print('A: 1')\n")
+    terminal.start(["prog.py"], 80, 24)
+    terminal.until(lambda text: "d edit" in text.splitlines()[-1])
+    terminal.keys("d")
+    terminal.until(lambda text: "esc done" in text)
+    terminal.keys("#", "h", "i", "Enter")
+    terminal.until(lambda text: "prog.py • edited" in text)
+    give_up = time.monotonic() + PATIENCE_S
+    while not list((home / "drafts").glob("*.json")):
+        assert time.monotonic() < give_up
+        time.sleep(0.05)
+    kill_the_app(terminal)
+    terminal.until(lambda text: "EXIT 137" in text)
+    assert path.read_text() == "print('A: 1')\n"
+    terminal.end()
+    terminal.start(["prog.py"], 80, 24)
+    terminal.until(lambda text: "1 line differs" in text)
+    terminal.keys("r")
+    terminal.until(lambda text: "differs" not in text)
+    terminal.keys("d")
+    terminal.until(lambda text: "prog.py • edited" in text and "1 #hi" in text and "esc done" in text)
+    terminal.keys("C-s")
+    terminal.until(lambda text: "• edited" not in text)
+    assert path.read_text() == "#hi\nprint('A: 1')\n"
+    terminal.keys("C-r")
+    terminal.until(lambda text: "finished" in text.splitlines()[-1])
+    terminal.keys("Escape")
+    terminal.until(lambda text: "esc done" not in text)
+    terminal.keys("q")
+    terminal.until(lambda text: "EXIT 0" in text)
+    assert not list((home / "drafts").glob("*.json"))
