@@ -17,10 +17,12 @@ pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
 
 
 @pytest.fixture
-def terminal(tmp_path: Path) -> Iterator[Terminal]:
-    made = Terminal(f"tuisim-{os.getpid()}-{tmp_path.name[-20:]}", tmp_path)
-    yield made
-    made.end()
+def terminals(tmp_path: Path) -> Iterator[tuple[Terminal, Terminal]]:
+    """One to crash in, one to come back in."""
+    first, second = (Terminal(f"tuisim-{os.getpid()}-{tmp_path.name[-20:]}-{n}", tmp_path) for n in (1, 2))
+    yield first, second
+    first.end()
+    second.end()
 
 
 def kill_the_app(terminal: Terminal) -> None:
@@ -30,7 +32,10 @@ def kill_the_app(terminal: Terminal) -> None:
     os.kill(int(children.stdout.split()[0]), signal.SIGKILL)
 
 
-def test_unsaved_text_outlives_a_kill_and_is_saved_and_run(terminal: Terminal, home: Path, tmp_path: Path) -> None:
+def test_unsaved_text_outlives_a_kill_and_is_saved_and_run(
+    terminals: tuple[Terminal, Terminal], home: Path, tmp_path: Path
+) -> None:
+    terminal, again = terminals
     path = tmp_path / "prog.py"
     path.write_text("print('A: 1')\n")
     terminal.start(["prog.py"], 80, 24)
@@ -46,20 +51,19 @@ def test_unsaved_text_outlives_a_kill_and_is_saved_and_run(terminal: Terminal, h
     kill_the_app(terminal)
     terminal.until(lambda text: "EXIT 137" in text)
     assert path.read_text() == "print('A: 1')\n"
-    terminal.end()
-    terminal.start(["prog.py"], 80, 24)
-    terminal.until(lambda text: "1 line differs" in text)
-    terminal.keys("r")
-    terminal.until(lambda text: "differs" not in text)
-    terminal.keys("d")
-    terminal.until(lambda text: "prog.py • edited" in text and "1 #hi" in text and "esc done" in text)
-    terminal.keys("C-s")
-    terminal.until(lambda text: "• edited" not in text)
+    again.start(["prog.py"], 80, 24)
+    again.until(lambda text: "1 line differs" in text)
+    again.keys("r")
+    again.until(lambda text: "differs" not in text)
+    again.keys("d")
+    again.until(lambda text: "prog.py • edited" in text and "1 #hi" in text and "esc done" in text)
+    again.keys("C-s")
+    again.until(lambda text: "• edited" not in text)
     assert path.read_text() == "#hi\nprint('A: 1')\n"
-    terminal.keys("C-r")
-    terminal.until(lambda text: "finished" in text.splitlines()[-1])
-    terminal.keys("Escape")
-    terminal.until(lambda text: "esc done" not in text)
-    terminal.keys("q")
-    terminal.until(lambda text: "EXIT 0" in text)
+    again.keys("C-r")
+    again.until(lambda text: "finished" in text.splitlines()[-1])
+    again.keys("Escape")
+    again.until(lambda text: "esc done" not in text)
+    again.keys("q")
+    again.until(lambda text: "EXIT 0" in text)
     assert not list((home / "drafts").glob("*.json"))
