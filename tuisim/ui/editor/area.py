@@ -26,6 +26,19 @@ _GUARD = {ord(char): 0xF700 + at for at, char in enumerate(_BREAKS)}
 _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
 _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
+EDITOR_KEYS = (
+    ("Enter", "Type; Escape ends it"),
+    ("ctrl+s", "Save the program"),
+    ("ctrl+r F5", "Run the text as it stands"),
+    ("ctrl+f F3 ⇧F3", "Find, next, previous"),
+    ("ctrl+g", "Go to a line"),
+    ("tab ⇧tab", "Indent, outdent"),
+    ("ctrl+/", "Lines to comments and back"),
+    ("ctrl+z ctrl+y", "Undo, redo"),
+    ("ctrl+x ctrl+c ctrl+v", "Cut, copy, paste"),
+)
+"""For the help: what a key does while the cursor is in the text."""
+
 
 class CodeArea(TextArea):
     """A program's text. Letters are typed into it only while it is `typing`."""

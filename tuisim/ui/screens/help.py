@@ -12,6 +12,7 @@ from textual.containers import VerticalScroll
 from textual.widgets import Static
 
 from tuisim.ui.actions import ACTIONS, Action
+from tuisim.ui.editor.area import EDITOR_KEYS
 from tuisim.ui.screens.dialog import Dialog
 
 START = (
@@ -46,6 +47,10 @@ def key_table() -> Table:
         for key, title in _nudge_rows(actions):
             table.add_row(key, title)
         table.add_row()
+    table.add_row("", Text("In the code", "bold #5fafff"))
+    for key, title in EDITOR_KEYS:
+        table.add_row(key, title)
+    table.add_row()
     for key, title in (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field")):
         table.add_row(key, title)
     return table
