@@ -96,6 +96,8 @@ class Session:
         self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz
         """Length of a tick, 0 where that is no whole number."""
         self._limit_ns = limits.time_ns or 1 << 62
+        self._quick_ns = self._limit_ns
+        """Up to here a wait needs nothing but ticks, as far as `slow` has no bits."""
         self._commands, self._commands_at = 0, -1
         self.stop_reason: StopProgram | None = None
         self._stop_raised_at: int | None = None
@@ -118,7 +120,7 @@ class Session:
     def spend(self, duration_ns: int) -> None:
         """Let time pass."""
         until = self.now + duration_ns
-        if self.slow or until > self._limit_ns:
+        if self.slow or until > self._quick_ns:
             self._pass(until, False)
         elif until < self._due:
             self.now = until
@@ -216,6 +218,9 @@ class Session:
 
     def _run_ticks(self, until: int, on_change: bool) -> bool:
         sim = self.sim
+        if until > self._quick_ns:
+            self._quick_ns = self._limit_ns
+            self.slow |= LIVE
         if self.slow & LIVE and not self.stop_reason:
             return self._run_live(until, on_change)
         sim.changed = False
@@ -245,6 +250,11 @@ class Session:
             if on_change and sim.changed:
                 return True
         return False
+
+    def rush_to(self, tick: int) -> None:
+        """Ask the steering nothing before a tick falls due."""
+        self.slow &= ~LIVE
+        self._quick_ns = min(self._limit_ns, self.sim.due_ns(tick) - 1)
 
     def debug(self) -> Debugger:
         """Return the debugger, which is made when it is first wanted."""

@@ -83,6 +83,7 @@ class Steering:
                     session.ask_stop("stopped", "stopped")
                 case protocol.Pause():
                     self._paused, self._steps, self._reason = True, 0, "asked"
+                    session.slow |= LIVE if self.live else 0
                     self._forget_goals(session)
                 case protocol.Resume():
                     self._paused, self._steps = False, 0
@@ -99,6 +100,11 @@ class Steering:
     def let_on(self, at_full_speed: bool = False) -> None:
         """Let the run go on, to the next moment at which the debugger holds it."""
         self._paused, self._steps, self._rushing = False, 0, at_full_speed
+
+    @property
+    def only_rushes(self) -> bool:
+        """Whether there is nothing to do before the debugger's next goal."""
+        return self._rushing and not self._script and not self._waiting
 
     @staticmethod
     def _forget_goals(session: Session) -> None:

@@ -153,12 +153,18 @@ class Debugger:
 
     def _tell_session(self) -> None:
         """Let the session ask at ticks where that is wanted, and only there."""
-        tracing_to_come = self._trace_from is not None and not self._tracer.on
-        session = self._session
-        session.steering.debugged = self._watcher.ticks or self._instant is not None or tracing_to_come
+        session, goals = self._session, self._goal_ticks()
+        session.steering.debugged = self._watcher.ticks or bool(goals)
         session.slow |= DEBUG
-        if session.steering.debugged:
+        if goals and session.steering.only_rushes and not self._watcher.ticks and min(goals) > session.sim.tick:
+            session.rush_to(min(goals))
+        elif session.steering.debugged:
             session.slow |= LIVE
+
+    def _goal_ticks(self) -> list[int]:
+        """Return the ticks at which something is to be done."""
+        goals = [] if self._instant is None else [self._instant[0]]
+        return goals if self._trace_from is None or self._tracer.on else [*goals, self._trace_from]
 
     # Ticks
 
@@ -167,8 +173,7 @@ class Debugger:
         tick = self._session.sim.tick
         if self._watcher.ticks:
             return 1
-        goals = [goal for goal in (self._instant and self._instant[0], self._trace_from) if goal is not None]
-        return min([most, *(goal - tick for goal in goals if goal > tick)])
+        return min([most, *(goal - tick for goal in self._goal_ticks() if goal > tick)])
 
     def before_tick(self) -> None:
         """Hold if this is the instant; right before a tick, when actions are done."""
