@@ -6,6 +6,7 @@ changes itself or eats memory, happens to the copy, which is thrown away.
 
 from __future__ import annotations
 
+import builtins
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -15,6 +16,7 @@ from typing import Any, NoReturn
 from tuisim.runtime import real
 from tuisim.runtime.baton import Baton
 from tuisim.runtime.channel import Channel
+from tuisim.runtime.loader import LOOP_HOOK
 from tuisim.runtime.session import Session
 
 MOST_BYTES = 4 << 20
@@ -94,6 +96,7 @@ def _freeze(session: Session, baton: Baton) -> None:
         setattr(frozen, name, _refuse)
     for name in ("wait", "give_way", "spawn"):
         setattr(threads, name, _refuse)
+    setattr(builtins, LOOP_HOOK, lambda: None)
     silent: Any = session.output
     silent.row, silent.after_write = lambda *_: None, lambda: None
     for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGVTALRM):

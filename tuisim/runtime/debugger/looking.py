@@ -20,6 +20,7 @@ from tuisim.runtime.session import Session
 
 LOOK_LIMIT_S = 0.3
 """Real seconds that the program's own code gets to show itself, all values together."""
+TOO_LONG = "values that are worked out by the program's own code take too long"
 MOST_NAMES = 200
 MOST_FRAMES = 200
 MOST_WATCHES = 50
@@ -130,24 +131,29 @@ class Looker:
         # The locals of a frame of this thread are taken in the copy: taken here, they would live longer.
         local = None if frame is None or place.task is self._baton.current else frame.f_locals
 
-        def work() -> bytes:
-            return json.dumps(self._shown(frame, local, watches)).encode("utf-8", "replace")
+        def shown(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:
+            def work() -> bytes:
+                return json.dumps(self._shown(frame, local, expressions, seconds)).encode("utf-8", "replace")
 
-        answer = apart(self._session, self._baton, work, LOOK_LIMIT_S, go_on)
-        if answer is not None:
-            found: dict[str, Any] = json.loads(answer)
-            return found, ""
-        nothing = {"locals": [], "globals": [], "watches": [(text, "", "takes too long") for text in watches]}
-        return nothing, "the values take too long"
+            answer = apart(self._session, self._baton, work, LOOK_LIMIT_S, go_on)
+            found: dict[str, Any] | None = None if answer is None else json.loads(answer)
+            return found
+
+        whole = shown(LOOK_LIMIT_S / 2, watches)
+        if whole is not None:
+            return whole, ""
+        # Once more without the program's own code, which may be what does not come back.
+        plain = shown(0.0, ()) or {"locals": [], "globals": []}
+        return {**plain, "watches": [(text, "", "takes too long") for text in watches]}, TOO_LONG
 
     def _shown(
-        self, frame: types.FrameType | None, local: Mapping[str, Any] | None, watches: tuple[str, ...]
+        self, frame: types.FrameType | None, local: Mapping[str, Any] | None, watches: tuple[str, ...], seconds: float
     ) -> dict[str, Any]:
         """Return names and watches as plain data. Done in the copy."""
         inside = self._module if frame is None else frame.f_globals
         names = inside if frame is None else frame.f_locals if local is None else local
         own_module = names is inside
-        renderer = Renderer(LOOK_LIMIT_S / 2)
+        renderer = Renderer(seconds)
         plain = _plain(names)
         visible = {**inside, **plain}
         builtin = frame.f_builtins if frame is not None else self._module.get("__builtins__", {})

@@ -83,7 +83,7 @@ class Renderer:
     def _render_foreign(self, value: object) -> str:
         left_s = self._until_s - real.process_time()
         if left_s <= 0:
-            return f"<{kind_of(value)}, not shown: other values took too long>"
+            return f"<{kind_of(value)}, not shown: values take too long>"
         try:
             with time_limit(min(VALUE_LIMIT_S, left_s)):
                 return _own_text(value)
