@@ -37,6 +37,7 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
     "resample": Subcommand("all variables every --period seconds", "signals:even", ("period", "between")),
     "calc": Subcommand("--expression over the columns", "signals:calculate", ("expression",)),
     "reckon": Subcommand("dead reckoning from the wheels, and its error", "signals:reckon"),
+    "diff": Subcommand("where two runs part; exit code 1 if they do", "comparing:diff"),
     "export": Subcommand("the log in another format", "signals:export"),
 }
 """What `tuisim log` does, by name."""

@@ -8,7 +8,9 @@ from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+from tuisim.commands.logs.comparing import diff_text
 from tuisim.commands.outcome import describe, last_state
 from tuisim.commands.tables import table
 from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
@@ -16,9 +18,10 @@ from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
+from tuisim.rerun import rerun, same
 from tuisim.switches import SwitchParser, nearest
 
-ACTIONS = ("list", "show", "rm", "export")
+ACTIONS = ("list", "show", "rm", "rerun", "export")
 STREAMS = {STDOUT: "stdout", STDERR: "stderr", SPEECH: "speech", INPUT: "input"}
 _MARKS = {STDOUT: "", STDERR: "! ", SPEECH: "says: ", INPUT: "> "}
 SHORTEST = 40
@@ -31,10 +34,11 @@ def add_arguments(parser: SwitchParser) -> None:
         "tuisim runs [list] [--json]\n"
         "       tuisim runs show RUN… [--json]\n"
         "       tuisim runs rm RUN…\n"
+        "       tuisim runs rerun RUN… [--json]\n"
         "       tuisim runs export RUN… FILE… [--telemetry FILE]"
     )
     parser.description = "A RUN is its number, its id or the start of it, the folder's path, or `last`."
-    parser.add_argument("action", nargs="?", default="list", metavar="list|show|rm|export", help="what to do")
+    parser.add_argument("action", nargs="?", default="list", metavar="list|show|rm|rerun|export", help="what to do")
     parser.add_argument("words", nargs="*", metavar="RUN", help=f"runs; for export also files: {', '.join(EXPORTERS)}")
     parser.add_argument("--telemetry", metavar="FILE", help="export every tick of the one run")
     parser.add_argument("--json", action="store_true", help="as JSON")
@@ -59,6 +63,8 @@ def execute(arguments: Namespace) -> int:
             # All are looked up before the first is gone.
             for found in [store.find(word) for word in words]:
                 store.remove(found.id)
+        case "rerun" if words:
+            return max(_rerun(run, as_json=arguments.json) for run in _load(store, words))
         case "export":
             _export(store, words, arguments.telemetry)
         case _ if action not in ACTIONS:
@@ -113,6 +119,20 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         print(f"{row.time_ns / 1e9:10.3f} s  {_MARKS[row.stream]}{row.text}")
     if facts["error"]:
         print(facts["error"].rstrip("\n"))
+
+
+def _rerun(run: StoredRun, *, as_json: bool) -> int:
+    """Run it again and tell whether that gave the same; return the exit code."""
+    with TemporaryDirectory(prefix="tuisim-") as home:
+        scratch = RunStore(Path(home))
+        handle = rerun(run, scratch)
+        try:
+            handle.wait()
+        finally:
+            handle.close()
+        found = same(run, scratch.load_run(handle.run_id))
+    print(json.dumps({"run": run.number, **found.to_plain()}) if as_json else diff_text(found))
+    return 0 if found.same else 1
 
 
 def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> None:

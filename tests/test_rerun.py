@@ -1,0 +1,138 @@
+"""Stored runs done again give the same bits: varied programs, noise, threads, users' actions, stopped ones."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.conftest import run, start  # noqa: F401
+from tests.runtime.test_steering import until
+from tuisim.cli import run_command
+from tuisim.datalog.diff import diff_runs
+from tuisim.datalog.store import RunStore
+from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
+from tuisim.rerun import rerun, same
+
+LOOP = """
+import random, time
+for turn in range({turns}):
+    tank_drive.on(SpeedPercent(random.randint(-{speed}, {speed})), SpeedPercent({speed}))
+    print('Light:', colorLeft.reflected_light_intensity_pc, time.time())
+    time.sleep(random.random() * 0.1)
+"""
+MOVES = """
+for turn in range({turns} // 5):
+    tank_drive.on_for_rotations({speed}, {speed} - 10, 0.3)
+    tank_turn.on_for_degrees(-100, {speed}, 90)
+    print('Gyro:', gyro.angle)
+"""
+THREADS = """
+import threading, time
+def watch():
+    for turn in range({turns}):
+        print('Far:', ultrasonic.distance_centimeters)
+        time.sleep(0.02)
+watcher = threading.Thread(target=watch)
+watcher.start()
+for turn in range({turns} // 4):
+    tank_drive.on_for_seconds({speed}, -20, 0.05)
+watcher.join()
+"""
+ASKS = """
+for turn in range({turns} // 10):
+    tank_drive.on_for_seconds({speed}, 30, 0.1)
+    print('hello', input('who? '))
+"""
+RAISES = LOOP + "raise ValueError('over')\n"
+PROGRAMS = (LOOP, MOVES, THREADS, ASKS, RAISES)
+WAYS = ("headless", "live", "stopped", "limited")
+
+
+def _action(chance: random.Random) -> Message:
+    return chance.choice(
+        (
+            SetPose(chance.uniform(100, 2000), chance.uniform(100, 1000), chance.uniform(-180, 180)),
+            SetNoise(chance.randint(0, 128), chance.randint(0, 500)),
+            SetPen(chance.random() < 0.5),
+            SetButtons(("enter", "up") if chance.random() < 0.5 else ()),
+        )
+    )
+
+
+def _check(number: int, start: object, scratch: Path) -> None:  # noqa: F811
+    chance = random.Random(number)
+    way = WAYS[number % len(WAYS)]
+    text = PROGRAMS[number % len(PROGRAMS)].format(turns=chance.randint(20, 40), speed=chance.randint(20, 60))
+    live = way in ("live", "stopped")
+    answers = () if live else ("Ada",) * 2
+    handle = start(  # type: ignore[operator]
+        text,
+        seed=number,
+        noise=(chance.randint(0, 40), chance.randint(0, 100)),
+        profile=chance.choice(("robolab", "nbev3devsim", "ev3")),
+        live=live,
+        speed=8.0,
+        asks_user=live,
+        answers=answers,
+        time_limit_s=0.5 if way == "limited" else 30.0,
+    )
+    if live:
+        for at in range(3):
+            until(handle, lambda tick=5 + 6 * at: handle.telemetry.count > tick or handle.ended is not None)  # type: ignore[misc]
+            handle.send(_action(chance))
+            handle.send(Answer(f"name {at}"))
+    if way == "stopped":
+        until(handle, lambda: handle.telemetry.count > 25 or handle.ended is not None)
+        handle.stop()
+    elif live:
+        for _ in range(4):
+            handle.send(Answer("more"))
+    assert handle.wait(30.0) is not None
+    stored = RunStore().load_run(handle.run_id)
+    store = RunStore(scratch)
+    again = rerun(stored, store)
+    assert again.wait(30.0) is not None
+    found = same(stored, store.load_run(again.run_id))
+    assert found.same, (way, text, found)
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_runs_again(number: int, start: object, tmp_path: Path) -> None:  # noqa: F811
+    _check(number, start, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(10, 50))
+def test_many_runs_again(number: int, start: object, tmp_path: Path) -> None:  # noqa: F811
+    _check(number, start, tmp_path)
+
+
+def test_a_difference_is_found(start: object) -> None:  # noqa: F811
+    text = LOOP.format(turns=20, speed=40)
+    ids = []
+    for seed in (1, 2):
+        handle = start(text, seed=seed, noise=(0, 50))  # type: ignore[operator]
+        handle.wait(30.0)
+        ids.append(handle.run_id)
+    one, two = (RunStore().load_run(run_id) for run_id in ids)
+    found = diff_runs(one, two)
+    assert not found.same
+    assert found.setup == (("seed", "1", "2"),)
+    assert found.tick is not None and "x_mm" in found.tick.fields
+    assert found.divergence is not None and found.divergence.table[0][1] == 0.0 < found.divergence.max_mm
+    assert diff_runs(one, one).same
+
+
+def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
+    run_command(["run", "log_greys"])
+    run_command(["run", "log_greys", "--seed", "4", "-M", "50"])
+    capsys.readouterr()
+    assert run_command(["runs", "rerun", "last"]) == 0
+    assert "equal to the last bit" in capsys.readouterr().out
+    one, two = (str(info.number) for info in RunStore().runs()[-2:])
+    assert run_command(["log", "diff", one, two]) == 1
+    said = capsys.readouterr().out
+    assert "set-up, seed: 0 | 4" in said and "first differing tick: tick 1," in said and "over 1 mm: from" in said
+    assert run_command(["log", "diff", one]) == 2

@@ -1,0 +1,71 @@
+"""A stored run once more: the same program, world, seed and user actions, headless, with the same bits.
+
+What a run folder does not hold is taken from where it was: the image of the mat, and modules beside the program.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from tuisim.datalog.diff import RunDiff, diff_runs
+from tuisim.errors import LogError
+from tuisim.host import Program, RunHandle, RunOptions, start_run
+from tuisim.protocol import ScriptedAction
+
+if TYPE_CHECKING:
+    from tuisim.datalog.runfile import StoredRun
+    from tuisim.datalog.store import RunStore
+
+CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled"})
+"""Ends that did not come out of the program and its limits: such a run is a piece of the one that is run again."""
+
+
+def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
+    """Start a stored run again, as fast as possible.
+
+    Args:
+        run: The run.
+        store: Where the new run is kept; not the user's own, who did not ask for another run.
+        options: Fields of `RunOptions` that are to be otherwise, such as where to hold.
+
+    Raises:
+        BackgroundError: the mat is no longer there.
+        LogError: the run has no recording, or options that cannot be read.
+    """
+    stored = run.program
+    program = Program(stored.name, stored.text, stored.prelude, stored.path)
+    return start_run(program, run.spec, replace(_options(run), **options), store)
+
+
+def same(run: StoredRun, again: StoredRun) -> RunDiff:
+    """Compare a run with its re-run; `same` of the result tells whether all bits are equal.
+
+    Args:
+        run: The run; one that was cut off is compared up to its last record.
+        again: Its re-run.
+    """
+    return diff_runs(run, again, prefix=run.state in CUT_OFF)
+
+
+def _options(run: StoredRun) -> RunOptions:
+    last = run.telemetry.last()
+    if last is None:
+        raise LogError("has no recording: it ended before its first tick", file=str(run.folder))
+    # A run that was stopped might never end by itself; any other ends before the tick after its last.
+    enough_s = (last.tick + 1) / run.spec.profile.tick_hz
+    stored = run.options
+    try:
+        limit_s = float(stored.get("time_limit_s", 0.0))
+        return RunOptions(
+            time_limit_s=min(limit_s, enough_s) if limit_s else enough_s,
+            stall_limit_s=float(stored.get("stall_limit_s", 0.0)),
+            answers=tuple(stored.get("answers", ())),
+            asks_user=bool(stored.get("asks_user", False)),
+            actions=tuple(
+                ScriptedAction.from_plain({"tick": action.tick, "kind": action.kind, **action.fields})
+                for action in run.actions
+            ),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise LogError(f"cannot be run again: {error}", file=str(run.folder)) from error
