@@ -143,6 +143,26 @@ async def test_finding_goes_round_and_says_where_it_is() -> None:
         assert code.cursor_line == 2
 
 
+@pytest.mark.parametrize(
+    ("keys", "wanted"),
+    [
+        (["ctrl+s"], ["save"]),
+        (["f5"], ["run"]),
+        (["ctrl+f", "ctrl+s", "ctrl+r"], ["save", "run"]),
+        (["enter", "ctrl+n", "ctrl+o"], ["new", "open"]),
+        (["ctrl+n", "ctrl+o"], []),
+    ],
+    ids=["save", "run", "while finding", "while typing", "not typing"],
+)
+async def test_keys_ask_the_app(keys: Keys, wanted: list[str]) -> None:
+    app = CodeApp(Code())
+    async with app.run_test(size=(60, 12)) as pilot:
+        await alone(pilot)
+        await pilot.press(*keys)
+        await pilot.pause()
+        assert app.messages == wanted
+
+
 async def test_a_reload_keeps_cursor_and_scroll_and_can_be_undone() -> None:
     lines = [f"x{n} = {n}" for n in range(200)]
     async with CodeApp(Code()).run_test(size=(60, 12)) as pilot:

@@ -49,17 +49,14 @@ class CodeArea(TextArea):
         "code--number-column", "code--lit", "code--error", "code--break", *(f"code--{kind}" for kind in KINDS),
     }  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+s", "want('save')", "Save the program", show=False),
         Binding("ctrl+f", "want('find')", "Find", show=False),
         Binding("ctrl+g", "want('line')", "Go to a line", show=False),
         Binding("f3", "want('next')", "Next place", show=False),
         Binding("shift+f3", "want('previous')", "Place before", show=False),
-        Binding("f5", "want('run')", "Run", show=False),
-        Binding("ctrl+r", "want('run')", "Run", show=False),
     ]
 
     class Wanted(Message):
-        """A key of the editor was pressed: save, find, line, next, previous, run, type, done."""
+        """A key was pressed: find, line, next, previous, type, done, new, open."""
 
         def __init__(self, what: str) -> None:
             super().__init__()
@@ -228,6 +225,9 @@ class CodeArea(TextArea):
         elif change := _CHANGES.get(event.key):
             self._done(event)
             self._change_lines(change)
+        elif wanted := _WHILE_TYPING.get(event.key):
+            self._done(event)
+            self.post_message(self.Wanted(wanted))
         elif event.key.startswith("alt+"):
             # It comes with a character that nobody has typed.
             self._done(event)
@@ -265,6 +265,9 @@ class CodeArea(TextArea):
             if event.y + self.scroll_offset.y < self.wrapped_document.height:
                 self.post_message(self.GutterClicked(row + 1))
 
+
+_WHILE_TYPING = {"ctrl+n": "new", "ctrl+o": "open"}
+"""What those keys do in every editor; elsewhere they are keys of the robot and the obstacles."""
 
 _CHANGES: Mapping[str, editing.Change] = {
     "tab": editing.indented,

@@ -43,6 +43,8 @@ class EditorWishes(App[None]):
                 # The robot is to be seen.
                 self.desk.give_all("")
                 cast("Lab", self).action_act("run")
+            case "new" | "open":
+                cast("Lab", self).action_act(message.what)
             case _:
                 cast("Lab", self).say("No program to edit: o opens one, ctrl+t begins a new one")
 

@@ -182,7 +182,9 @@ class Work:
                 do()
 
         answers = (("s", "Save them"), ("d", "Discard them"))
-        question = Question("Unsaved changes", f"{self._name} has changes that are not saved.", answers)
+        question = Question(
+            "Unsaved changes", f"{self._name} has changes that are not saved.", answers, "goes on editing"
+        )
         self._lab.push_screen(question, answered)
 
     def _discard(self) -> None:

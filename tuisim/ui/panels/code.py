@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.message import Message
 from textual.widgets import TextArea
@@ -31,6 +32,11 @@ class Code(Vertical):
     PANEL_ID: ClassVar[str] = "code"
     TITLE: ClassVar[str] = "Code"
 
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+s", "want('save')", "Save the program", show=False),
+        Binding("f5,ctrl+r", "want('run')", "Run", show=False),
+    ]
+
     class Edited(Message):
         """The text was changed here."""
 
@@ -39,7 +45,7 @@ class Code(Vertical):
             self.text = text
 
     class Wanted(Message):
-        """The program is to be saved (`save`), to run (`run`), or nothing is open to be edited (`new`)."""
+        """To `save` the program, to `run` it, a `new` one, to `open` another; or there is `none` to be edited."""
 
         def __init__(self, what: str) -> None:
             super().__init__()
@@ -185,7 +191,7 @@ class Code(Vertical):
     def start_typing(self) -> None:
         """Let letters go into the text."""
         if not self._key:
-            self.post_message(self.Wanted("new"))
+            self.post_message(self.Wanted("none"))
             return
         self._area.focus()
         self._type(True)
@@ -210,6 +216,10 @@ class Code(Vertical):
             self.show_line(self._line)
             self._say()
             self.post_message(self.Edited(text))
+
+    def action_want(self, what: str) -> None:
+        """Ask the app for something."""
+        self.post_message(self.Wanted(what))
 
     def on_code_area_gutter_clicked(self, event: CodeArea.GutterClicked) -> None:
         """A breakpoint, there or away."""

@@ -21,12 +21,12 @@ class Question(Dialog[str]):
         title: What it is about.
         text: What is asked.
         answers: The first is also given by Enter.
+        escape: What Escape does.
     """
 
-    HINT: str = "Escape decides later"
-
-    def __init__(self, title: str, text: str, answers: Sequence[Answer]) -> None:
+    def __init__(self, title: str, text: str, answers: Sequence[Answer], escape: str = "decides later") -> None:
         super().__init__()
+        self.HINT = f"Escape {escape}"
         self.TITLE_TEXT = title.replace("[", "\\[")
         self._text = text
         self._answers = answers
