@@ -75,6 +75,8 @@ class Bridge:
         """Called instead of a user action while a former instant is looked at: it can only be done in a branch."""
         self._branch: Branch | None = None
         """What the run at hand is becoming, while it is done again up to its instant."""
+        self.pressed: frozenset[str] = frozenset()
+        """The brick's buttons that the user holds down."""
         self._still = self._at_rest(self.home)
         self._end = ""
         """How the run ended."""
@@ -148,6 +150,8 @@ class Bridge:
                 stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
                 next_spec=self.plan.spec,
             ),
+            face=self.timeline.face(),
+            pressed=self._pressed_at(record),
             past=self.in_past,
             now_tick=max(0, self.timeline.newest),
             now_pose=newest.pose if newest else None,
@@ -180,6 +184,13 @@ class Bridge:
         # At rest the pen is where the next run will have it.
         down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.plan.spec.robot.pen.down
         return instant_of(record, self.spec, noise), record.line, down
+
+    def _pressed_at(self, record: TickRecord | None) -> frozenset[str]:
+        """The brick's buttons that are held down: those of the user now, or those of the instant looked at."""
+        recording = self.timeline.recording
+        if not self.in_past or record is None or recording is None:
+            return self.pressed if self.in_run else frozenset()
+        return recording.pressed_at(record.tick)
 
     def _field(self, record: TickRecord | None) -> Field | None:
         """The mat as the sensors saw it then, None until it is prepared for them."""
@@ -280,6 +291,11 @@ class Bridge:
             return
         self._send(protocol.SetPen(down))
         self.plan = plans.with_pen(self.plan, down)
+
+    def press(self, buttons: frozenset[str]) -> None:
+        """Hold these of the brick's buttons down, and no others."""
+        self.pressed = buttons
+        self._send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""

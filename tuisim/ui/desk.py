@@ -9,12 +9,13 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.ui.layout import arrange, size_class
+from tuisim.ui.layout import Arrangement, Box, arrange, size_class
 from tuisim.ui.panels import PANELS, Panel, PlanPanel
 from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import Snapshot
 
 if TYPE_CHECKING:
+    from tuisim.ui.panels.brick import Brick
     from tuisim.ui.panels.chart import Chart
     from tuisim.ui.panels.code import Code
     from tuisim.ui.panels.controls import Controls
@@ -51,6 +52,8 @@ class Desk(Container):
         self._alone = ""
         """Id of the panel that has the whole place, empty for none."""
         self._left_out: tuple[str, ...] = ()
+        self.enlarged = ""
+        """The panel that fills the desk alone, empty for none."""
 
     # A hidden panel still takes what it is fed; one never shown is None.
 
@@ -80,6 +83,11 @@ class Desk(Container):
         return cast("Controls | None", self.panels.get("controls"))
 
     @property
+    def brick(self) -> Brick | None:
+        """The brick, if it has been made."""
+        return cast("Brick | None", self.panels.get("brick"))
+
+    @property
     def obstacles(self) -> Obstacles | None:
         """The list of obstacles, if it has been made."""
         return cast("Obstacles | None", self.panels.get("obstacles"))
@@ -95,7 +103,8 @@ class Desk(Container):
     def toggle(self, panel: str) -> None:
         """Show a panel, or hide it; one asked for is given room before the others."""
         self._alone = ""
-        show = not self.shown(panel)
+        show = not self.shown(panel) or bool(self.enlarged)
+        self.enlarged = ""
         self._asked.pop(panel, None)
         self._asked[panel] = show
         before = {panel_id for panel_id in PANELS if self.shown(panel_id)}
@@ -115,6 +124,11 @@ class Desk(Container):
             self._alone = panel
             self.lay_out()
 
+    def enlarge(self, panel: str) -> None:
+        """Let a panel fill the desk alone; if one does already, all come back."""
+        self.enlarged = "" if self.enlarged else panel
+        self.lay_out()
+
     def _wanted(self) -> list[str]:
         """Ids of the panels to show, the most wanted first."""
         if self._alone:
@@ -129,6 +143,8 @@ class Desk(Container):
         if not self.size:
             return
         arrangement = arrange(self._wanted(), self.size.width, self.size.height)
+        if self.enlarged:
+            arrangement = Arrangement({self.enlarged: Box(0, 0, self.size.width, self.size.height)})
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in arrangement.boxes

@@ -84,6 +84,13 @@ class Recording:
         """Return the noise at the tick of a record."""
         return noise_at(self.spec, self.actions(), record)
 
+    def pressed_at(self, tick: int) -> frozenset[str]:
+        """Return the brick's buttons that were held down when a tick was done."""
+        for action in reversed(self.actions()):
+            if action.kind == "set_buttons" and action.tick < tick:
+                return frozenset(action.fields["pressed"])
+        return frozenset()
+
     def field_at(self, tick: int, mat: Field) -> Field:
         """Return the mat as the sensors saw it at a tick: with what the pen had drawn, if they see that."""
         if not self.spec.world.pen_marks:

@@ -106,11 +106,10 @@ class RowIndex:
         first = max(0, end - most)
         return [self.row(number) for number in self._texts[first:end]], first
 
-    def face_rows(self, tick: int) -> list[OutputRow]:
-        """Return the rows that say all of what the brick showed when a tick was done."""
+    def face_numbers(self, tick: int) -> list[int]:
+        """Return the numbers of the rows that say all of what the brick showed when a tick was done, in order."""
         count = self.until(tick)
-        found = [numbers[at - 1] for numbers in self._faces.values() if (at := bisect_right(numbers, count - 1))]
-        return [self.row(number) for number in sorted(found)]
+        return sorted(numbers[at - 1] for numbers in self._faces.values() if (at := bisect_right(numbers, count - 1)))
 
     def row(self, number: int) -> OutputRow:
         """Return one row by its number, from 0."""

@@ -10,6 +10,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
+from tuisim.datalog.face import Face
 
 IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
 """Run states: no run yet, child is starting, time moves, stands still, waits in input(), over."""
@@ -44,6 +45,11 @@ class Snapshot:
     """Whether the left and the right motor are told to run but cannot turn."""
     next_spec: RunSpec | None = None
     """What the next run will be; differs from `spec` in what was changed during the run. None: the same."""
+
+    face: Face = Face()
+    """What the brick shows."""
+    pressed: frozenset[str] = frozenset()
+    """The brick's buttons that are held down."""
 
     past: bool = False
     """Whether this is an instant that is looked back at, and not the newest one."""

@@ -30,10 +30,14 @@ class Timeline:
         self._played_s: float | None = None
         """Simulated time reached while the recording is played, None while it stands."""
         self._wall_s = 0.0
+        self._face_numbers: list[int] = []
+        self._face = Face()
+        """What was shown after the rows of those numbers."""
 
     def take(self, recording: Recording | None) -> None:
         """Turn to another run, and to its newest instant."""
         self.recording = recording
+        self._face_numbers, self._face = [], Face()
         self.breaks.clear()
         self.go(None)
 
@@ -69,7 +73,11 @@ class Timeline:
         """Return what the brick shows at the instant that is looked at."""
         if self.recording is None:
             return Face()
-        return face_after(Face(), self.recording.rows.face_rows(self.newest if self.at is None else self.at))
+        numbers = self.recording.rows.face_numbers(self.newest if self.at is None else self.at)
+        if numbers != self._face_numbers:
+            self._face_numbers = numbers
+            self._face = face_after(Face(), [self.recording.rows.row(number) for number in numbers])
+        return self._face
 
     def marks(self) -> list[tuple[int, str]]:
         """Return the ticks that stand out, with what they stand for."""

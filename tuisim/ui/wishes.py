@@ -85,9 +85,10 @@ class Wishes(EditorWishes):
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
         """The user presses the brick's buttons, or lets them go."""
-        if message.buttons and not self.bridge.in_run:
+        if self.bridge.in_run or not message.buttons:
+            self.bridge.press(message.buttons)
+        else:
             self.notify("The brick's buttons work while a program runs: R runs it", timeout=3)
-        self.bridge.press(message.buttons)
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
         """Noise was set."""
