@@ -11,8 +11,10 @@ from textual.pilot import Pilot
 from tests.ui.app_help import notices, program, ready, screen_text, settings, until
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
+from tuisim.datalog.catalogue import RunInfo
 from tuisim.datalog.store import RunStore
 from tuisim.ui.app import Lab
+from tuisim.ui.screens.runs import branch_root
 from tuisim.ui.snapshot import ENDED, PAUSED, RUNNING
 from tuisim.ui.travel import to_tick
 
@@ -157,3 +159,31 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         await pilot.press("y", "y")
         await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == ENDED)
         await until(pilot, lambda: any("of the edited program: it went another way" in n for n in notices(app)))
+
+
+async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
+    async with Lab(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await with_a_past(pilot)
+        await stop(pilot, app)
+        first = app.bridge.run_id
+        to_tick(app, 200)
+        app.bridge.set_noise(NoiseSpec(0, 0))
+        await pilot.press("y")
+        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 260)
+        await stop(pilot, app)
+        await pilot.press("equals_sign")
+        await until(pilot, lambda: "Compare run 2 with" in screen_text(app) and "1 of 1 runs" in screen_text(app))
+        await pilot.press("enter")
+        await until(pilot, lambda: "first tick" in screen_text(app))
+        assert "2.00 s, tick 200: differs in actions" in screen_text(app)
+        assert "user actions" in screen_text(app)
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.timeline.at == 200)
+
+
+@pytest.mark.parametrize(
+    ("tags", "number"), [("branch-of-12 at-3.20s", 12), ("", None), ("best branch-of-2026x", None)]
+)
+def test_a_branch_knows_its_root(tags: str, number: int | None) -> None:
+    run = RunInfo(3, "id", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, tags=tags)
+    assert branch_root(run) == number

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from textual.message import Message
 
-from tuisim.ui import branching, travel, verbs
+from tuisim.ui import branching, comparing, travel, verbs
 from tuisim.ui.editor import wishes as editor
 from tuisim.ui.panels import PANELS
 from tuisim.ui.snapshot import PAUSED, RUNNING, STARTING, WAITING
@@ -83,6 +83,7 @@ _KEY_LABELS = {
     "right_square_bracket": "]",
     "question_mark": "?",
     "comma": ",",
+    "equals_sign": "=",
     "less_than_sign": "<",
     "greater_than_sign": ">",
     "left_parenthesis": "(",
@@ -164,6 +165,7 @@ def _travels() -> list[Action]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
     return [
+        Action("now", "end", "Back to now (also escape)", TIME, travel.to_now, on, "now"),
         Action("second-back", "less_than_sign", "One second back", TIME, travel.second_back, back, "1 s", "", keys),
         Action("second-on", "greater_than_sign", "One second on", TIME, travel.second_on, on),
         Action("sample-before", "left_parenthesis", "The sample before", TIME, travel.sample_before, back),
@@ -171,7 +173,6 @@ def _travels() -> list[Action]:
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, travel.ask_where, back, "go to"),
         Action("branch", "y", "Branch: go on from this instant", TIME, branching.from_here, _can_branch, "branch"),
         Action("start-of-run", "home", "Start of the run", TIME, travel.to_start, back),
-        Action("now", "end", "Back to now (also escape)", TIME, travel.to_now, on),
     ]
 
 
@@ -199,6 +200,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("pen", "p", "Pen up or down", ROBOT, verbs.pen, footer="pen"),
         Action("slower", "left_square_bracket", "Slower", PROGRAM, verbs.slower, footer="speed", footer_key="[ ]"),
         Action("faster", "right_square_bracket", "Faster", PROGRAM, verbs.faster),
+        Action("compare", "equals_sign", "Compare this run with another", FILES, comparing.compare, _can_look_back),
         Action("runs", "h", "Open a stored run", FILES, travel.choose_run, _can_change_world, "runs"),
         Action("export", "e", "Export the log to a file", FILES, verbs.export, _can_export, "export"),
         Action("save-world", "ctrl+s", "Save the world to a file", FILES, verbs.save_world, footer="save"),

@@ -13,13 +13,16 @@ from tuisim import protocol
 from tuisim.datalog.store import RunStore
 from tuisim.errors import TuisimError
 from tuisim.host import RunOptions, start_run
-from tuisim.protocol import ScriptedAction
+from tuisim.protocol import BEFORE_NEXT_TICK, ScriptedAction
 from tuisim.ui.snapshot import PAUSED
 
 if TYPE_CHECKING:
     from tuisim.host import Program, RunHandle
     from tuisim.ui.app import Lab
     from tuisim.ui.recording import Recording
+
+BRANCH_TAG = "branch-of-"
+"""Begins the tag that says from which run another one branched off."""
 
 _WORLD_FIELDS = (
     "x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps",
@@ -58,7 +61,7 @@ class Branch:
     @property
     def tags(self) -> tuple[str, str]:
         """The title as tags of the run."""
-        return f"branch-of-{self.of.number or self.of.run_id}", f"at-{self.time_s:.2f}s"
+        return f"{BRANCH_TAG}{self.of.number or self.of.run_id}", f"at-{self.time_s:.2f}s"
 
     def script(self) -> tuple[ScriptedAction, ...]:
         """Return what the user had done until then."""
@@ -68,15 +71,18 @@ class Branch:
             if action.tick <= self.tick
         )
 
-    def start(self) -> RunHandle:
-        """Start the run; it stands still before its first tick.
+    def start(self, speed: float) -> RunHandle:
+        """Start the run: it comes to the instant as fast as possible, and stands still there.
+
+        Args:
+            speed: From there on: 1.0 is real time, 0 as fast as possible.
 
         Raises:
             TuisimError: it cannot be started.
         """
         options = RunOptions(
-            live=True, speed=0.0, start_paused=True, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True,
-            answers=self.of.answers, actions=self.script(),
+            live=True, speed=speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True, answers=self.of.answers,
+            actions=self.script(), hold_at=(self.tick, BEFORE_NEXT_TICK),
         )  # fmt: skip
         run = start_run(self.program, self.of.spec, options)
         RunStore().tag(run.run_id, self.tags)

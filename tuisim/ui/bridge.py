@@ -71,12 +71,12 @@ class Bridge:
         self.run: RunHandle | None = None
         """The run at work or the last one; None before the first, and while one from the store is shown."""
         self.timeline = Timeline()
+        self.pressed: frozenset[str] = frozenset()
+        """The brick's buttons that the user holds down."""
         self.propose: Callable[[protocol.Message], None] = lambda _: None
         """Called instead of a user action while a former instant is looked at: it can only be done in a branch."""
         self._branch: Branch | None = None
         """What the run at hand is becoming, while it is done again up to its instant."""
-        self.pressed: frozenset[str] = frozenset()
-        """The brick's buttons that the user holds down."""
         self._still = self._at_rest(self.home)
         self._end = ""
         """How the run ended."""
@@ -225,21 +225,24 @@ class Bridge:
         Raises:
             TuisimError: the run cannot be started.
         """
-        run = branch.start()
+        run = branch.start(self.speed)
         self.close()
         self.run, self._end = run, ""
         self._look_at(Recording(run, branch.of.answers))
-        self._send(protocol.StepTicks(branch.tick))
         self._branch = branch
 
-    def _branch_is_there(self) -> Branch | None:
-        """Leave the former run, in the midst of which the new one has come to the instant of the branch."""
+    def _branch_is_there(self, held: protocol.Paused | None = None) -> Branch | None:
+        """Leave the former run, in the midst of which the new one is held at the instant of the branch, or has ended.
+
+        A program that comes to its end before that is held there.
+        """
         branch, self._branch = self._branch, None
-        if branch is not None and self.in_run:
+        if branch is not None and held is not None:
+            early = held.tick < branch.tick
             self._send(protocol.SetSpeed(self.speed))
-            if branch.then is not None:
+            if branch.then is not None and not early:
                 self._send(branch.then)
-            if branch.goes_on:
+            if early or (branch.goes_on and not self.in_past):
                 self._send(protocol.Resume())
         return branch
 
@@ -333,6 +336,7 @@ class Bridge:
 
     def load(self, plan: Plan, program: Program | None) -> None:
         """Take another world or program; the robot goes to its start. Not during a run."""
+        self.timeline.go(None)
         self.plan, self.program, self.home = plan, program, plan.spec.world.start
         self._start_at(plan.spec.world.start)
 
@@ -353,7 +357,7 @@ class Bridge:
 
     def _send(self, command: protocol.Message) -> None:
         # On its way to its instant a branch is done again exactly as it was.
-        if self.run is not None and self._branch is None:
+        if self.run is not None and (self._branch is None or isinstance(command, protocol.Answer)):
             self.run.send(command)
 
     # What comes from the run
@@ -375,8 +379,8 @@ class Bridge:
                 case protocol.Ended():
                     ended, self._end = event, event.end
                     branched = self._branch_is_there()
-                case protocol.Paused(tick=tick) if self._branch and tick >= self._branch.tick:
-                    branched = self._branch_is_there()
+                case protocol.Paused() if self._branch:
+                    branched = self._branch_is_there(event)
                 case protocol.Spoke(text=text) if self._branch is None:
                     spoken.append(text)
         rows = recording.rows.take(ROWS_A_POLL)

@@ -118,8 +118,6 @@ def ask_where(lab: Lab) -> None:
         if tick is not None:
             to_tick(lab, tick)
 
-    if lab.bridge.in_run and lab.bridge.state != PAUSED:
-        lab.bridge.pause()
     lab.push_screen(GoTo(lab.bridge.timeline), go)
 
 

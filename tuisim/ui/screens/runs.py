@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from datetime import datetime
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 from textual import on
@@ -13,8 +14,12 @@ from textual.widgets.option_list import Option
 
 from tuisim.datalog.catalogue import RunInfo
 from tuisim.errors import TuisimError
+from tuisim.ui.branching import BRANCH_TAG
 from tuisim.ui.screens.choosing import ListDialog
 from tuisim.ui.verbs import end_label
+
+if TYPE_CHECKING:
+    from tuisim.ui.recording import Recording
 
 MOST_LISTED = 300
 """So many runs are listed at once; the others are found by searching."""
@@ -58,8 +63,19 @@ def run_line(run: RunInfo) -> Text:
     return line
 
 
+def branch_root(run: RunInfo) -> int | None:
+    """Return the number of the run that a run is a branch of, None if it is none."""
+    tag = next((word for word in run.tags.split() if word.startswith(BRANCH_TAG)), "")
+    number = tag.removeprefix(BRANCH_TAG)
+    return int(number) if number.isdecimal() else None
+
+
 class RunChooser(ListDialog):
-    """Gives the id of the run that was chosen."""
+    """Gives the id of the run that was chosen.
+
+    Args:
+        compared: The run that another one is chosen to be compared with, if that is what it is for.
+    """
 
     DEFAULT_CSS = """
     RunChooser .dialog { width: 110; padding: 1 0; }
@@ -69,8 +85,12 @@ class RunChooser(ListDialog):
     TITLE_TEXT: str = "Runs"
     HINT: str = "Enter opens · type to search · Escape closes"
 
-    def __init__(self) -> None:
+    def __init__(self, compared: Recording | None = None) -> None:
         super().__init__()
+        if compared is not None:
+            self.TITLE_TEXT = f"Compare {compared.name} with …"
+            self.HINT = "Enter compares · type to search · Escape closes"
+        self._left_out = compared.run_id if compared else ""
         self._runs: list[RunInfo] = []
 
     def content(self) -> ComposeResult:
@@ -96,8 +116,14 @@ class RunChooser(ListDialog):
         self.app.call_from_thread(self._fill, runs)
 
     def _fill(self, runs: list[RunInfo]) -> None:
-        self._runs = runs
+        self._runs = [run for run in runs if run.id != self._left_out]
         self._list("")
+        this = next((run for run in runs if run.id == self._left_out), None)
+        root = branch_root(this) if this else None
+        options = self.query_one(OptionList)
+        if any(run.number == root for run in self._runs):
+            numbers = [run.number for run in matching(self._runs, "")[:MOST_LISTED]]
+            options.highlighted = numbers.index(root) if root in numbers else 0
 
     def _say(self, text: str) -> None:
         self.query_one("#message", Static).update(text)
