@@ -381,6 +381,8 @@ class Bridge:
                     branched = self._branch_is_there()
                 case protocol.Paused() if self._branch:
                     branched = self._branch_is_there(event)
+                case protocol.Paused(reason="break", tick=tick):
+                    self.timeline.breaks.append(tick)
                 case protocol.Spoke(text=text) if self._branch is None:
                     spoken.append(text)
         rows = recording.rows.take(ROWS_A_POLL)
