@@ -98,7 +98,8 @@ def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     assert not timeline.beat(10.3, 2.0)
     assert timeline.at == 70
     assert timeline.beat(12.0, 0.0)
-    assert (timeline.at, timeline.playing) == (None, False)
+    assert not timeline.playing
+    assert timeline.record() is None
 
 
 def test_the_difference_of_two_runs_is_told() -> None:
