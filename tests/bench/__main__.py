@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from tests.bench.back import back
 from tests.bench.crowded import crowded
+from tests.bench.debugging import debugging
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
 from tests.bench.frames import chart, frames
 from tests.bench.running import EMPTY, begin
@@ -25,6 +26,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "help": help_text,
     "first-paint": first_paint,
     "stop": stop_latency,
+    "debugger": debugging,
     "frames": frames,
     "chart": chart,
     "back": back,

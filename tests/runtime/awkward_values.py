@@ -80,10 +80,10 @@ class R:
 r = R()
 print('on')
 """,
-    "repr of 100 MB": """\
+    "repr of 20 MB": """\
 class R:
     def __repr__(self):
-        return 'x' * 100_000_000
+        return 'x' * 20_000_000
 r = R()
 print('on')
 """,

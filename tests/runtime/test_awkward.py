@@ -61,8 +61,7 @@ def walk(start: Start, name: str, how: str) -> None:
     if ended is None:
         stops_at_once(driver)
         return
-    assert name not in ENDLESS
-    assert ended.end == ENDS.get(name, "finished"), ended
+    assert ended.end == ENDS.get(name, "time_limit" if name in ENDLESS else "finished"), ended
 
 
 @pytest.mark.parametrize("name", QUICK)
@@ -97,7 +96,7 @@ LOOKS = {
     "repr that loops": ("r", "<repr takes too long>"),
     "repr that recurses": ("r", "<repr calls itself without end>"),
     "repr of no text": ("r", "<repr raised TypeError: __repr__ returned non-string (type int)>"),
-    "repr of 100 MB": ("r", "x" * 399 + "…"),
+    "repr of 20 MB": ("r", "x" * 300),
     "repr with effects": ("r", "<repr raised RuntimeError: the program stands still"),
     "long list": ("data", "[0, 1, 2, 3"),
     "huge numbers and texts": ("n", "<whole number of 561471 bits>"),

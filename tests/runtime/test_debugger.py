@@ -13,6 +13,7 @@ from tuisim.protocol import (
     AFTER_TICK,
     BEFORE_NEXT_TICK,
     Ended,
+    Pause,
     Paused,
     Resume,
     RunToInstant,
@@ -285,3 +286,45 @@ def test_stop_works_wherever_it_holds(debug: Callable[..., Driver], text: str, h
     driver.run.stop()
     assert driver.finish().end == "stopped"
     assert time.monotonic() - begun < 1.5
+
+
+BUSY = {"plain": "3 if n < 0", "with a call": "3 if len(str(n)) > 99"}
+
+
+@pytest.mark.parametrize("text", BUSY.values(), ids=BUSY)
+def test_a_break_in_a_busy_loop_leaves_the_run_in_hand(debug: Callable[..., Driver], text: str) -> None:
+    driver = debug("n = 0\nwhile True:\n    n += 1\n", breaks=(text,), speed=1.0)
+    held = driver.do(Pause())
+    assert (held.reason, held.line) == ("asked", 3)
+    driver.run.send(Resume())
+    assert driver.do(StepLine()).reason == "step"
+    driver.run.stop()
+    assert driver.finish().end == "stopped"
+
+
+RUNNING = {
+    "main thread": "n = 0\nwhile True:\n    n += 1\n",
+    "other thread": (
+        "def f():\n    while True: n = 1\nimport threading\nt = threading.Thread(target=f)\nt.start()\nt.join()\n"
+    ),
+    "sleeper": "import time\nwhile True:\n    time.sleep(0.02)\n    n = 1\n",
+}
+
+
+@pytest.mark.parametrize("text", RUNNING.values(), ids=RUNNING)
+def test_a_break_set_while_the_program_runs_is_met(debug: Callable[..., Driver], text: str) -> None:
+    driver = debug("print('A: 1')\n" + text, speed=1.0)
+    give_up = time.monotonic() + 10
+    while not driver.run.output.length:
+        assert time.monotonic() < give_up
+        driver.run.wait_for_event(0.01)
+        driver.run.pump()
+    line = 4 if "n += 1" in text else 3 if "def" in text else 5
+    driver.run.send(SetBreaks((str(line),)))
+    held = driver.paused()
+    assert (held.line, held.reason) == (line, "break")
+    assert driver.do(StepLine()).line in (line - 1, line, line + 1, 3, 4)
+    driver.run.send(SetBreaks(()))
+    driver.run.send(Resume())
+    driver.run.stop()
+    assert driver.finish().end == "stopped"

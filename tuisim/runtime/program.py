@@ -122,7 +122,11 @@ class ProgramRunner:
         sys.modules["__main__"] = module
         # What is prepared for the program costs it nothing.
         self._session.free += 1
-        exec(compile_prelude(self._config.prelude), module.__dict__)
+        try:
+            exec(compile_prelude(self._config.prelude), module.__dict__)
+        except Exception as error:  # such as a sensor that this robot has not
+            error.add_note(f"The prelude `{self._config.prelude}` asked for it: --preload imports makes no devices.")
+            raise
         self._session.free -= 1
         self.prepared |= {name: id(value) for name, value in module.__dict__.items()}
         # What is there now stays; the program's own garbage is looked for from here on.

@@ -84,7 +84,8 @@ class Steering:
                 case protocol.Pause():
                     self._paused, self._steps, self._reason = True, 0, "asked"
                     session.slow |= LIVE if self.live else 0
-                    self._forget_goals(session)
+                    if session.debugger is not None:
+                        session.debugger.pause()
                 case protocol.Resume():
                     self._paused, self._steps = False, 0
                 case protocol.StepTicks(ticks=ticks):
@@ -173,6 +174,7 @@ class Steering:
         self.live, session.slow = True, session.slow | LIVE
         self._paused, self._steps, self._rushing = True, 0, False
         self.holding, self.between_ticks = True, moment.ordinal in (AFTER_TICK, BEFORE_NEXT_TICK)
+        self._forget_goals(session)
         self._channel.send(moment)
         while self._paused and not self._steps and session.stop_reason is None:
             self._channel.wait(1.0)

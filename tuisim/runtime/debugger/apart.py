@@ -42,8 +42,18 @@ def apart(
     Returns:
         Its answer, None if there is none in time.
     """
-    answer_fd, answer_write = os.pipe()
-    pid = real.fork()
+    try:
+        answer_fd, answer_write = os.pipe()
+    except OSError:
+        # The program has used up its files.
+        return None
+    try:
+        pid = real.fork()
+    except OSError:
+        # It has used up the machine.
+        os.close(answer_fd)
+        os.close(answer_write)
+        return None
     if not pid:
         _be_the_copy(session, baton, work, answer_write, limit_s)
     os.close(answer_write)

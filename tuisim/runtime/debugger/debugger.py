@@ -18,7 +18,7 @@ from tuisim.runtime.debugger.stepping import NEXT_LINE, Step, step_from
 from tuisim.runtime.debugger.tracer import Tracer
 from tuisim.runtime.debugger.watching import Watcher
 from tuisim.runtime.halt import StopProgram
-from tuisim.runtime.session import DEBUG, Session
+from tuisim.runtime.session import ATTENTION, DEBUG, Session
 from tuisim.runtime.steering import LIVE
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ class Debugger:
         self._watcher = Watcher(session)
         self._by_line: dict[int, list[tuple[Break, Condition | None]]] = {}
         self._step: Step | None = None
+        self._step_reason = "step"
         self._line = 0
         self._instant: Instant | None = None
         self._trace_from: int | None = None
@@ -122,8 +123,15 @@ class Debugger:
             self._trace(at_tick=False)
             self._tell_session()
 
+    def pause(self) -> None:
+        """Hold at the next line that is met, if that comes before the next tick."""
+        self.forget_goals()
+        if self._tracer.on and not self._session.steering.holding:
+            self._step, self._step_reason = NEXT_LINE, "asked"
+            self._trace(at_tick=False)
+
     def _forget_goals(self) -> None:
-        self._step, self._line, self._instant = None, 0, None
+        self._step, self._step_reason, self._line, self._instant = None, "step", 0, None
 
     def _set_instant(self, tick: int, ordinal: int) -> None:
         self._instant = (tick, ordinal)
@@ -209,6 +217,8 @@ class Debugger:
     def _at_line(self, frame: types.FrameType, line: int) -> None:
         """See whether the run is to hold at a line that is about to run."""
         session = self._session
+        if session.slow & ATTENTION:
+            session.checkpoint()
         if session.stop_reason is not None:
             return
         own = frame.f_code.co_filename == session.program_file
@@ -217,7 +227,7 @@ class Debugger:
         if self._instant is not None and self._is_reached(self._tracer.ordinal):
             reason = "instant"
         elif self._step is not None and self._step.is_done(self._baton.current, depth):
-            reason = "step"
+            reason = self._step_reason
         elif own and line == self._line:
             reason = "line"
         elif own:
@@ -267,7 +277,6 @@ class Debugger:
             StopProgram: the run is to stop.
         """
         session = self._session
-        self._forget_goals()
         self._trace_from = None if self._tracer.on else self._trace_from
         session.steering.hold(session, moment)
         try:

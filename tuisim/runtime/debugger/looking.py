@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import threading
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -96,8 +97,8 @@ class Looker:
 
     def name_of(self, task: Task) -> str:
         """Return the name of a thread, as the program sees it."""
-        threading: Any = sys.modules["threading"]
-        thread = threading._active.get(task.ident)
+        threads: Any = threading
+        thread = threads._active.get(task.ident)
         name = getattr(thread, "_name", "")
         return cut(str(name), 60) if isinstance(name, str) and name else f"thread {task.ident}"
 

@@ -6,6 +6,7 @@ there were no debugger. Only code of the program's own files gets line events.
 
 from __future__ import annotations
 
+import os
 import sys
 import types
 from collections import deque
@@ -35,6 +36,7 @@ class Tracer:
 
     def __init__(self, session: Session, baton: Baton, check: LineCheck) -> None:
         self._session, self._baton, self._check = session, baton, check
+        self._sim = session.sim
         self._own = own_files(session.program_file)
         self._own_by_file: dict[str, bool] = {}
         self.on = False
@@ -91,27 +93,31 @@ class Tracer:
         file = frame.f_code.co_filename
         own = self._own_by_file.get(file)
         if own is None:
-            own = self._own_by_file[file] = self._own(file)
+            # Code that a program makes itself may be of any file; lines that nobody can see are not shown.
+            own = file == self._session.program_file or (self._own(file) and os.path.isfile(file))
+            self._own_by_file[file] = own
         return own
 
     # Events
 
     def _on_call(self, frame: types.FrameType, _event: str, _arg: Any) -> Any:
-        if self.is_own(frame):
+        # Called for every call of the library too: looked up here, without another call.
+        own = self._own_by_file.get(frame.f_code.co_filename)
+        if own or (own is None and self.is_own(frame)):
             self._frame_id = 0
             return self._on_event
         return None
 
     def _on_event(self, frame: types.FrameType, event: str, _arg: Any) -> Any:
-        if event == "line":
-            tick = self._session.sim.tick
+        line = frame.f_lineno
+        if event == "line" and line:
+            tick = self._sim.tick
             if tick != self._tick:
                 self._tick, self._ordinal = tick, 0
             self._ordinal += 1
             if id(frame) != self._frame_id:
                 # Every call and return clears it, so that no frame is taken for another one.
                 self._frame_id, self._depth = id(frame), self.depth_of(frame)
-            line = frame.f_lineno
             self._met.append((tick, self._ordinal, line, self._baton.current, self._depth))
             if self.closely or line in self.lines:
                 self._check(frame, line)

@@ -1,0 +1,79 @@
+"""What the debugger costs: tracing off and on, a break in a busy loop, a step."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from statistics import median
+
+from tests.bench.figures import Effort, Figure
+from tests.bench.processes import children_cpu_s
+from tests.bench.running import EMPTY, LINE, begin
+from tuisim.host import RunHandle, RunOptions
+from tuisim.protocol import Look, Looked, Message, Pause, Paused, Resume, StepLine
+
+SIMULATED_S = 600.0
+PATIENCE_S = 5.0
+NEVER = 999
+"""A line that no program has."""
+BUSY = "n = 0\nwhile True:\n    n += 1\n"
+BUSY_BREAKS: Mapping[str, str] = {"plain condition": "3 if n < 0", "condition with a call": "3 if len(str(n)) > 99"}
+
+
+def debugging(effort: Effort) -> Iterator[Figure]:
+    """Yield speeds with tracing off and on, and how soon commands are heard."""
+    start_up = median(_cpu_s(EMPTY, ()) for _ in range(effort.repeats))
+    for name, breaks, goal in (("off", (), 3_000), ("on", (str(NEVER),), 400)):
+        used = median(_cpu_s(LINE, breaks) for _ in range(effort.repeats))
+        speed = SIMULATED_S / max(used - start_up, 1e-6)
+        yield Figure(f"line follower, tracing {name}", speed, "sim s / CPU s", least=goal)
+    for name, text in BUSY_BREAKS.items():
+        taken = [_pause_s(text) for _ in range(effort.stops)]
+        yield Figure(f"pause, busy loop, {name}", median(taken) * 1e3, "ms", most=100)
+    steps, looks = _steps_s(10 * effort.stops)
+    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=2)
+    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=20)
+
+
+def _cpu_s(text: str, breaks: tuple[str, ...]) -> float:
+    before = children_cpu_s()
+    ended = begin(text, "Two_shapes", options=RunOptions(time_limit_s=SIMULATED_S, breaks=breaks)).wait()
+    assert ended is not None and ended.end in ("time_limit", "finished"), ended
+    return children_cpu_s() - before
+
+
+def _pause_s(text: str) -> float:
+    """Return how long a pause takes in a loop in which a break is looked at in every turn."""
+    handle = begin(BUSY, options=RunOptions(live=True, breaks=(text,)))
+    try:
+        while not handle.started:
+            handle.wait_for_event(PATIENCE_S)
+            handle.pump()
+        time.sleep(0.2)
+        return _answer_s(handle, Pause(), Paused)
+    finally:
+        handle.close()
+
+
+def _steps_s(count: int) -> tuple[list[float], list[float]]:
+    handle = begin(BUSY, options=RunOptions(live=True, hold_at=(0, 1)))
+    try:
+        while not handle.paused:
+            handle.wait_for_event(PATIENCE_S)
+            handle.pump()
+        steps = [_answer_s(handle, StepLine(), Paused) for _ in range(count)]
+        looks = [_answer_s(handle, Look(), Looked) for _ in range(count)]
+        handle.send(Resume())
+        return steps, looks
+    finally:
+        handle.close()
+
+
+def _answer_s(handle: RunHandle, command: Message, answer: type[Message]) -> float:
+    """Send a command and return how long its answer takes."""
+    begun = time.monotonic()
+    handle.send(command)
+    while not any(isinstance(event, answer) for event in handle.pump()):
+        handle.wait_for_event(PATIENCE_S)
+        assert time.monotonic() - begun < PATIENCE_S
+    return time.monotonic() - begun
