@@ -145,6 +145,8 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
         at = app.bridge.timeline.at
         await pilot.hover(bar, offset=(5, 0))
         assert app.bridge.timeline.at == at
+        await pilot.mouse_down(bar, offset=(bar.size.width - 2, 0))
+        await until(pilot, lambda: not app.bridge.in_past)
 
 
 async def test_words_that_are_no_place_are_answered() -> None:

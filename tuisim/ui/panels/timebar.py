@@ -151,8 +151,13 @@ class TimeBar(LinesView):
             self.post_message(self.Scrubbed(None if tick >= self._moment.newest else tick))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go where the mouse is, and follow it."""
-        if event.button == 1 and self._moment is not None and event.x < self._columns:
+        """Go where the mouse is, and follow it; the words beside the bar lead back to now."""
+        if event.button != 1 or self._moment is None:
+            return
+        if event.x >= self._columns:
+            event.stop()
+            self.post_message(self.Scrubbed(None))
+        else:
             self._dragging = True
             self.capture_mouse()
             self._choose(event)
