@@ -15,6 +15,8 @@ from tuisim.datalog.face import Face
 IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
 """Run states: no run yet, child is starting, time moves, stands still, waits in input(), over."""
 
+_DARK = Face()
+
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
@@ -46,7 +48,7 @@ class Snapshot:
     next_spec: RunSpec | None = None
     """What the next run will be; differs from `spec` in what was changed during the run. None: the same."""
 
-    face: Face = Face()
+    face: Face = _DARK
     """What the brick shows."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""
