@@ -27,9 +27,11 @@ from tuisim.config import (
 )
 from tuisim.config.profiles import SOURCES
 from tuisim.core.css import css_names
+from tuisim.core.parts import MOTOR_KINDS, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import PROFILES, ProfileSpec
 from tuisim.core.spec import (
     INPUT_PORTS,
+    OUTPUT_PORTS,
     STRATEGIES,
     ColorSensorSpec,
     GyroSpec,
@@ -70,6 +72,12 @@ pens = st.builds(PenSpec, x_mm=places, y_mm=places, color=st.sampled_from(sorted
 boxes = st.builds(Obstacle, mm(-1e4, 1e4), mm(-1e4, 1e4), mm(1e-9, 1e4), mm(1e-9, 1e4))
 
 
+presses = st.builds(
+    RemotePress, st.sampled_from([("beacon",), ("top_left",), ("top_left", "bottom_right")]), mm(0, 10), mm(10, 1e9),
+    st.integers(1, 4),
+)  # fmt: skip
+
+
 @st.composite
 def robots(draw: st.DrawFn) -> RobotSpec:
     """Robots of every make: with and without each sensor, on any ports, eyes in any order."""
@@ -84,7 +92,14 @@ def robots(draw: st.DrawFn) -> RobotSpec:
     sonar = st.builds(UltrasonicSpec, port=st.just(ports[2]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360),
                       max_range_mm=mm(1, 1e4), noise_mm=mm(0, 1000),
                       ray_angles_deg=st.lists(mm(-360, 360), min_size=1, max_size=5).map(tuple))  # fmt: skip
-    left, right = draw(st.sampled_from([("outB", "outC"), ("outD", "outA")]))
+    left, right, *free = draw(st.permutations(OUTPUT_PORTS))
+    motors = draw(st.lists(st.sampled_from(free), unique=True, max_size=2))
+    spare = ports[len(colors) : 2]
+    further = draw(st.sampled_from(["touch", "sonar", "none"])) if spare else "none"
+    touch = st.builds(TouchSpec, st.just("bumper"), st.sampled_from(spare or ["in1"]), places, places, mm(1, 500))
+    second = st.builds(UltrasonicSpec, st.just("back"), st.sampled_from(spare or ["in1"]), places, places)
+    eye = st.builds(InfraredSpec, port=st.just(ports[3]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360))
+    at_last = draw(st.sampled_from(["gyro", "infrared", "none"]))
     return RobotSpec(
         name=draw(names),
         wheel_diameter_mm=draw(mm(1, 500)),
@@ -96,8 +111,12 @@ def robots(draw: st.DrawFn) -> RobotSpec:
         right_port=right,
         color_sensors=colors,
         ultrasonic=draw(st.none() | sonar),
-        gyro=draw(st.none() | st.just(GyroSpec(port=ports[3]))),
+        gyro=GyroSpec(port=ports[3]) if at_last == "gyro" else None,
         pen=draw(pens),
+        extra_motors=tuple(MotorSpec(port, draw(st.sampled_from(MOTOR_KINDS))) for port in motors),
+        extra_ultrasonics=(draw(second),) if further == "sonar" else (),
+        touch_sensors=(draw(touch),) if further == "touch" else (),
+        infrared=draw(eye) if at_last == "infrared" else None,
     )
 
 
@@ -132,6 +151,8 @@ own_profiles = st.builds(
     light_noise=st.integers(0, 128),
     motor_noise=st.none() | st.integers(0, 500),
     seed=st.integers(0, 2**63 - 1),
+    beacon=st.none() | st.builds(BeaconSpec, mm(-1e4, 1e4), mm(-1e4, 1e4), st.integers(1, 4)),
+    remote=st.lists(presses, max_size=3).map(tuple),
     program=st.sampled_from([None, "log_greys.py"]),
 )
 def test_a_world_makes_the_same_run_again(
@@ -146,6 +167,9 @@ def test_a_world_makes_the_same_run_again(
     assert world.program == program
 
 
+EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fields(RobotSpec) if field.name != "name"}
+
+
 @pytest.mark.parametrize(
     ("text", "changes"),
     [
@@ -157,8 +181,37 @@ def test_a_world_makes_the_same_run_again(
         ("[gyro]\nport = 'in4'", {}),
         ("[pen]\ncolor = 'Teal'", {"pen": PenSpec(color="teal")}),
         ("[ultrasonic]\nnoise_mm = 5", {"ultrasonic": UltrasonicSpec(noise_mm=5)}),
+        ("[motors]\noutA = 'medium'", {"extra_motors": (MotorSpec("outA", "medium"),)}),
+        (
+            "ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'",
+            {"ultrasonic": None, "touch_sensors": (TouchSpec("nose"),)},
+        ),
+        ("gyro = false\n[infrared]\nangle_deg = 5", {"gyro": None, "infrared": InfraredSpec(angle_deg=5)}),
+        (
+            "gyro = false\n[ultrasonics.back]\nport = 'in4'\nangle_deg = 180",
+            {"gyro": None, "extra_ultrasonics": (UltrasonicSpec("back", "in4", angle_deg=180),)},
+        ),
+        (
+            "base = 'Explorer'\nname = 'mine'\ninfrared = false\n[motors]\noutA = false\n[touch_sensors]"
+            "\nbumper = false",
+            {**EXPLORER, "infrared": None, "extra_motors": (), "touch_sensors": ()},
+        ),
     ],
-    ids=["length", "weight by name", "weight", "motor ports", "no sensors", "as it is", "pen", "ultrasonic"],
+    ids=[
+        "length",
+        "weight by name",
+        "weight",
+        "motor ports",
+        "no sensors",
+        "as it is",
+        "pen",
+        "ultrasonic",
+        "motor",
+        "touch",
+        "infrared",
+        "second ultrasonic",
+        "further parts taken away",
+    ],
 )
 def test_a_robot_file_says_only_what_differs(text: str, changes: dict[str, Any], write: Write) -> None:
     assert load_robot(write("mine.toml", text)) == replace(RobotSpec(name="mine"), **changes)

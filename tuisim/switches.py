@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
+from tuisim.core.parts import BeaconSpec, RemotePress
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, Obstacle, RobotSpec
 from tuisim.errors import ConfigError
@@ -59,6 +60,10 @@ class Settings:
     pen_color: str | None = None
     pen_width_mm: float | None = None
     pen_marks: bool = False
+    beacon: BeaconSpec | None = None
+    """An infrared beacon on the field."""
+    remote: tuple[RemotePress, ...] = ()
+    """What is pressed on the infrared remote control."""
     profile: str | ProfileSpec = "robolab"
     """Its name or file, or itself."""
     seed: int = 0

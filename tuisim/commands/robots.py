@@ -33,11 +33,16 @@ def execute(arguments: Namespace) -> int:
     elif chosen:
         print("\n".join(robot_file(chosen)))
     else:
-        print(table(("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter"), list(map(_row, ROBOTS.values()))))
+        heads = ("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter", "PORTS")
+        print(table(heads, list(map(_row, ROBOTS.values()))))
     return 0
 
 
 def _row(robot: RobotSpec) -> tuple[str, ...]:
     wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
     sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
-    return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors)
+    ports = [(robot.left_port, "left wheel"), (robot.right_port, "right wheel")]
+    ports += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
+    ports += [(sensor.port, sensor.name) for sensor in robot.sensors]
+    on_ports = ", ".join(f"{port} {name}" for port, name in sorted(ports))
+    return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors), on_ports

@@ -82,6 +82,8 @@ def build_run_spec(settings: Settings) -> RunSpec:
             pen_marks=settings.pen_marks,
             start=_start(settings, mat),
             noise=NoiseSpec(light=settings.light_noise, motor=motor),
+            beacon=settings.beacon,
+            remote=settings.remote,
         ),
         profile=profile,
         seed=settings.seed,

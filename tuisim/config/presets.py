@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from tuisim.core.parts import InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.spec import ROBOT_WEIGHTS, ColorSensorSpec, Obstacle, RobotSpec, UltrasonicSpec
 
 
@@ -36,6 +37,14 @@ ROBOTS: Mapping[str, RobotSpec] = {
         _SMALL,
         replace(_SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_eyes(30.0, 15.0, 10, 10)),
         RobotSpec(name="Sensor_Diameter_Config", color_sensors=_eyes(20.0, 30.0, 30, 10)),
+        RobotSpec(
+            name="Explorer",
+            color_sensors=(ColorSensorSpec("left", "in2", 0.0, 30.0),),
+            ultrasonic=None,
+            extra_motors=(MotorSpec("outA", "medium"),),
+            touch_sensors=(TouchSpec("bumper", "in1", 0.0, 60.0, 60.0),),
+            infrared=InfraredSpec(port="in3"),
+        ),
     )
 }
 """Every robot by name."""

@@ -6,27 +6,21 @@ stay; `false` in the place of a sensor takes it away.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 from tuisim.config.presets import ROBOTS
 from tuisim.config.reading import MAX_NAME, Section
+from tuisim.config.robot_parts import PART_KEYS, parts_from_table, sensor_name, ultrasonic
 from tuisim.core.spec import ROBOT_WEIGHTS, ColorSensorSpec, GyroSpec, PenSpec, UltrasonicSpec
-from tuisim.errors import RobotError
 from tuisim.switches import RobotChoice, pen_color
 
 DEFAULT_ROBOT = "Default_Robot"
-MAX_RAYS = 100
-
-_SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 LENGTH_KEYS = ("wheel_diameter_mm", "wheel_spacing_mm", "wheel_width_mm", "back_mm")
 PORT_KEYS = ("left_port", "right_port")
-_TOP = ("base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, "color_sensors", "ultrasonic", "gyro", "pen")
+_TOP = ("base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, "color_sensors", "ultrasonic", "gyro", "pen", *PART_KEYS)
 COLOR_SENSOR_KEYS = ("port", "x_mm", "y_mm", "diameter_mm", "strategy")
-_ULTRASONIC_NUMBERS = ("x_mm", "y_mm", "angle_deg", "max_range_mm", "noise_mm")
-ULTRASONIC_KEYS = ("port", *_ULTRASONIC_NUMBERS, "ray_angles_deg")
 PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
 
 
@@ -58,6 +52,7 @@ def robot_from_table(table: Section, name: str) -> RobotChoice:
         found["gyro"] = _gyro(table, base.gyro)
     if "pen" in table:
         found["pen"] = pen(table.section("pen"), base.pen)
+    found |= parts_from_table(table, base)
     with table.telling():
         return RobotChoice(replace(base, **found), own_places=own_places)
 
@@ -98,8 +93,7 @@ def _color_sensors(table: Section, base: tuple[ColorSensorSpec, ...]) -> tuple[C
         if table.raw(name) is False:
             found.pop(name, None)
             continue
-        if not _SENSOR_NAME.fullmatch(name):
-            raise table.wrong(name, "is no name for a sensor", "letters, digits and _, a letter first, at most 31")
+        sensor_name(table, name)
         found[name] = _color_sensor(table.section(name), name, by_name.get(name))
     # A file that names them all also says their order.
     order = [name for name in table if name in found]
@@ -122,20 +116,8 @@ def _color_sensor(table: Section, name: str, base: ColorSensorSpec | None) -> Co
 def _ultrasonic(table: Section, base: UltrasonicSpec | None) -> UltrasonicSpec | None:
     if table.raw("ultrasonic") is False:
         return None
-    sensor = table.section("ultrasonic")
-    sensor.allow(ULTRASONIC_KEYS)
-    found: dict[str, Any] = {key: sensor.number(key) for key in _ULTRASONIC_NUMBERS if key in sensor}
-    if "port" in sensor:
-        found["port"] = sensor.text("port")
-    if "ray_angles_deg" in sensor:
-        angles = sensor.items("ray_angles_deg")
-        if not 1 <= len(angles) <= MAX_RAYS:
-            raise sensor.wrong("ray_angles_deg", f"must be 1 to {MAX_RAYS} angles, got {len(angles)}")
-        numbered = Section({f"ray_angles_deg[{at}]": angle for at, angle in enumerate(angles, start=1)},
-                           sensor.file, RobotError, sensor.key)  # fmt: skip
-        found["ray_angles_deg"] = tuple(numbered.number(key, -360, 360) for key in numbered)
     with table.telling():
-        return replace(base or UltrasonicSpec(), **found)
+        return ultrasonic(table.section("ultrasonic"), base or UltrasonicSpec())
 
 
 def _gyro(table: Section, base: GyroSpec | None) -> GyroSpec | None:

@@ -8,13 +8,13 @@ from pathlib import Path
 from tuisim.config.presets import ROBOTS
 from tuisim.config.reading import Section, means_file, name_of, parse_toml, read_file
 from tuisim.config.robot_json import robot_from_json
+from tuisim.config.robot_parts import INFRARED_KEYS, TOUCH_KEYS, ULTRASONIC_KEYS
 from tuisim.config.robot_table import (
     COLOR_SENSOR_KEYS,
     DEFAULT_ROBOT,
     LENGTH_KEYS,
     PEN_KEYS,
     PORT_KEYS,
-    ULTRASONIC_KEYS,
     robot_from_table,
 )
 from tuisim.config.writing import Scalar, toml_key, toml_lines, write_whole
@@ -121,7 +121,25 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
         lines += ["", f"[{under}ultrasonic]", *toml_lines(_values(spec.ultrasonic, ULTRASONIC_KEYS), COMMENTS)]
     if spec.gyro is not None:
         lines += ["", f"[{under}gyro]", *toml_lines(_values(spec.gyro, ("port",)), COMMENTS)]
+    lines += _part_lines(spec, under)
     return [*lines, "", f"[{under}pen]", *toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
+
+
+def _part_lines(spec: RobotSpec, under: str) -> list[str]:
+    """What the robot has besides the usual parts."""
+    lines: list[str] = []
+    if spec.extra_motors:
+        motors: dict[str, Scalar] = {motor.port: motor.kind for motor in spec.extra_motors}
+        lines += ["", f"[{under}motors]", *toml_lines(motors)]
+    for sonar in spec.extra_ultrasonics:
+        lines += ["", f"[{under}ultrasonics.{toml_key(sonar.name)}]"]
+        lines += toml_lines(_values(sonar, ULTRASONIC_KEYS), COMMENTS)
+    for touch in spec.touch_sensors:
+        lines += ["", f"[{under}touch_sensors.{toml_key(touch.name)}]"]
+        lines += toml_lines(_values(touch, TOUCH_KEYS), COMMENTS | {"width_mm": "of the bumper, across the robot"})
+    if spec.infrared is not None:
+        lines += ["", f"[{under}infrared]", *toml_lines(_values(spec.infrared, INFRARED_KEYS), COMMENTS)]
+    return lines
 
 
 def _values(spec: object, keys: Iterable[str]) -> dict[str, Scalar]:

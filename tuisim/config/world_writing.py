@@ -15,6 +15,7 @@ from tuisim.config.presets import OBSTACLES, ROBOTS
 from tuisim.config.profiles import profile_lines
 from tuisim.config.reading import Section, parse_toml
 from tuisim.config.robots import robot_lines
+from tuisim.config.world_infrared import infrared_lines
 from tuisim.config.worlds import world_from_table
 from tuisim.config.writing import Scalar, toml_lines, write_whole
 from tuisim.core.profile import PROFILES, ProfileSpec
@@ -63,6 +64,8 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
         "pen_marks": world.pen_marks,
         "profile": spec.profile.name if PROFILES.get(spec.profile.name) == spec.profile else spec.profile,
         "seed": spec.seed,
+        "beacon": world.beacon,
+        "remote": world.remote,
     }
 
 
@@ -124,7 +127,7 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None) -> list
         lines += ["", *profile_lines(spec.profile, "profile")]
     if not isinstance(settings["obstacles"], str):
         lines += ["", *obstacle_lines(spec.world.obstacles)]
-    return lines
+    return [*lines, *infrared_lines(spec.world.beacon, spec.world.remote)]
 
 
 def _table(name: str, values: Mapping[str, Scalar]) -> list[str]:

@@ -15,6 +15,7 @@ from tuisim.config.profiles import load_profile, profile_from_table
 from tuisim.config.reading import Section, means_file, name_of, read_file
 from tuisim.config.robot_table import robot_from_table
 from tuisim.config.robots import load_robot
+from tuisim.config.world_infrared import infrared_from_table
 from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
 from tuisim.errors import ConfigError, ProfileError, RobotError
 from tuisim.switches import (
@@ -35,7 +36,7 @@ PANEL_KEYS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 PEN_KEYS = ("down", "color", "width_mm")
 TOP_KEYS = (
     "program", "background", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed", *FLAGS,
-    *PANEL_KEYS, "start", "noise", "pen",
+    *PANEL_KEYS, "start", "noise", "pen", "beacon", "remote",
 )  # fmt: skip
 
 
@@ -97,7 +98,7 @@ def world_from_table(table: Section, path: Path) -> WorldFile:
         found["obstacles"] = obstacles_from_table(table)
     if "seed" in table:
         found["seed"] = table.whole("seed", 0, MAX_SEED)
-    found |= _noise(table) | _pen(table) | _panels(table)
+    found |= _noise(table) | _pen(table) | _panels(table) | infrared_from_table(table)
     program = _program(table.text("program"), path.parent, near) if "program" in table else None
     return WorldFile(path, found, program, (path, *referred))
 

@@ -44,7 +44,7 @@ class MotorSpec:
     def __post_init__(self) -> None:
         if self.kind not in MOTOR_KINDS:
             raise RobotError(
-                f"no such kind of motor {self.kind!r}", f"one of {', '.join(MOTOR_KINDS)}", key="extra_motors"
+                f"no such kind of motor {self.kind!r}", f"one of {', '.join(MOTOR_KINDS)}", key="motors"
             )
 
 

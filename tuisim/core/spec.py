@@ -182,9 +182,9 @@ class RobotSpec:
             raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
         used = {self.left_port, self.right_port}
         for motor in self.extra_motors:
-            _require_port(motor.port, OUTPUT_PORTS, "extra_motors")
+            _require_port(motor.port, OUTPUT_PORTS, "motors")
             if motor.port in used:
-                raise RobotError(f"two motors are on {motor.port}", "give each its own port", key="extra_motors")
+                raise RobotError(f"two motors are on {motor.port}", "give each its own port", key="motors")
             used.add(motor.port)
         for sensor in self.sensors:
             _require_port(sensor.port, INPUT_PORTS, f"{sensor.name}.port")

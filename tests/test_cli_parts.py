@@ -1,0 +1,110 @@
+"""Robots with further parts, and what an infrared sensor meets, from files on the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+
+ASKS = "from ev3dev2.sensor.lego import {0}\nfrom ev3dev2.sensor import INPUT_1\nprint({0}(INPUT_1))\n"
+
+
+def test_bumper_meets_the_wall_from_robot_and_obstacle_files(tuisim: Command, tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").write_text("ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'\ny_mm = 60\n")
+    (tmp_path / "boxes.toml").write_text("[[obstacle]]\nx_mm = 1000\ny_mm = 400\nwidth_mm = 50\nheight_mm = 400\n")
+    (tmp_path / "prog.py").write_text(
+        "# %%sim_magic_imports -r robot.toml -o boxes.toml -x 600 -y 600 --solid\n"
+        "from ev3dev2.sensor.lego import TouchSensor\n"
+        "tank, nose = MoveTank(OUTPUT_B, OUTPUT_C), TouchSensor(INPUT_1)\n"
+        "tank.on(SpeedPercent(30), SpeedPercent(30))\n"
+        "while not nose.is_pressed:\n    pass\n"
+        "tank.off()\nprint('Pressed:', nose.value())\n"
+        "tank.on_for_rotations(SpeedPercent(-30), SpeedPercent(-30), 0.5)\nprint('Pressed:', nose.value())\n"
+    )
+    done = tuisim("run", "prog.py")
+    assert done.stdout.split() == ["Pressed:", "1", "Pressed:", "0"], done.stderr
+    assert "x 85" in done.stderr
+
+
+WORLD = """
+robot = "Explorer"
+[start]
+x_mm = 500
+y_mm = 500
+heading_deg = 0
+[beacon]
+x_mm = 500
+y_mm = 900
+channel = 2
+[[remote]]
+buttons = ["top_left", "top_right"]
+from_s = 0.5
+until_s = 1.5
+"""
+
+
+def test_beacon_and_remote_of_a_world_file(tuisim: Command, tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text(WORLD)
+    (tmp_path / "prog.py").write_text(
+        "# %%sim_magic_imports\nfrom time import sleep\nfrom ev3dev2.sensor.lego import InfraredSensor\n"
+        "eye = InfraredSensor(INPUT_3)\nprint(eye.heading(2) < 0, eye.distance(1))\n"
+        "for _ in range(3):\n    print(eye.buttons_pressed(1))\n    sleep(0.8)\n"
+    )
+    done = tuisim("run", "lab.toml", "prog.py")
+    assert done.stdout.splitlines() == ["True None", "[]", "['top_left', 'top_right']", "[]"], done.stderr
+
+
+@pytest.mark.parametrize(
+    ("sensor", "robot", "hint"),
+    [
+        ("TouchSensor", "Default_Robot", "in1 lego-ev3-us"),
+        ("UltrasonicSensor", "Explorer", "in1 lego-ev3-touch"),
+    ],
+)
+def test_missing_part_tells_which_ports_have_what(
+    tuisim: Command, tmp_path: Path, sensor: str, robot: str, hint: str
+) -> None:
+    (tmp_path / "prog.py").write_text(ASKS.format(sensor))
+    done = tuisim("run", "prog.py", "-r", robot)
+    assert done.returncode == 1
+    assert f"DeviceNotFound: {sensor}(ev3-ports:in1) is not connected" in done.stderr
+    assert hint in done.stderr
+    assert "line 3" in done.stderr
+
+
+def test_prelude_that_misses_a_part_says_what_to_do(tuisim: Command, tmp_path: Path) -> None:
+    (tmp_path / "prog.py").write_text("say('hello')\n")
+    done = tuisim("run", "prog.py", "-r", "Explorer")
+    assert done.returncode == 1
+    assert "--preload imports" in done.stderr
+
+
+def test_list_of_robots_tells_their_ports(tuisim: Command) -> None:
+    assert "in1 bumper, in2 left, in3 infrared" in tuisim("robots").stdout
+
+
+BAD = {
+    "no port": ("[touch_sensors.nose]\nx_mm = 1", "touch_sensors.nose.port: is missing"),
+    "a port twice": ("[touch_sensors.nose]\nport = 'in2'", "two sensors are on in2"),
+    "a motor port twice": ("[motors]\noutB = 'large'", "motors: two motors are on outB"),
+    "no such motor": ("[motors]\noutA = 'huge'", "motors.outA: no such value 'huge'"),
+    "no such motor port": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
+    "no such port": ("[infrared]\nport = 'in9'", "no such port 'in9'"),
+    "no such key": ("[touch_sensors.nose]\nport = 'in1'\ndepth = 3", "touch_sensors.nose.depth: no such key"),
+    "no name": ("[ultrasonics.'2nd one']\nport = 'in1'", "is no name for a sensor"),
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), BAD.values(), ids=BAD)
+def test_wrong_robot_file(tmp_path: Path, text: str, expected: str) -> None:
+    from tuisim.config import load_robot
+    from tuisim.errors import RobotError
+
+    path = tmp_path / "robot.toml"
+    path.write_text(text)
+    with pytest.raises(RobotError) as caught:
+        load_robot(str(path))
+    assert expected in str(caught.value)
+    assert str(path) in str(caught.value)
