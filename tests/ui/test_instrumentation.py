@@ -23,12 +23,14 @@ EXTREME = moment(
 )
 BARE = moment(spec=replace(SPEC, robot=replace(SPEC.robot, gyro=None, ultrasonic=None)), ultrasonic_mm=None, colors={})
 
+FURTHER = moment(further={"bumper_pressed": 1.0, "infrared_proximity": 45.0, "back_mm": 1234.0})
+
 
 def text(now: Snapshot, width: int, height: int) -> list[str]:
     return ["".join(part for part, _ in line) for line in lines(now, width, height)]
 
 
-@pytest.mark.parametrize("now", [moment(), BARE], ids=["usual", "no sensors"])
+@pytest.mark.parametrize("now", [moment(), BARE, FURTHER], ids=["usual", "no sensors", "further parts"])
 @pytest.mark.parametrize("width", [18, 20, 24, 26, 32, 40, 44, 80])
 @pytest.mark.parametrize("height", [4, 6, 8, 9, 11, 13, 14, 30])
 def test_it_fits(now: Snapshot, width: int, height: int) -> None:
@@ -96,3 +98,13 @@ async def test_what_is_left_of_last_time_is_wiped() -> None:
         await pilot.pause()
 
         assert [row.rstrip() for row in screen_text(app)] == [row.rstrip() for row in text(BARE, 40, 11)]
+
+
+def test_further_parts() -> None:
+    rows = [" ".join(row.split()) for row in text(FURTHER, 40, 20)]
+    assert [row for row in rows if row.startswith(("Bumper", "Infrared", "Back"))] == [
+        "Bumper pressed",
+        "Infrared 45 %",
+        "Back 1234 mm",
+    ]
+    assert text(FURTHER, 26, 9)[6:9] == [row for row in text(FURTHER, 26, 30) if row.startswith(("Bum", "Inf", "Bac"))]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tuisim.core.field import Field
-from tuisim.core.sensors import color, gyro, ultrasonic
+from tuisim.core.sensors import color, gyro, mounted, ultrasonic
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.ui.snapshot import Snapshot
@@ -40,10 +40,24 @@ def snapshot_of(
         rays=rays,
         gyro_deg=gyro.angle_deg(instant) if has_gyro else 0,
         gyro_rate_dps=gyro.rate_dps(instant) if has_gyro else 0,
+        further=further_readings(instant, spec, field) if field else {},
         pen_down=pen_down,
         stalled=stalled,
         next_spec=next_spec,
     )
+
+
+def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
+    """Return what the sensors measure that not every robot has, by telemetry column."""
+    robot = spec.robot
+    further = {sonar.name for sonar in robot.extra_ultrasonics} | {touch.name for touch in robot.touch_sensors}
+    if robot.infrared is not None:
+        further.add(robot.infrared.name)
+    values: dict[str, float] = {}
+    for kind, sensor in mounted(robot):
+        if sensor.name in further:
+            values |= zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True)
+    return values
 
 
 def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
@@ -53,4 +67,5 @@ def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str,
         values["ultrasonic mm"] = float(ultrasonic.reading_mm(spec.robot.ultrasonic, instant, spec.world))
     if spec.robot.gyro:
         values["gyro °"] = float(gyro.angle_deg(instant))
-    return values
+    further = further_readings(instant, spec, field)
+    return values | {column.replace("_", " "): value for column, value in further.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -42,6 +43,8 @@ class Snapshot:
     gyro_deg: int
     gyro_rate_dps: int
     pen_down: bool
+    further: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    """What the sensors measure that not every robot has, by telemetry column, such as `bumper_pressed`."""
     notice: str = ""
     stalled: tuple[bool, bool] = (False, False)
     """Whether the left and the right motor are told to run but cannot turn."""

@@ -73,17 +73,35 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     """
     motors = [_motor(now, "LeftMotor", "L", width), _motor(now, "RightMotor", "R", width)]
     sensors = [(f"Sensor{at}", now.colors.get(s.name)) for at, s in enumerate(now.spec.robot.color_sensors, 1)]
-    small = height < 7 + len(sensors)
+    further = [_further(column, value, width) for column, value in now.further.items()]
+    small = height < 7 + len(sensors) + len(further)
     if small:
         short = [_sensor_in_one(name, seen, width) for name, seen in sensors]
-        return [*motors, *short, _distance_and_angle(now, width), _place_and_time(now, width)][:height]
-    rest = [_ultrasonic(now, width), _gyro(now, width), _pose(now, width), _clock(now, width), _state(now, width)]
-    if height < 7 + 2 * len(sensors):
+        whole = [*motors, *short, _distance_and_angle(now, width), _place_and_time(now, width)]
+        return [*whole, *further][:height]
+    ranging = [_ultrasonic(now, width), _gyro(now, width), *further]
+    rest = [*ranging, _pose(now, width), _clock(now, width), _state(now, width)]
+    if height < 7 + 2 * len(sensors) + len(further):
         return [*motors, *(_sensor_in_one(name, seen, width) for name, seen in sensors), *rest]
     full = [line for name, seen in sensors for line in _sensor(name, seen, width)]
-    if height < 10 + 2 * len(sensors):
+    if height < 10 + 2 * len(sensors) + len(further):
         return [*motors, *full, *rest]
-    return [*motors, [], *full, [], *rest[:2], [], *rest[2:]]
+    return [*motors, [], *full, [], *ranging, [], *rest[len(ranging) :]]
+
+
+def _further(column: str, value: float, width: int) -> Line:
+    """A sensor that not every robot has, by its telemetry column."""
+    name, _, what = column.rpartition("_")
+    if what == "pressed":
+        shown, unit = "pressed" if value else "released", ""
+    else:
+        shown, unit = f"{value:.0f}", {"mm": " mm", "proximity": " %"}.get(what, "")
+    label = name.capitalize()
+    return _fit(
+        width,
+        (_label(label[: _COLUMN - 1]), _value(shown if what == "pressed" else f"{shown:>6}"), _unit(unit)),
+        (_label(label[:8], 9), _value(shown), _unit(unit)),
+    )
 
 
 def _fit(width: int, *variants: Sequence[Run]) -> Line:
