@@ -19,13 +19,14 @@ from tuisim.errors import TuisimError
 from tuisim.protocol import Ended
 from tuisim.ui import branching, travel
 from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
-from tuisim.ui.bridge import ROWS_A_POLL, Bridge, News
+from tuisim.ui.bridge import ROWS_A_POLL, Bridge
 from tuisim.ui.desk import Desk
 from tuisim.ui.editor.work import Work
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
 from tuisim.ui.loading import Loading
 from tuisim.ui.lookback import Lookback
+from tuisim.ui.news import News
 from tuisim.ui.pacer import Pacer
 from tuisim.ui.replaying import open_run
 from tuisim.ui.session import AppSettings

@@ -8,7 +8,7 @@ user puts it, and its sensors are measured all the same.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
@@ -16,8 +16,8 @@ from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import FLAG_PEN_DOWN, Instant
-from tuisim.datalog.records import OutputRow
 from tuisim.ui import plan as plans
+from tuisim.ui.news import News
 from tuisim.ui.plan import Plan
 from tuisim.ui.readings import snapshot_of
 from tuisim.ui.recording import Recording
@@ -34,23 +34,6 @@ if TYPE_CHECKING:
 
 ROWS_A_POLL = 4000
 """Most output rows that one poll takes, so that a flood of prints leaves the app fluid."""
-
-
-@dataclass(frozen=True, slots=True)
-class News:
-    """What has come from the run since the last poll."""
-
-    rows: list[OutputRow]
-    skipped: int = 0
-    """Rows left out before `rows`."""
-    ended: protocol.Ended | None = None
-    """Set once, in the poll in which the end is learnt."""
-    spoken: tuple[str, ...] = ()
-    """What the program said."""
-    prompt: str | None = None
-    """The prompt while the program waits in `input()`."""
-    branched: Branch | None = None
-    """Set once, when a branch has come to its instant, or has ended before."""
 
 
 class Bridge:
