@@ -189,10 +189,10 @@ class Lab(Wishes):
             self.situation_changed()
 
     def _take(self, news: News) -> None:
-        for text in news.spoken:
-            self.voice.speak(text)
+        for sound in news.spoken:
+            self.voice.make_heard(sound)
             if self.desk.brick:
-                self.desk.brick.heard(text)
+                self.desk.brick.heard(sound.text)
         if news.rows:
             self._take_rows(news)
         if output := self.desk.output:

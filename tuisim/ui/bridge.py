@@ -356,7 +356,7 @@ class Bridge:
         if recording is None:
             return News([])
         ended = branched = None
-        spoken: list[str] = []
+        spoken: list[protocol.Spoke] = []
         for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
@@ -366,8 +366,8 @@ class Bridge:
                     branched = self._branch_is_there(event)
                 case protocol.Paused(reason="break", tick=tick):
                     self.timeline.breaks.append(tick)
-                case protocol.Spoke(text=text) if self._branch is None:
-                    spoken.append(text)
+                case protocol.Spoke() if self._branch is None:
+                    spoken.append(event)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
         return News(rows, 0, ended, tuple(spoken), prompt, branched)

@@ -21,7 +21,7 @@ class News:
     """Rows left out before `rows`."""
     ended: protocol.Ended | None = None
     """Set once, in the poll in which the end is learnt."""
-    spoken: tuple[str, ...] = ()
+    spoken: tuple[protocol.Spoke, ...] = ()
     """What the program said."""
     prompt: str | None = None
     """The prompt while the program waits in `input()`."""

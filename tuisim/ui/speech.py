@@ -1,50 +1,127 @@
-"""Speaking aloud, where that makes sense: a local terminal, and `espeak-ng` installed."""
+"""Being heard, where that makes sense: a local terminal, and a program that speaks or plays."""
 
 from __future__ import annotations
 
+import io
+import json
+import math
 import os
 import shutil
 import subprocess
-from collections.abc import Mapping
+import wave
+from array import array
+from collections.abc import Mapping, Sequence
+from threading import Thread
 
-COMMAND = "espeak-ng"
+from tuisim.protocol import Spoke
+
+SPEAKS = "espeak-ng"
+PLAYS = (("paplay", ()), ("aplay", ("-q", "-")))
+"""Programs that play a WAV file from their standard input, the best first, with their arguments."""
+
 MAX_CHARS = 300
 """Of one text; a robot that reads out a book cannot be stopped otherwise."""
 
+MAX_SOUND_S = 20.0
+"""Of one sound, for the same reason."""
 
-class Voice:
-    """Speaks one text at a time; one that comes meanwhile is only shown.
+RATE_HZ = 22_050
+_LOUDNESS = 8_000
+"""Of 32,767: a square wave sounds louder than its height."""
+_FADE_SAMPLES = 100
+"""Tones begin and end softly, without a click."""
+
+
+def wav_of(tones: Sequence[Sequence[float]]) -> bytes:
+    """Return tones as a WAV file of one channel, cut after MAX_SOUND_S.
 
     Args:
-        quiet: Never speak.
+        tones: Hz (0 is silence), ms, and ms of pause after it, for each.
+    """
+    samples = array("h")
+    room = int(MAX_SOUND_S * RATE_HZ)
+    for hz, ms, pause_ms in tones:
+        count = min(int(ms / 1000.0 * RATE_HZ), room - len(samples))
+        step = 2.0 * math.pi * hz / RATE_HZ
+        for at in range(count):
+            fade = min(1.0, at / _FADE_SAMPLES, (count - at) / _FADE_SAMPLES)
+            samples.append(int(_LOUDNESS * fade * math.sin(step * at)))
+        samples.extend([0] * min(int(pause_ms / 1000.0 * RATE_HZ), room - len(samples)))
+        if len(samples) >= room:
+            break
+    stream = io.BytesIO()
+    with wave.open(stream, "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(RATE_HZ)
+        file.writeframes(samples.tobytes())
+    return stream.getvalue()
+
+
+class Voice:
+    """Makes one sound at a time heard; one that comes meanwhile is only shown.
+
+    Args:
+        quiet: Never make a sound.
         environment: Where a remote terminal shows; by default that of this process.
     """
 
     def __init__(self, quiet: bool = False, environment: Mapping[str, str] = os.environ) -> None:
         remote = any(name in environment for name in ("SSH_CONNECTION", "SSH_TTY", "SSH_CLIENT"))
-        self._program = None if quiet or remote else shutil.which(COMMAND)
-        self._speaking: subprocess.Popen[bytes] | None = None
+        mute = quiet or remote
+        self._speaks = None if mute else shutil.which(SPEAKS)
+        found = ((shutil.which(name), arguments) for name, arguments in PLAYS)
+        self._plays = None if mute else next(([path, *arguments] for path, arguments in found if path), None)
+        self._sounding: subprocess.Popen[bytes] | None = None
 
-    def speak(self, text: str) -> None:
-        """Say a text, unless one is still being said."""
-        if self._program is None or (self._speaking and self._speaking.poll() is None):
+    def make_heard(self, sound: Spoke) -> None:
+        """Say a text or play a sound, unless one is still to be heard."""
+        if self._sounding and self._sounding.poll() is None:
             return
-        # The text goes in by the pipe: as an argument it could pass for a switch.
-        try:
-            self._speaking = subprocess.Popen(
-                [self._program, "--stdin"],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-            )
-        except OSError:
-            self._program = None
-            return
-        assert self._speaking.stdin is not None
-        self._speaking.stdin.write(text[:MAX_CHARS].encode())
-        self._speaking.stdin.close()
+        if sound.file:
+            self._play_file(sound.file)
+        elif sound.tones:
+            tones = [tone for tone in json.loads(sound.tones) if len(tone) == 3]
+            if self._plays and any(hz for hz, _, _ in tones):
+                self._sounding = _fed(self._plays, wav_of(tones))
+        elif self._speaks:
+            # The text goes in by the pipe: as an argument it could pass for a switch.
+            self._sounding = _fed([self._speaks, "--stdin"], sound.text[:MAX_CHARS].encode())
+
+    def _play_file(self, path: str) -> None:
+        if self._plays:
+            try:
+                with open(path, "rb") as file:
+                    self._sounding = _fed(self._plays, file.read(int(MAX_SOUND_S * RATE_HZ * 8)))
+            except OSError:
+                # The program has played it: it may be gone by now.
+                return
 
     def hush(self) -> None:
-        """Stop speaking."""
-        if self._speaking and self._speaking.poll() is None:
-            self._speaking.kill()
+        """Be silent."""
+        if self._sounding and self._sounding.poll() is None:
+            self._sounding.kill()
+
+
+def _fed(command: Sequence[str], data: bytes) -> subprocess.Popen[bytes] | None:
+    """Start a program with data on its standard input, without waiting for it; None if it cannot be started."""
+    read, write = os.pipe()
+    try:
+        process = subprocess.Popen(command, stdin=read, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    except OSError:
+        os.close(write)
+        return None
+    finally:
+        os.close(read)
+    # More than a pipe holds would make the app wait until it is heard.
+    Thread(target=_feed, args=(write, data), daemon=True).start()
+    return process
+
+
+def _feed(pipe: int, data: bytes) -> None:
+    try:
+        with os.fdopen(pipe, "wb") as stream:
+            stream.write(data)
+    except BrokenPipeError:
+        # It was hushed.
+        return
