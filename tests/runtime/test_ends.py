@@ -106,6 +106,7 @@ def test_stall_in_a_c_call_is_killed_and_names_the_line(run: Run) -> None:
     assert done.lines == ["A: 1"]
 
 
+@pytest.mark.slow
 def test_a_million_lines_are_all_kept(run: Run) -> None:
     done = run("for i in range(1_000_000): print('A:', i)", time_limit_s=60.0)
     assert done.ended.end == "finished"

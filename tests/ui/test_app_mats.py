@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
 from tests.ui.app_help import LOGS, notices, ready, settings, until
@@ -32,6 +33,13 @@ async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
         assert app.screen.query_one(".dialog").region.contains_region(field.region)
 
 
+async def enter_path(pilot: Pilot[None], path: Path) -> None:
+    """Begin to type a path, which turns to the field, and give the rest at once."""
+    await pilot.press("slash")
+    pilot.app.screen.query_one(Input).value = str(path)
+    await pilot.press("enter")
+
+
 async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
     path = tmp_path / "red.png"
     Image.new("RGB", (300, 200), (200, 0, 0)).save(path)
@@ -39,7 +47,7 @@ async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
         app = await ready(pilot)
         await pilot.press("b")
         await pilot.pause()
-        await pilot.press(*str(path), "enter")
+        await enter_path(pilot, path)
         await until(pilot, lambda: app.bridge.plan.spec.world.background == str(path) and app.loading.mat_is_ready)
         assert app.bridge.snapshot().colors["left"].rgb == (200, 0, 0)
 
@@ -54,7 +62,7 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
         before = app.bridge.plan
         await pilot.press("b")
         await pilot.pause()
-        await pilot.press(*str(path), "enter")
+        await enter_path(pilot, path)
         await until(pilot, lambda: any("none.png" in notice for notice in notices(app)))
         await until(pilot, lambda: app.bridge.plan == before)
         assert app.loading.mat_is_ready

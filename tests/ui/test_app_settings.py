@@ -91,7 +91,7 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
         app = await opened(pilot)
         await pilot.press("right")
         await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Small_Robot")
-        await pilot.press("left", "left")
+        await pilot.press("left", "left", "left")
         await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Sensor_Diameter_Config")
         # New diameters have to be prepared; until then nothing starts.
         await until(pilot, lambda: app.loading.mat_is_ready)
