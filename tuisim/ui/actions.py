@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from textual.message import Message
 
-from tuisim.ui import branching, comparing, travel, verbs
+from tuisim.ui import branching, comparing, stepping, travel, verbs
 from tuisim.ui.editor import wishes as editor
 from tuisim.ui.panels import PANELS
 from tuisim.ui.snapshot import PAUSED, RUNNING, STARTING, WAITING
@@ -36,7 +36,8 @@ class Act(Message):
 IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
 """States in which there is a child process."""
 
-PROGRAM, TIME, ROBOT, PANEL, FILES, APP = "Program", "Time", "Robot", "Panels", "Files", "App"
+PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
+FILES, APP = "Files", "App"
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,6 +162,25 @@ def _can_branch(now: Situation) -> str:
     return "" if now.in_past else "A branch begins in the past: , goes back"
 
 
+def _can_debug(now: Situation) -> str:
+    return "" if now.has_program or now.has_run else "No program yet: o opens one"
+
+
+def _debugs() -> list[Action]:
+    can = _can_debug
+    return [
+        Action("next-line", "n", "Next line", DEBUG, stepping.next_line, can, "next"),
+        Action("step-into", "s", "Next line, into calls", DEBUG, stepping.step_into, can, "into"),
+        Action("step-out", "u", "On until this function is left", DEBUG, stepping.step_out, can, "out"),
+        Action("line-back", "N", "One line back", DEBUG, stepping.line_back, _can_look_back, "line back"),
+        Action("break", "t", "Breakpoint at the cursor's line, or none", DEBUG, stepping.toggle_break, can, "break"),
+        Action("breaks", "T", "Breakpoints: add, edit, switch, delete", DEBUG, stepping.list_breaks, can),
+        Action("watches", "w", "Watches: expressions to look at", DEBUG, stepping.list_watches, can),
+        Action("to-cursor", "L", "Run to the cursor's line", DEBUG, stepping.to_cursor, can),
+        Action("ten-ticks", "colon", "Ten ticks on, while paused", TIME, stepping.ten_ticks, _can_step, shown_key=":"),
+    ]
+
+
 def _travels() -> list[Action]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
@@ -185,6 +205,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("pause", "space", "Pause or go on; play the past", PROGRAM, travel.pause, _can_pause, "pause"),
         Action("tick", "full_stop", "One tick on, while paused", TIME, travel.tick_on, _can_step, "tick"),
         Action("back", "comma", "One tick back", TIME, travel.tick_back, _can_look_back, "back"),
+        *_debugs(),
         *_travels(),
         Action("open", "o", "Open a program or a world", FILES, verbs.open_program, _can_change_world, "open"),
         Action("edit", "d", "Edit the program", FILES, editor.edit, footer="edit"),

@@ -20,6 +20,7 @@ from tuisim.protocol import Ended
 from tuisim.ui import branching, travel
 from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
 from tuisim.ui.bridge import ROWS_A_POLL, Bridge
+from tuisim.ui.debugging import Debugging
 from tuisim.ui.desk import Desk
 from tuisim.ui.editor.work import Work
 from tuisim.ui.feed import Feed, Series, sample_series
@@ -81,6 +82,7 @@ class Lab(Wishes):
         self._drawn: object = None
         self.loading = Loading(self)
         self.work = Work(self)
+        self.debugging = Debugging(self)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
@@ -122,6 +124,7 @@ class Lab(Wishes):
     def on_unmount(self) -> None:
         """Leave no child behind, and no unsaved work."""
         self.work.keep()
+        self.debugging.close()
         self.bridge.close()
         self.voice.hush()
 
@@ -146,20 +149,25 @@ class Lab(Wishes):
 
     # A run
 
-    def start_run(self) -> None:
-        """Start the program, as soon as the mat is ready."""
+    def start_run(self, held: bool = False) -> bool:
+        """Start the program, as soon as the mat is ready; whether it has started.
+
+        Args:
+            held: Hold it at its first line.
+        """
         if not self.loading.mat_is_ready:
-            self._run_when_ready = True
+            self._run_when_ready = not held
             self.say("The mat is being prepared; the program starts at once after that")
-            return
+            return False
         if not self.work.apply():
-            return
+            return False
         try:
-            self.bridge.start()
+            self.bridge.start(self.debugging.texts, held)
         except TuisimError as error:
             self.complain(error)
-            return
+            return False
         self.run_changed()
+        return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
         """Make the panels ready for another run, which may be over already and have ended with some words."""
@@ -173,6 +181,7 @@ class Lab(Wishes):
         if self.desk.code:
             self.desk.code.mark_error(error_line)
         self.work.run_changed()
+        self.debugging.run_changed()
         self.situation_changed()
 
     def _beat(self) -> None:
@@ -180,6 +189,7 @@ class Lab(Wishes):
         try:
             self._take(self.bridge.poll())
             travel.beat(self)
+            self.debugging.beat()
             if self.pacer.ready():
                 self.draw()
         except TuisimError as error:
@@ -193,6 +203,8 @@ class Lab(Wishes):
             self.voice.make_heard(sound)
             if self.desk.brick:
                 self.desk.brick.heard(sound.text)
+        for event in news.held:
+            self.debugging.take(event)
         if news.rows:
             self._take_rows(news)
         if output := self.desk.output:
@@ -309,6 +321,9 @@ class Lab(Wishes):
                 world.focus()
         if message.panel in ("code", "controls"):
             self._introduce_program()
+        if message.panel in ("code", "debug"):
+            self.debugging.mark()
+            self.debugging.show()
         self.desk.show_plan(self.bridge.plan)
         self.call_after_refresh(self.draw, force=True)
 
@@ -319,6 +334,7 @@ class Lab(Wishes):
 
     def _introduce_program(self) -> None:
         self.work.introduce()
+        self.debugging.program_changed(self.bridge.program)
 
     # What the user does
 

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from tuisim.ui.mat import Mat
     from tuisim.ui.session import AppSettings
 
+FIRST_LINE = (0, 1)
+"""Tick and ordinal at which the first line of a program is about to run."""
+
 ROWS_A_POLL = 4000
 """Most output rows that one poll takes, so that a flood of prints leaves the app fluid."""
 
@@ -65,6 +68,9 @@ class Bridge:
         """How the run ended."""
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer holds."""
+
+        self.held_line: tuple[int, int] | None = None
+        """Tick and line at which the program was held: more exact than the record of that tick."""
 
     # What is the case
 
@@ -166,7 +172,8 @@ class Bridge:
         noise = recording.noise_at(record) if self._is_of_run else self.plan.spec.world.noise
         # At rest the pen is where the next run will have it.
         down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.plan.spec.robot.pen.down
-        return instant_of(record, self.spec, noise), record.line, down
+        tick, line = self.held_line or (-1, 0)
+        return instant_of(record, self.spec, noise), line if tick == record.tick else record.line, down
 
     def _pressed_at(self, record: TickRecord | None) -> frozenset[str]:
         """The brick's buttons that are held down: those of the user now, or those of the instant looked at."""
@@ -186,8 +193,12 @@ class Bridge:
 
     # What the user does
 
-    def start(self) -> None:
+    def start(self, breaks: tuple[str, ...] = (), held: bool = False) -> None:
         """Start the program from where the robot was last put.
+
+        Args:
+            breaks: What holds it.
+            held: Hold it at its first line.
 
         Raises:
             TuisimError: the run cannot be started.
@@ -196,7 +207,10 @@ class Bridge:
 
         if self.program is None or self.in_run:
             return
-        options = RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)
+        options = RunOptions(
+            live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True,
+            breaks=breaks, hold_at=FIRST_LINE if held else None,
+        )  # fmt: skip
         run = start_run(self.program, self.plan.spec, options)
         self.close()
         self.run, self._end = run, ""
@@ -260,6 +274,10 @@ class Bridge:
     def step(self) -> None:
         """Let one tick pass."""
         self._send(protocol.StepTicks(1))
+
+    def debug(self, command: protocol.Message) -> None:
+        """Send a command of debugging."""
+        self._send(command)
 
     def set_speed(self, speed: float) -> None:
         """Change the pace: 1.0 real time, 0 as fast as possible."""
@@ -357,6 +375,7 @@ class Bridge:
             return News([])
         ended = branched = None
         spoken: list[protocol.Spoke] = []
+        held: list[protocol.Message] = []
         for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
@@ -364,10 +383,12 @@ class Bridge:
                     branched = self._branch_is_there()
                 case protocol.Paused() if self._branch:
                     branched = self._branch_is_there(event)
-                case protocol.Paused(reason="break", tick=tick):
-                    self.timeline.breaks.append(tick)
+                case protocol.Paused() | protocol.Resumed() | protocol.Looked():
+                    held.append(event)
+                    if isinstance(event, protocol.Paused) and event.reason == "break":
+                        self.timeline.breaks.append(event.tick)
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
-        return News(rows, 0, ended, tuple(spoken), prompt, branched)
+        return News(rows, 0, ended, tuple(spoken), prompt, branched, tuple(held))

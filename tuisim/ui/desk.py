@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tuisim.ui.panels.chart import Chart
     from tuisim.ui.panels.code import Code
     from tuisim.ui.panels.controls import Controls
+    from tuisim.ui.panels.debug import Debug
     from tuisim.ui.panels.obstacles import Obstacles
     from tuisim.ui.panels.output import Output
     from tuisim.ui.panels.world import World
@@ -81,6 +82,11 @@ class Desk(Container):
     def controls(self) -> Controls | None:
         """The simulator controls, if they have been made."""
         return cast("Controls | None", self.panels.get("controls"))
+
+    @property
+    def debug(self) -> Debug | None:
+        """Debugging, if it has been made."""
+        return cast("Debug | None", self.panels.get("debug"))
 
     @property
     def brick(self) -> Brick | None:

@@ -27,3 +27,5 @@ class News:
     """The prompt while the program waits in `input()`."""
     branched: Branch | None = None
     """Set once, when a branch has come to its instant, or has ended before."""
+    held: tuple[protocol.Message, ...] = ()
+    """That the program stands still or goes on, and what it looks like."""

@@ -20,6 +20,8 @@ def to_tick(lab: Lab, tick: int | None) -> None:
         return
     if tick is not None and lab.bridge.in_run and lab.bridge.state != PAUSED:
         lab.bridge.pause()
+    if tick is None:
+        lab.debugging.to_now()
     lab.bridge.timeline.go(tick)
     _gone(lab)
 

@@ -12,10 +12,13 @@ from tuisim.ui.plan import with_obstacles
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
     from tuisim.ui.bridge import Bridge
+    from tuisim.ui.debugging import Debugging
     from tuisim.ui.desk import Desk
     from tuisim.ui.loading import Loading
     from tuisim.ui.panels.brick import Brick
     from tuisim.ui.panels.chart import Chart
+    from tuisim.ui.panels.code import Code
+    from tuisim.ui.panels.debug import Debug
     from tuisim.ui.panels.noise import Noise
     from tuisim.ui.panels.obstacles import Obstacles
     from tuisim.ui.panels.positioning import Positioning
@@ -28,6 +31,7 @@ class Wishes(EditorWishes):
     """The part of the app that answers messages of panels; Textual finds the methods by their names."""
 
     bridge: Bridge
+    debugging: Debugging
     desk: Desk
     loading: Loading
 
@@ -82,6 +86,18 @@ class Wishes(EditorWishes):
         """An obstacle was drawn or moved with the mouse."""
         if self.loading.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and self.desk.obstacles:
             self.desk.obstacles.mark(message.index)
+
+    def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
+        """The gutter of the code was clicked on."""
+        self.debugging.toggle_line(message.line)
+
+    def on_debug_frame_wanted(self, message: Debug.FrameWanted) -> None:
+        """Another call is to be looked at."""
+        self.debugging.choose_frame(message.by)
+
+    def on_debug_thread_wanted(self) -> None:
+        """Another thread is to be looked at."""
+        self.debugging.choose_thread()
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
         """The user presses the brick's buttons, or lets them go."""

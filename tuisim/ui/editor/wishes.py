@@ -33,6 +33,7 @@ class EditorWishes(App[None]):
     def on_code_edited(self, message: Code.Edited) -> None:
         """The text was changed."""
         self.work.edited(message.text)
+        cast("Lab", self).debugging.edited(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         """A key of the editor was pressed."""

@@ -78,6 +78,7 @@ PANELS: Mapping[str, PanelInfo] = {
         PanelInfo("controls", "Simulator controls", "H", "controls:Controls", SIDE, (MEDIUM, LARGE), 11, 12),
         PanelInfo("positioning", "Positioning", "X", "positioning:Positioning", SIDE, (LARGE,), 8, 8),
         PanelInfo("noise", "Noise", "z", "noise:Noise", SIDE, (LARGE,), 6, 6),
+        PanelInfo("debug", "Debug", "G", "debug:Debug", SIDE, (), 9, 18),
         PanelInfo("brick", "Brick", "K", "brick:Brick", BOTTOM, (), 9, 20, weight=4),
         PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", SIDE, (), 11, 16),
         PanelInfo("settings", "Settings", "Z", "settings:Settings", SIDE, (), 14, 40),

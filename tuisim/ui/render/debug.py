@@ -1,0 +1,140 @@
+"""What a program that stands still looks like, as lines of text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from rich.style import Style
+
+from tuisim.held import FrameState, Variable
+from tuisim.protocol import Looked, Paused
+
+Run: TypeAlias = tuple[str, Style]
+Line: TypeAlias = list[Run]
+
+_PLAIN = Style(color="#d8dee6")
+_NAME = Style(color="#9fd3ff")
+_VALUE = Style(color="#ffffff")
+_CHANGED = Style(color="#ffd75f", bold=True)
+_HEAD = Style(color="#87d7af", bold=True)
+_PALE = Style(color="#8c99a6")
+_WAITS = Style(color="#101010", bgcolor="#d7af5f")
+_ERROR = Style(color="#ff6e6e")
+_CHOSEN = Style(color="#ffffff", bgcolor="#2f4a68")
+
+_NAME_COLUMN = 16
+
+REASONS = {
+    "asked": "paused", "ticks": "ticks done", "step": "step", "line": "line reached", "break": "break",
+    "instant": "recorded", "end": "end of the program",
+}  # fmt: skip
+"""Words for `protocol.PAUSES`."""
+
+EMPTY = (
+    "The program stands nowhere yet.",
+    "",
+    "n  next line      t  breakpoint",
+    "s  into a call    u  out of it",
+    "N  line back      w  watch",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class DebugView:
+    """What the panel shows."""
+
+    state: str = ""
+    """Word for the run when it stands nowhere."""
+    paused: Paused | None = None
+    looked: Looked | None = None
+    past: bool = False
+    busy: bool = False
+    """Whether a former instant is still being worked out."""
+
+
+def debug_lines(view: DebugView, width: int) -> list[Line]:
+    """Return the text for a panel of that inner width."""
+    if view.paused is None or view.looked is None:
+        if view.busy:
+            return [[("working out that instant …", _PALE)]]
+        if view.state == "running":
+            return [[("running", _HEAD)], [("space pauses, n holds at the next line", _PALE)]]
+        return [[(text[:width], _PALE)] for text in EMPTY]
+    paused, looked = view.paused, view.looked
+    lines = [_where(view, paused, width)]
+    why = REASONS.get(paused.reason, paused.reason) + (f" {paused.detail}" if paused.detail else "")
+    if paused.value:
+        why += f": {paused.value}"
+    if not view.past and paused.reason not in ("asked", "instant"):
+        lines.append([(_cut(why, width), _CHANGED)])
+    if looked.waiting:
+        lines.append([(_cut(f" {looked.waiting} ", width), _WAITS)])
+    if looked.watches:
+        lines.append([("Watches", _HEAD)])
+        for watch in looked.watches:
+            shown, style = (watch.error, _ERROR) if watch.error else (watch.value, _VALUE)
+            lines.append(_pair(watch.text, shown, _NAME, style, width))
+    frame = looked.stack[looked.frame] if looked.frame < len(looked.stack) else None
+    lines += _variables(_title(frame), looked.variables, width)
+    if looked.globals:
+        lines += _variables("Globals", looked.globals, width)
+    lines += _stack(looked, width)
+    if len(looked.threads) > 1:
+        lines.append([("Threads", _HEAD)])
+        for thread in looked.threads:
+            chosen = thread.name == looked.thread
+            text = f"{'▸' if chosen else ' '} {thread.name} line {thread.line}" if thread.line else f"  {thread.name}"
+            lines.append([(_cut(f"{text} {thread.waiting}", width), _CHOSEN if chosen else _PLAIN)])
+    if looked.note:
+        lines.append([(_cut(looked.note, width), _PALE)])
+    return lines
+
+
+def _where(view: DebugView, paused: Paused, width: int) -> Line:
+    at = f"{paused.file}:{paused.line}" if paused.file else f"line {paused.line}" if paused.line else "no line"
+    text = f"{at} · {paused.time_ns / 1e9:.2f} s · tick {paused.tick}"
+    tail = " …" if view.busy else " past" if view.past else ""
+    return [(_cut(text, width - len(tail)), _HEAD), (tail, _CHANGED)]
+
+
+def _title(frame: FrameState | None) -> str:
+    if frame is None:
+        return "Variables"
+    return "Variables" if frame.function == "<module>" else f"Variables of {frame.function}"
+
+
+def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Line]:
+    lines: list[Line] = [[(_cut(title, width), _HEAD)]]
+    if not variables:
+        lines.append([("  none", _PALE)])
+    # What has changed is what one looks for.
+    for variable in sorted(variables, key=lambda one: not one.changed):
+        style = _CHANGED if variable.changed else _VALUE
+        lines.append(_pair(variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "))
+    return lines
+
+
+def _stack(looked: Looked, width: int) -> list[Line]:
+    if len(looked.stack) < 2:
+        return []
+    lines: list[Line] = [[("Calls", _HEAD)]]
+    for at, frame in enumerate(looked.stack):
+        where = f"{frame.file}:{frame.line}" if frame.file else f"{frame.line}"
+        name = "program" if frame.function == "<module>" else f"{frame.function}()"
+        style = _CHOSEN if at == looked.frame else _PLAIN
+        lines.append([(_cut(f"{'▸' if at == looked.frame else ' '} {name} line {where}", width), style)])
+    return lines
+
+
+def _pair(name: str, value: str, name_style: Style, style: Style, width: int, mark: str = " ") -> Line:
+    column = min(_NAME_COLUMN, max(6, width // 2 - 2), max(6, len(name)))
+    shown = _cut(name, column).ljust(column)
+    room = width - column - 3
+    text = " ".join(value.split("\n"))
+    return [(f"{mark} ", _CHANGED), (shown, name_style), (" ", _PLAIN), (_cut(text, room), style)]
+
+
+def _cut(text: str, width: int) -> str:
+    return text if len(text) <= width else text[: max(0, width - 1)] + "…"
