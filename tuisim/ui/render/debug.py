@@ -32,6 +32,13 @@ REASONS = {
 }  # fmt: skip
 """Words for `protocol.PAUSES`."""
 
+OVER = (
+    "The program is over.",
+    "",
+    "N  its last line    ,  a tick back",
+    "g  go to …          <  a second back",
+    "n  step through it anew",
+)
 EMPTY = (
     "The program stands nowhere yet.",
     "",
@@ -61,7 +68,7 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
             return [[("working out that instant …", _PALE)]]
         if view.state == "running":
             return [[("running", _HEAD)], [("space pauses, n holds at the next line", _PALE)]]
-        return [[(text[:width], _PALE)] for text in EMPTY]
+        return [[(text[:width], _PALE)] for text in (OVER if view.state == "ended" else EMPTY)]
     paused, looked = view.paused, view.looked
     lines = [_where(view, paused, width)]
     why = REASONS.get(paused.reason, paused.reason) + (f" {paused.detail}" if paused.detail else "")

@@ -1,0 +1,215 @@
+"""Stepping, breaks and looks in the app, now and in the past."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input, OptionList, Static
+
+from tests.ui.app_help import notices, ready, settings, until
+from tuisim.breaks import parse_breaks
+from tuisim.ui.app import Lab
+from tuisim.ui.breakstore import Kept, following, keep, load_kept
+
+COUNTS = """\
+import time
+total = 0
+for i in range(50):
+    total = total + i
+    time.sleep(0.05)
+    print('Total: ' + str(total))
+print('done')
+"""
+CALLS = """\
+import time
+def outer(n):
+    local = n + 1
+    inner(local)
+    return local
+
+def inner(m):
+    time.sleep(0.1)
+    return m
+
+outer(1)
+print('done')
+"""
+
+
+def line(app: Lab) -> int:
+    assert app.debugging.standing is not None
+    return app.debugging.standing.paused.line
+
+
+def values(app: Lab) -> dict[str, str]:
+    assert app.debugging.standing is not None
+    return {one.name: one.value for one in app.debugging.standing.looked.variables}
+
+
+async def stands(pilot: Pilot[Any], app: Lab, at: int) -> None:
+    """Wait until the program stands at a line and has been looked at."""
+    await until(pilot, lambda: app.debugging.standing is not None and line(app) == at and not app.debugging.busy)
+
+
+async def press(pilot: Pilot[Any], app: Lab, key: str, *lines: int) -> None:
+    """Press a key again and again; it leads to these lines."""
+    for at in lines:
+        before = app.debugging.standing
+        await pilot.press(key)
+        await until(pilot, lambda before=before: app.debugging.standing not in (None, before))  # type: ignore[misc]
+        await stands(pilot, app, at)
+
+
+def drawn(app: Lab) -> str:
+    assert app.desk.debug is not None
+    return "\n".join("".join(text for text, _ in row) for row in app.desk.debug._lines)
+
+
+async def test_steps_from_the_first_line(home: object) -> None:
+    app = Lab(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 3, 4, 5)
+        assert values(app) == {"total": "0", "i": "0"}
+        assert app.bridge.snapshot().line == 5
+        assert app.desk.shown("debug")
+        await press(pilot, app, "n", 6, 3, 4)
+        assert values(app)["i"] == "1"
+        assert "line 4" in drawn(app)
+
+
+async def test_one_line_back_and_on_again(home: object) -> None:
+    app = Lab(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 3, 4, 5, 6, 3, 4, 5, 6)
+        assert values(app)["total"] == "1"
+        await press(pilot, app, "N", 5, 4)
+        assert values(app)["total"] == "0"
+        assert app.debugging.looks_back
+        assert "past" in drawn(app)
+        await press(pilot, app, "n", 5)
+        assert values(app)["total"] == "1"
+        await pilot.press("end")
+        await until(pilot, lambda: not app.debugging.looks_back and app.debugging.standing is not None)
+        assert line(app) == 6
+        await press(pilot, app, "n", 3)
+
+
+async def test_into_and_out_of_calls(home: object) -> None:
+    app = Lab(settings(CALLS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 7, 11)
+        await press(pilot, app, "s", 3, 4, 8)
+        looked = app.debugging.standing.looked  # type: ignore[union-attr]
+        assert [frame.function for frame in looked.stack] == ["inner", "outer", "<module>"]
+        assert values(app) == {"m": "2"}
+        await pilot.press("tab")
+        app.desk.debug.focus()  # type: ignore[union-attr]
+        await pilot.press("right")
+        await until(pilot, lambda: values(app) == {"n": "1", "local": "2"})
+        await pilot.press("u")
+        await stands(pilot, app, 5)
+
+
+async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> None:
+    async with Lab(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.desk.code._area.move_cursor((4, 0))  # type: ignore[union-attr]
+        await pilot.press("t")
+        assert [one.text for one in app.debugging.breaks] == ["5"]
+        await pilot.press("R")
+        await stands(pilot, app, 5)
+        assert any("Break 5" in text for text in notices(app))
+        await pilot.press("space")
+        await until(pilot, lambda: app.debugging.standing is not None and values(app).get("i") == "1")
+        await pilot.press("t", "space")
+        await until(pilot, lambda: not app.bridge.in_run)
+        await pilot.press("t")
+    async with Lab(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: [one.text for one in app.debugging.breaks] == ["5"])
+
+
+async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: object) -> None:
+    app = Lab(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("T")
+        await pilot.pause()
+        field = app.screen.query_one(Input)
+        for text in ("4 if i ==", "sample Total > 5", "4 if i == 3"):
+            field.value = text
+            await pilot.press("enter")
+        assert "no expression" not in str(app.screen.query_one("#message", Static).render())
+        assert [one.text for one in app.debugging.breaks] == ["sample Total > 5", "4 if i == 3"]
+        app.screen.query_one(OptionList).focus()
+        await pilot.press("home", "space")
+        assert app.debugging.breaks[0].disabled
+        await pilot.press("delete", "escape")
+        assert [one.written() for one in app.debugging.breaks] == ["4 if i == 3"]
+        await pilot.press("w")
+        await pilot.pause()
+        app.screen.query_one(Input).value = "total * 2"
+        await pilot.press("enter", "escape", "R")
+        await stands(pilot, app, 4)
+        assert values(app) == {"total": "3", "i": "3"}
+        watched = app.debugging.standing.looked.watches  # type: ignore[union-attr]
+        assert [(watch.text, watch.value) for watch in watched] == [("total * 2", "6")]
+
+
+async def test_the_variables_of_any_former_instant(home: object) -> None:
+    app = Lab(settings(COUNTS, speed=0.0))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == "ended")
+        await pilot.press("G")
+        app.bridge.timeline.go(42)
+        await until(pilot, lambda: app.debugging.standing is not None and not app.debugging.busy)
+        assert values(app) == {"total": "36", "i": "8"}
+        assert "sleeps until 0.45 s" in drawn(app)
+        app.bridge.timeline.go(7)
+        await until(pilot, lambda: values(app) == {"total": "1", "i": "1"})
+        await press(pilot, app, "n", 6)
+        assert app.bridge.timeline.at == 10
+        await pilot.press("L")
+        await until(pilot, lambda: not app.debugging.busy)
+        await pilot.press("end")
+        await until(pilot, lambda: app.debugging.standing is None)
+
+
+async def test_run_to_the_cursor_starts_the_program(home: object) -> None:
+    app = Lab(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        app.desk.code._area.move_cursor((5, 0))  # type: ignore[union-attr]
+        await pilot.press("L")
+        await stands(pilot, app, 6)
+        await pilot.press("S")
+        await until(pilot, lambda: not app.bridge.in_run)
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "expected"),
+    [
+        ("a\nb\nc", "a\nb\nc", ["2", "3 if x"]),
+        ("a\nb\nc", "new\na\nb\nc", ["3", "4 if x"]),
+        ("a\nb\nc", "a\nb\nnew\nc", ["2", "4 if x"]),
+        ("a\nb\nc", "a\nc", ["2 if x"]),
+    ],
+    ids=["same", "line before", "line between", "line gone"],
+)
+def test_breaks_follow_their_lines(before: str, now: str, expected: list[str]) -> None:
+    breaks = parse_breaks(("2", "3 if x", "time 3"))
+    assert [one.text for one in following(breaks, before, now)] == [*expected, "time 3"]
+
+
+def test_what_is_kept_comes_back(home: object) -> None:
+    kept = Kept(parse_breaks(("12 if x > 3", "# time 3.5")), ("len(x)",))
+    keep("/some/where.py", kept)
+    assert load_kept("/some/where.py") == kept
+    assert load_kept("/else/where.py") == Kept()
