@@ -383,6 +383,7 @@ class Bridge:
                     branched = self._branch_is_there()
                 case protocol.Paused() if self._branch:
                     branched = self._branch_is_there(event)
+                    held.append(event)
                 case protocol.Paused() | protocol.Resumed() | protocol.Looked():
                     held.append(event)
                     if isinstance(event, protocol.Paused) and event.reason == "break":

@@ -57,6 +57,8 @@ class Debugging:
         self._first: Message | None = None
         """To be done when a run that was started for it stands at its first line."""
         self._panels_came = False
+        self._untold = False
+        """Whether the run at work was not told the breaks, as a branch is only on its instant."""
 
     # Breaks and watches
 
@@ -124,12 +126,15 @@ class Debugging:
         """There is another run, or none."""
         self._paused = self._position = self.standing = self._lab.bridge.held_line = None
         self._frame, self._thread, self._wanted = 0, "", None
-        self._panels_came = False
+        self._panels_came, self._untold = False, bool(self.breaks)
         self._stand_in.close()
         self.show()
 
     def take(self, event: Message) -> None:
         """The run stands still, goes on, or has told what it looks like."""
+        if self._untold:
+            self._untold = False
+            self._lab.bridge.debug(protocol.SetBreaks(self.texts))
         match event:
             case Paused():
                 self._stands(event)

@@ -57,6 +57,10 @@ class Noise(Vertical):
             yield Input("0", id="seed", compact=True, select_on_focus=True)
         yield Static(_USE, id="message", markup=False)
 
+    def begin(self) -> None:
+        """Take the focus: a slider, on which letters are still keys of the app; tab leads to its number."""
+        self.query_one("#light", Slider).focus()
+
     def show(self, snapshot: Snapshot) -> None:
         """Show noise and seed as they were last chosen, here or elsewhere."""
         if not self.is_mounted or not self.query(Slider):
