@@ -17,6 +17,7 @@ from tests.bench.running import EMPTY, begin
 from tests.bench.speed import LOADS, speeds
 from tests.bench.starts import first_line, first_paint, help_text
 from tests.bench.stops import stop_latency
+from tests.bench.variables import variables
 from tuisim.host import RunOptions
 
 BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
@@ -30,6 +31,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "frames": frames,
     "chart": chart,
     "back": back,
+    "variables": variables,
 }
 """Every bench by name."""
 

@@ -1,0 +1,79 @@
+"""Variables of a former instant: from asking for it to knowing them, by a re-run of a ten-minute run."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from random import Random
+from statistics import median
+
+from tests.bench.figures import Effort, Figure
+from tests.bench.running import LOG
+from tuisim.config import build_run_spec
+from tuisim.datalog.store import load_run
+from tuisim.host import Program, RunOptions, start_run
+from tuisim.protocol import Look, Looked, Paused
+from tuisim.switches import Settings
+from tuisim.ui.recording import Recording
+from tuisim.ui.stands import Position, StandIn
+
+RUN_S = 600.0
+PLACES_A_REPEAT = 5
+LOOK_EVERY_S = 0.002
+
+
+class Asking:
+    """Asks for instants of one run and takes the time.
+
+    Args:
+        noise: Light and motor noise of the run.
+    """
+
+    def __init__(self, noise: int) -> None:
+        spec = build_run_spec(Settings(background="Grey_bands", light_noise=noise, motor_noise=noise))
+        run = start_run(Program("bench.py", LOG, "preloaded"), spec, RunOptions(time_limit_s=RUN_S))
+        run.wait()
+        self.recording = Recording(load_run(run.run_id))
+        self.stand_in = StandIn(self._arrived, self._failed)
+        self._there = False
+
+    def _arrived(self, paused: Paused, looked: Looked) -> None:
+        self._there = True
+
+    def _failed(self, why: str) -> None:
+        raise RuntimeError(why)
+
+    def places(self, count: int) -> list[Position]:
+        """Return instants from all over the run."""
+        chance = Random(7)
+        return [Position(chance.randrange(self.recording.newest)) for _ in range(count)]
+
+    def took_s(self, ask: Callable[[], None]) -> float:
+        """Ask and wait for the answer."""
+        self._there, start = False, time.monotonic()
+        ask()
+        while not self._there:
+            self.stand_in.beat()
+            time.sleep(LOOK_EVERY_S)
+        return time.monotonic() - start
+
+    def look_s(self, at: Position) -> float:
+        """Return how long it takes to know the variables of an instant."""
+        return self.took_s(lambda: self.stand_in.go(self.recording, at, Look()))
+
+    def back_s(self, at: Position) -> float:
+        """Return how long it takes to go a line back from an instant."""
+        return self.took_s(lambda: self.stand_in.lines_back(self.recording, at, 1, Look()))
+
+
+def variables(effort: Effort) -> Iterator[Figure]:
+    """Yield the time that it takes to know the variables of an instant of a ten-minute run."""
+    for words, noise in (("without noise", 0), ("with noise", 20)):
+        asking = Asking(noise)
+        places = asking.places(effort.repeats * PLACES_A_REPEAT)
+        known = [asking.look_s(at) for at in places]
+        back = [asking.back_s(at) for at in places]
+        asking.stand_in.close()
+        yield Figure(f"variables of any instant of 10 minutes, {words}", 1e3 * median(known), "ms", most=1000)
+        yield Figure(f"the slowest of them, {words}", 1e3 * max(known), "ms")
+        yield Figure(f"one line back, with variables, {words}", 1e3 * median(back), "ms")
