@@ -9,7 +9,7 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.ui.layout import Arrangement, Box, arrange, size_class
+from tuisim.ui.layout import arrange, size_class
 from tuisim.ui.panels import PANELS, Panel, PlanPanel
 from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import Snapshot
@@ -50,11 +50,9 @@ class Desk(Container):
         asked = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
         self._asked = {panel: asked[panel] for panel in PANELS if panel in asked}
         """What was asked for, the latest last."""
-        self._alone = ""
+        self.alone = ""
         """Id of the panel that has the whole place, empty for none."""
         self._left_out: tuple[str, ...] = ()
-        self.enlarged = ""
-        """The panel that fills the desk alone, empty for none."""
 
     # A hidden panel still takes what it is fed; one never shown is None.
 
@@ -108,9 +106,8 @@ class Desk(Container):
 
     def toggle(self, panel: str) -> None:
         """Show a panel, or hide it; one asked for is given room before the others."""
-        self._alone = ""
-        show = not self.shown(panel) or bool(self.enlarged)
-        self.enlarged = ""
+        show = not self.shown(panel) or bool(self.alone)
+        self.alone = ""
         self._asked.pop(panel, None)
         self._asked[panel] = show
         before = {panel_id for panel_id in PANELS if self.shown(panel_id)}
@@ -126,19 +123,14 @@ class Desk(Container):
 
     def give_all(self, panel: str) -> None:
         """Let one panel have the whole place; with an empty id the others are back."""
-        if panel != self._alone:
-            self._alone = panel
+        if panel != self.alone:
+            self.alone = panel
             self.lay_out()
-
-    def enlarge(self, panel: str) -> None:
-        """Let a panel fill the desk alone; if one does already, all come back."""
-        self.enlarged = "" if self.enlarged else panel
-        self.lay_out()
 
     def _wanted(self) -> list[str]:
         """Ids of the panels to show, the most wanted first."""
-        if self._alone:
-            return [self._alone]
+        if self.alone:
+            return [self.alone]
         size = size_class(self.size.width, self.size.height + 1)
         asked = [panel for panel, on in reversed(self._asked.items()) if on]
         rest = [info.id for info in PANELS.values() if size in info.sizes and info.id not in self._asked]
@@ -149,8 +141,6 @@ class Desk(Container):
         if not self.size:
             return
         arrangement = arrange(self._wanted(), self.size.width, self.size.height)
-        if self.enlarged:
-            arrangement = Arrangement({self.enlarged: Box(0, 0, self.size.width, self.size.height)})
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in arrangement.boxes

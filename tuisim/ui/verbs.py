@@ -88,8 +88,8 @@ def enlarge(lab: Lab) -> None:
     panel = next(
         (name for name, widget in lab.desk.panels.items() if focused and widget in focused.ancestors_with_self), ""
     )
-    if panel or lab.desk.enlarged:
-        lab.desk.enlarge(panel)
+    if panel or lab.desk.alone:
+        lab.desk.give_all("" if lab.desk.alone else panel)
     else:
         lab.say("No panel has the focus: tab or a click gives it to one")
 
