@@ -19,10 +19,10 @@ from tuisim.core.sensors.color import reading
 from tuisim.core.spec import ColorSensorSpec, NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.core.state import TICK_RECORD, Instant
 from tuisim.datalog.frames import SAMPLE_COLUMNS, samples_frame, telemetry_frame
-from tuisim.datalog.records import TELEMETRY_FILE
+from tuisim.datalog.records import TELEMETRY_FILE, TICK_FIELDS
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.sensor_columns import quiet_color_columns
-from tuisim.datalog.views import TICK_FIELDS, instant_of
+from tuisim.datalog.views import instant_of
 from tuisim.errors import LogError
 from tuisim.fields import FieldFiles, open_field, prepare
 

@@ -14,8 +14,16 @@ import pytest
 
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import TICK_RECORD
-from tuisim.datalog.records import HEADER_BYTES, OUTPUT_FILE, STDOUT, TELEMETRY_FILE, OutputWriter, TelemetryWriter
-from tuisim.datalog.views import TICK_FIELDS, OutputView, TelemetryView, TickRecord, instant_of
+from tuisim.datalog.records import (
+    HEADER_BYTES,
+    OUTPUT_FILE,
+    STDOUT,
+    TELEMETRY_FILE,
+    TICK_FIELDS,
+    OutputWriter,
+    TelemetryWriter,
+)
+from tuisim.datalog.views import OutputView, TelemetryView, TickRecord, instant_of
 from tuisim.errors import LogError
 
 CHILD = """

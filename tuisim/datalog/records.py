@@ -29,6 +29,22 @@ FORMAT_VERSION = 1
 TELEMETRY_MAGIC = b"TUISIMTL"
 OUTPUT_MAGIC = b"TUISIMOU"
 
+TICK_FIELDS = (
+    ("tick", "<u4"),
+    ("line", "<u4"),
+    ("x_mm", "<f8"),
+    ("y_mm", "<f8"),
+    ("heading_deg", "<f8"),
+    ("left_position_deg", "<f8"),
+    ("right_position_deg", "<f8"),
+    ("left_speed_dps", "<f4"),
+    ("right_speed_dps", "<f4"),
+    ("gyro_zero_deg", "<f4"),
+    ("flags", "<u2"),
+    ("actions", "<u2"),
+)
+"""Name and numpy type of each field of `core.state.TICK_RECORD`."""
+
 OUTPUT_ROW = Struct("<IIqIB3x")
 """Bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
 
@@ -49,6 +65,11 @@ MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
 
 
+def header(magic: bytes, record_bytes: int, length: int) -> bytes:
+    """Return the header of a recording: HEADER_BYTES bytes."""
+    return _HEADER.pack(magic, FORMAT_VERSION, record_bytes, length).ljust(HEADER_BYTES, b"\0")
+
+
 class _GrowingMap:
     """A file mapped into memory that grows in ever larger steps."""
 
@@ -57,7 +78,7 @@ class _GrowingMap:
         self.capacity = HEADER_BYTES + first_bytes
         os.ftruncate(self._fd, self.capacity)
         self._map_file()
-        self.map[0 : _HEADER.size] = _HEADER.pack(magic, FORMAT_VERSION, record_bytes, 0)
+        self.map[0:HEADER_BYTES] = header(magic, record_bytes, 0)
 
     def grow(self, need: int) -> None:
         while self.capacity < need:

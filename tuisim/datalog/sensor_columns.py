@@ -30,7 +30,7 @@ def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[Action], fie
     """Return the columns of every mounted sensor, in the order of the telemetry frame.
 
     Args:
-        records: Telemetry, structured as `views.TICK_FIELDS`, shape (n,).
+        records: Telemetry, structured as `records.TICK_FIELDS`, shape (n,).
         spec: What the run was made of.
         actions: The user's actions, which may have changed the noise.
         field: The mat.
@@ -56,7 +56,7 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -
     """Return red, green and blue of a colour sensor at every tick, for a run without light noise.
 
     Args:
-        records: Telemetry, structured as `views.TICK_FIELDS`, shape (n,).
+        records: Telemetry, structured as `records.TICK_FIELDS`, shape (n,).
         sensor: The sensor.
         field: The mat; it must have sums of the sensor's diameter.
     """

@@ -1,7 +1,8 @@
 """Readers of a run folder's two binary files, also while the run goes on.
 
 A view never changes what it reads and never waits. A file that is not there yet reads as
-empty; one that has grown is mapped again.
+empty; one that has grown is mapped again; one that has been packed is unpacked in memory,
+once, when its content is wanted.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import TICK_RECORD, Instant
+from tuisim.datalog.compact import Packed, find_packed
 from tuisim.datalog.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
     OUTPUT_MAGIC,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
+    TICK_FIELDS,
     OutputRow,
     output_rows,
     published_length,
@@ -29,22 +32,6 @@ from tuisim.datalog.records import (
 
 if TYPE_CHECKING:
     import numpy as np
-
-TICK_FIELDS = (
-    ("tick", "<u4"),
-    ("line", "<u4"),
-    ("x_mm", "<f8"),
-    ("y_mm", "<f8"),
-    ("heading_deg", "<f8"),
-    ("left_position_deg", "<f8"),
-    ("right_position_deg", "<f8"),
-    ("left_speed_dps", "<f4"),
-    ("right_speed_dps", "<f4"),
-    ("gyro_zero_deg", "<f4"),
-    ("flags", "<u2"),
-    ("actions", "<u2"),
-)
-"""Name and numpy type of each field of `core.state.TICK_RECORD`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,26 +80,37 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
 
 
 class _Mapped:
-    """A recording mapped for reading, and mapped again when it has outgrown the map."""
+    """A recording mapped for reading, and mapped again when it has outgrown the map; or unpacked."""
 
     def __init__(self, path: Path, magic: bytes, record_bytes: int) -> None:
         self._path = path
         self._magic = magic
         self._record_bytes = record_bytes
-        self._map: mmap.mmap | None = None
+        self._map: mmap.mmap | bytes | None = None
+        self.packed: Packed | None = None
+        """The packed form, while nothing but its header has been read."""
 
-    def look(self) -> tuple[mmap.mmap | None, int, int]:
+    def look(self) -> tuple[mmap.mmap | bytes | None, int, int]:
         """Return the map (None while there is no file), the published length, and how much of it is there."""
-        if self._map is None:
+        published, there = self.extent()
+        if self.packed is not None:
+            self._map, self.packed = self.packed.recording(), None
+        return self._map, published, there
+
+    def extent(self) -> tuple[int, int]:
+        """Return the published length, and how much of it is there."""
+        if self._map is None and self.packed is None:
             self._open()
+        if self.packed is not None:
+            return self.packed.length, self.packed.length
         if self._map is None:
-            return None, 0, 0
+            return 0, 0
         # A copy of the header is made in one piece; read in place, a number that is just being
         # written could be put together from the bytes of two.
         published = published_length(self._map[:HEADER_BYTES], self._magic, str(self._path))
         if published > self._room():
             self._open()
-        return self._map, published, min(published, self._room())
+        return published, published if self.packed is not None else min(published, self._room())
 
     def _room(self) -> int:
         return 0 if self._map is None else (len(self._map) - HEADER_BYTES) // self._record_bytes
@@ -121,7 +119,11 @@ class _Mapped:
         try:
             with open(self._path, "rb") as handle:
                 found = mmap.mmap(handle.fileno(), 0, access=mmap.ACCESS_READ)
-        except (FileNotFoundError, ValueError):  # ValueError: created, but still empty
+        except FileNotFoundError:
+            # Looked for in this order, a recording that is being packed is always found.
+            self.packed = find_packed(self._path)
+            return
+        except ValueError:  # created, but still empty
             return
         # The writer sizes a new file before it writes the header.
         if found[:HEADER_BYTES].strip(b"\0"):
@@ -145,19 +147,23 @@ class TelemetryView:
     @property
     def count(self) -> int:
         """How many whole records there are; record k is that of tick k."""
-        return self._file.look()[2]
+        return self._file.extent()[1]
 
     @property
     def note(self) -> str:
         """What is missing from a file that was cut off, or empty."""
-        _, published, there = self._file.look()
+        published, there = self._file.extent()
         lost = published - there
         return f"{TELEMETRY_FILE} was cut off: the last {lost} of {published} records are lost" if lost else ""
 
     def last(self) -> TickRecord | None:
         """Return the newest record, None if there is none yet."""
         count = self.count
-        return self.record(count - 1) if count else None
+        if not count:
+            return None
+        packed = self._file.packed
+        # The packed form tells its last record without being unpacked.
+        return self.record(count - 1) if packed is None else TickRecord(*TICK_RECORD.unpack(packed.last_record))
 
     def record(self, index: int) -> TickRecord:
         """Return one record.
@@ -171,7 +177,7 @@ class TelemetryView:
         return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + index * TICK_RECORD.size))
 
     def array(self) -> np.ndarray[Any, Any]:
-        """Return all records as a structured array of `TICK_FIELDS`, shape (count,), read-only.
+        """Return all records as a structured array of `records.TICK_FIELDS`, shape (count,), read-only.
 
         It is a view of the file, not a copy; records written later need another call.
         """
@@ -201,12 +207,12 @@ class OutputView:
     @property
     def length(self) -> int:
         """How many bytes of rows there are."""
-        return self._file.look()[2]
+        return self._file.extent()[1]
 
     @property
     def note(self) -> str:
         """What is missing from a file that was cut off, or empty."""
-        _, published, there = self._file.look()
+        published, there = self._file.extent()
         lost = published - there
         return f"{OUTPUT_FILE} was cut off: its last {lost} bytes are lost" if lost else ""
 
