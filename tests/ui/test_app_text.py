@@ -37,11 +37,12 @@ def lines(app: App[None]) -> list[str]:
         ("hello there", STDOUT, 10, ["hello ", "there"]),
         ("x" * 25, STDOUT, 10, ["x" * 10, "x" * 10, "x" * 5]),
         ("hi", SPEECH, 20, ["says: hi"]),
+        ("[beep]", SPEECH, 20, ["[beep]"]),
         ("42", INPUT, 20, ["> 42"]),
         ("a\tb\x1b[31m", STDERR, 20, ["a   b·[31m"]),
         ("漢字漢字", STDOUT, 5, ["漢字", "漢字"]),
     ],
-    ids=["empty", "fits", "at a blank", "cut", "speech", "answer", "controls", "wide"],
+    ids=["empty", "fits", "at a blank", "cut", "speech", "sound", "answer", "controls", "wide"],
 )
 def test_a_row_as_lines(text: str, stream: int, width: int, expected: list[str]) -> None:
     assert shown_lines(row(text, stream), width) == expected

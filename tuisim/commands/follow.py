@@ -11,11 +11,11 @@ from types import FrameType
 from typing import TextIO
 
 from tuisim.commands.outcome import EXIT_BROKEN_PIPE
-from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow
+from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
 from tuisim.host import RunHandle
 from tuisim.protocol import Ended, Message
 
-_ERROR_FORMS = {STDERR: "{}\n", SPEECH: "says: {}\n"}
+_ON_STDERR = (STDERR, SPEECH)
 """By stream, how a row is shown on stderr; the others are not."""
 
 POLL_S = 0.05
@@ -91,9 +91,7 @@ class Follower:
             if to_stdout:
                 self._write("".join(row.text + "\n" for row in group))
             else:
-                sys.stderr.write(
-                    "".join(_ERROR_FORMS[row.stream].format(row.text) for row in group if row.stream in _ERROR_FORMS)
-                )
+                sys.stderr.write("".join(line_of(row) + "\n" for row in group if row.stream in _ON_STDERR))
 
     def _write(self, text: str) -> None:
         if self._cut == EXIT_BROKEN_PIPE or self.lost:

@@ -14,16 +14,15 @@ from tuisim.commands.logs.comparing import diff_text
 from tuisim.commands.outcome import describe, last_state
 from tuisim.commands.tables import table
 from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
-from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
-from tuisim.datalog.runfile import StoredRun
-from tuisim.datalog.store import RunStore
-from tuisim.errors import ConfigError
+from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.datalog.runfile import RUNNING, StoredRun
+from tuisim.datalog.store import COMPACT_TICKS, RunStore, compact_run
+from tuisim.errors import ConfigError, LogError
 from tuisim.rerun import rerun, same
 from tuisim.switches import SwitchParser, nearest
 
-ACTIONS = ("list", "show", "rm", "rerun", "export")
+ACTIONS = ("list", "show", "rm", "rerun", "export", "compact")
 STREAMS = {STDOUT: "stdout", STDERR: "stderr", SPEECH: "speech", INPUT: "input"}
-_MARKS = {STDOUT: "", STDERR: "! ", SPEECH: "says: ", INPUT: "> "}
 SHORTEST = 40
 """Characters of a summary in the list."""
 
@@ -35,12 +34,17 @@ def add_arguments(parser: SwitchParser) -> None:
         "       tuisim runs show RUN… [--json]\n"
         "       tuisim runs rm RUN…\n"
         "       tuisim runs rerun RUN… [--json]\n"
-        "       tuisim runs export RUN… FILE… [--telemetry FILE]"
+        "       tuisim runs export RUN… FILE… [--telemetry FILE]\n"
+        "       tuisim runs compact RUN…|--all [--json]"
     )
-    parser.description = "A RUN is its number, its id or the start of it, the folder's path, or `last`."
-    parser.add_argument("action", nargs="?", default="list", metavar="list|show|rm|rerun|export", help="what to do")
+    parser.description = (
+        "A RUN is its number, its id or the start of it, the folder's path, or `last`.\n"
+        f"Runs of {COMPACT_TICKS} ticks or more are compacted when they are over; nothing of any run is lost by it."
+    )
+    parser.add_argument("action", nargs="?", default="list", metavar="|".join(ACTIONS), help="what to do")
     parser.add_argument("words", nargs="*", metavar="RUN", help=f"runs; for export also files: {', '.join(EXPORTERS)}")
     parser.add_argument("--telemetry", metavar="FILE", help="export every tick of the one run")
+    parser.add_argument("--all", action="store_true", help="compact every run that is over")
     parser.add_argument("--json", action="store_true", help="as JSON")
 
 
@@ -65,6 +69,8 @@ def execute(arguments: Namespace) -> int:
                 store.remove(found.id)
         case "rerun" if words:
             return max(_rerun(run, as_json=arguments.json) for run in _load(store, words))
+        case "compact" if words or arguments.all:
+            return _compact(store, words, as_json=arguments.json)
         case "export":
             _export(store, words, arguments.telemetry)
         case _ if action not in ACTIONS:
@@ -116,7 +122,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     for note in facts["notes"]:
         print(f"note: {note}")
     for row in rows:
-        print(f"{row.time_ns / 1e9:10.3f} s  {_MARKS[row.stream]}{row.text}")
+        print(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == STDERR else ''}{line_of(row)}")
     if facts["error"]:
         print(facts["error"].rstrip("\n"))
 
@@ -133,6 +139,28 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
         found = same(run, scratch.load_run(handle.run_id))
     print(json.dumps({"run": run.number, **found.to_plain()}) if as_json else diff_text(found))
     return 0 if found.same else 1
+
+
+def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
+    """Compact the named runs, or every one that is over; return the exit code."""
+    names = words or [info.id for info in store.runs() if info.end != RUNNING]
+    code, before, after, ticks = 0, 0, 0, 0
+    for name in names:
+        try:
+            (run,) = _load(store, [name])
+            sizes = compact_run(run)
+        except LogError as error:
+            # The others are none the worse for it.
+            print(f"tuisim: {error}", file=sys.stderr)
+            code = error.exit_code
+            continue
+        before, after, ticks = before + sizes[0], after + sizes[1], ticks + run.telemetry.count
+    if as_json:
+        print(json.dumps({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after}))
+    else:
+        each = f", {after / ticks:.2f} bytes a tick" if ticks else ""
+        print(f"{len(names)} runs: {before:,} → {after:,} bytes{each}")
+    return code
 
 
 def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> None:

@@ -178,6 +178,14 @@ class OutputRow:
     stream: int
 
 
+def line_of(row: OutputRow) -> str:
+    """Return a row of text as a line for people, with what tells speech and answers from prints."""
+    if row.stream == SPEECH and not row.text.startswith("["):
+        # What is played stands in brackets already.
+        return f"says: {row.text}"
+    return f"> {row.text}" if row.stream == INPUT else row.text
+
+
 def published_length(data: bytes | mmap.mmap, magic: bytes, file: str) -> int:
     """Return the length in a header: records of a telemetry file, bytes of an output file.
 

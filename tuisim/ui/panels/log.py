@@ -14,7 +14,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
+from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
 
 KEPT_LINES = 2000
 MAX_LINE_CHARS = 2000
@@ -23,7 +23,6 @@ MAX_LINE_CHARS = 2000
 NOTE = 0
 """Stream of a line that is not the program's."""
 
-_PREFIX = {SPEECH: "says: ", INPUT: "> "}
 _STYLES = {STDOUT: "", STDERR: "log--error", SPEECH: "log--speech", INPUT: "log--answer", NOTE: "log--note"}
 
 Line = tuple[str, int]
@@ -39,10 +38,10 @@ def plain(text: str) -> str:
 
 def shown_lines(row: OutputRow, width: int) -> list[str]:
     """Return a row as lines of at most `width` cells, at least one."""
-    text = row.text
+    text = line_of(row)
     if len(text) > MAX_LINE_CHARS:
         text = f"{text[:MAX_LINE_CHARS]} … ({len(text) - MAX_LINE_CHARS} more characters)"
-    text = _PREFIX.get(row.stream, "") + plain(text)
+    text = plain(text)
     if not text.isascii():
         return chop_cells(text, max(width, 2)) or [""]
     lines = []
