@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
+import threading
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -13,6 +14,7 @@ from typing import Any
 
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.datalog.catalogue import HOME_HINT, Catalogue, RunInfo, locked
+from tuisim.datalog.compact import compact
 from tuisim.datalog.lock import is_held
 from tuisim.datalog.runfile import (
     INTERRUPTED,
@@ -37,6 +39,10 @@ LAST = "last"
 _COUNT_AT_ONCE_BYTES = 1 << 20
 """Longer outputs are counted when the run is first listed, so that the end of a run is not held up."""
 _NS_PER_S = 1_000_000_000
+
+COMPACT_TICKS = 6000
+"""A run of so many ticks or more is compacted as soon as it is over; for shorter ones that takes too much of the time
+of the run itself, and gains little."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +69,11 @@ class RunStore:
 
     Args:
         home: The folder, by default `home_folder()`. It is made when the first run is.
+            Runs that are kept elsewhere are for a while only, and stay as they were written.
     """
 
     def __init__(self, home: Path | None = None) -> None:
+        self._lasting = home is None
         self.home = (home_folder() if home is None else home).absolute()
         self._runs = self.home / RUNS_FOLDER
         self._catalogue = Catalogue(self.home, self._scan)
@@ -147,6 +155,9 @@ class RunStore:
             samples=samples,
             summary=end.summary,
         )
+        if self._lasting and end.tick >= COMPACT_TICKS:
+            # Nobody waits for it but the end of the process; what dies before is as whole as before.
+            threading.Thread(target=_compact_quietly, args=(self.folder(run_id),), name=f"compact {run_id}").start()
 
     def tag(self, run_id: str, tags: Iterable[str]) -> None:
         """Replace the tags of a run.
@@ -320,6 +331,35 @@ def load_run(run: str | Path) -> StoredRun:
         LogError: there is no such run, or it is damaged.
     """
     return RunStore().load_run(run)
+
+
+def compact_run(run: StoredRun) -> tuple[int, int]:
+    """Give a run's recordings their packed form, if they have it not yet.
+
+    Returns:
+        Bytes of all files of the run before and after.
+
+    Raises:
+        LogError: the run is still going on, damaged, or cannot be written; nothing is lost.
+    """
+    if run.end is None and state_without_end(run.folder) == RUNNING:
+        raise LogError(f"run {run.id} is still running", "stop it first")
+    before = _bytes_in(run.folder)
+    compact(run.folder, run.spec)
+    return before, _bytes_in(run.folder)
+
+
+def _bytes_in(folder: Path) -> int:
+    with os.scandir(folder) as entries:
+        return sum(entry.stat().st_size for entry in entries if entry.is_file())
+
+
+def _compact_quietly(folder: Path) -> None:
+    try:
+        compact_run(read_run(folder))
+    except (LogError, OSError):
+        # It stays as it was written; `tuisim runs compact` would tell why.
+        return
 
 
 def _info_of(run_id: str, created: str, program: StoredProgram, spec: RunSpec) -> RunInfo:
