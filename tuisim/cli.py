@@ -23,6 +23,7 @@ COMMANDS: Mapping[str, str] = {
     "run": "run programs without the app",
     "runs": "list, show, export or remove stored runs",
     "log": "analyse logs: figures, bands, events, signals",
+    "analyse": "look at logs: table, chart, bands, notes",
     "backgrounds": "list the mats",
     "robots": "list the robots, or show one as a file",
     "obstacles": "list the obstacles, or show some as a file",
@@ -106,6 +107,21 @@ def _open(arguments: Namespace) -> int:
         return run_app(app_settings)
 
 
+def _analyse(arguments: Namespace) -> int:
+    """Start the analyser."""
+    from tuisim.commands.analyse import asked
+
+    what = asked(arguments)
+    if not sys.stdout.isatty():
+        raise ConfigError("the analyser needs a terminal", "use `tuisim log` where there is none")
+    from tuisim.ui.analyser.app import run_analyser
+    from tuisim.ui.analyser.subject import Wanted
+
+    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value))
+    with _drawing_on_stdout():
+        return run_analyser(wanted)
+
+
 @contextmanager
 def _drawing_on_stdout() -> Iterator[None]:
     """Let stderr be the terminal of stdout for a while: Textual draws there, also if it was sent to a file."""
@@ -124,6 +140,8 @@ def _dispatch(words: Sequence[str]) -> int:
     arguments = _parser(command).parse_intermixed_args(rest)
     if command == "open":
         return _open(arguments)
+    if command == "analyse":
+        return _analyse(arguments)
     return int(import_module(f"tuisim.commands.{command}").execute(arguments))
 
 

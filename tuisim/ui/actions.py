@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from textual.message import Message
 
 from tuisim.ui import branching, comparing, stepping, travel, verbs
+from tuisim.ui.analyser.opener import analyse
 from tuisim.ui.editor import wishes as editor
 from tuisim.ui.panels import PANELS
 from tuisim.ui.snapshot import PAUSED, RUNNING, STARTING, WAITING
@@ -223,6 +224,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("faster", "right_square_bracket", "Faster", PROGRAM, verbs.faster),
         Action("compare", "equals_sign", "Compare this run with another", FILES, comparing.compare, _can_look_back),
         Action("runs", "h", "Open a stored run", FILES, travel.choose_run, _can_change_world, "runs"),
+        Action("analyse", "l", "Analyse the log: table, chart, bands, notes", FILES, analyse, _can_export, "analyse"),
         Action("export", "e", "Export the log to a file", FILES, verbs.export, _can_export, "export"),
         Action("save-world", "ctrl+s", "Save the world to a file", FILES, verbs.save_world, footer="save"),
         Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, verbs.save_robot),

@@ -9,7 +9,7 @@ from typing import Any
 from tuisim.commands.logs.results import show_rows
 from tuisim.commands.logs.sources import names_of, open_sources
 from tuisim.datalog.analysis.crossings import crossings
-from tuisim.datalog.analysis.logbands import Band, BandReport, band_report
+from tuisim.datalog.analysis.logbands import band_report, in_words
 from tuisim.datalog.analysis.statistics import QUANTILES, summary_of
 from tuisim.errors import ConfigError
 
@@ -39,7 +39,7 @@ def bands(arguments: Namespace) -> int:
         for name in names_of(log, arguments):
             report = band_report(log, name)
             rows += [{"log": log.title, **asdict(band)} for band in report.bands]
-            notes.append(_in_words(report))
+            notes.append(in_words(report))
     formats = {
         "variable": "", "number": "", "start_s": ".2f", "stop_s": ".2f", "samples": "", "level": ".2f",
         "true_level": ".2f", "spread": ".2f", "grey": "", "width_mm": ".0f",
@@ -48,19 +48,6 @@ def bands(arguments: Namespace) -> int:
     if not arguments.json and not arguments.out:
         print("\n".join(notes))
     return 0
-
-
-def _in_words(report: BandReport) -> str:
-    """The answer to what value each band has."""
-    levels: dict[str, list[Band]] = {}
-    for band in report.bands:
-        levels.setdefault(band.grey or f"{band.true_level:.4g}", []).append(band)
-    said = []
-    for grey, bands in levels.items():
-        level = sum(band.true_level * band.samples for band in bands) / sum(band.samples for band in bands)
-        said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{f' ({len(bands)}x)' if len(bands) > 1 else ''}")
-    edges = f"{report.transitions} of {report.total} samples lie on edges"
-    return f"{report.variable}: {len(levels)} levels: {', '.join(said)}; {edges}"
 
 
 def events(arguments: Namespace) -> int:

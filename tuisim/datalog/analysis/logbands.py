@@ -135,3 +135,16 @@ def _driven_mm(log: Log, series: Series) -> FloatArray | None:
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
         return None
     return distance_mm(x_mm, y_mm)
+
+
+def in_words(report: BandReport) -> str:
+    """Return the answer to what value each band has."""
+    levels: dict[str, list[Band]] = {}
+    for band in report.bands:
+        levels.setdefault(band.grey or f"{band.true_level:.4g}", []).append(band)
+    said = []
+    for grey, bands in levels.items():
+        level = sum(band.true_level * band.samples for band in bands) / sum(band.samples for band in bands)
+        said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{f' ({len(bands)}x)' if len(bands) > 1 else ''}")
+    edges = f"{report.transitions} of {report.total} samples lie on edges"
+    return f"{report.variable}: {len(levels)} levels: {', '.join(said)}; {edges}"

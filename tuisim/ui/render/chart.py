@@ -41,6 +41,10 @@ class ChartState:
     x_limits: Limits | None = None
     """Fixed limits while the chart is frozen, None to follow."""
     grey: bool = False
+    other_s: float | None = None
+    """A second cursor, that the first is measured from."""
+    marks: bool = False
+    """Draw the points as marks, not joined by lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,23 +90,26 @@ class ChartPainter:
         x_limits = state.x_limits or axes.time_limits(traces.end_s())
         scales = _Scales.of(drawn, width, rows)
         columns = max(width - scales.left_width - scales.right_width, 2)
-        self._draw(drawn, scales, columns, rows, x_limits, state.grey)
+        self._draw(drawn, scales, columns, rows, x_limits, state.grey or state.marks)
         left, top = scales.left_width, len(lines)
-        at = axes.column_of(state.cursor_s, x_limits, columns) if state.cursor_s is not None else -1
-        lines += [scales.framed(row, _with_cursor(self._canvas[row], at)) for row in range(rows)]
+        cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
+        at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
+        lines += [scales.framed(row, _with_cursors(self._canvas[row], at)) for row in range(rows)]
         line, below = axes.time_axis(x_limits, columns)
         if with_line:
             lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), _AXIS)])
         lines.append([(" " * left + below, _AXIS)])
         return ChartPicture([*lines, *values][:height], boxes, left, top, columns, rows, x_limits)
 
-    def _draw(self, drawn: list[Trace], scales: _Scales, columns: int, rows: int, x_limits: Limits, grey: bool) -> None:
+    def _draw(
+        self, drawn: list[Trace], scales: _Scales, columns: int, rows: int, x_limits: Limits, marks: bool
+    ) -> None:
         points = [(trace.name, len(trace.times_s)) for trace in drawn]
-        key = (points, scales.left, scales.right, columns, rows, x_limits, grey)
+        key = (points, scales.left, scales.right, columns, rows, x_limits, marks)
         if key == self._key:
             return
         self._key = key
-        curves = [scales.curve(trace, grey) for trace in drawn]
+        curves = [scales.curve(trace, marks) for trace in drawn]
         self._canvas = canvas(curves, columns, rows, x_limits, scales.left)
 
 
@@ -132,12 +139,12 @@ class _Scales:
     def right_width(self) -> int:
         return max(map(len, self.right_labels.values()), default=0) + 1 if self.right else 0
 
-    def curve(self, trace: Trace, grey: bool) -> Curve:
+    def curve(self, trace: Trace, marks: bool) -> Curve:
         values = trace.values
         if self.right and trace.other_scale:
             share = (values - self.right[0]) / (self.right[1] - self.right[0])
             values = self.left[0] + share * (self.left[1] - self.left[0])
-        return Curve(trace.times_s, values, trace.rgb, trace.mark if grey else BRAILLE)
+        return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
 
     def framed(self, row: int, inside: list[Run]) -> list[Run]:
         text = self.left_labels.get(row, "")
@@ -162,19 +169,19 @@ def _styled(rgb: tuple[int, int, int] | None) -> Style:
     return Style(color=Color.from_rgb(*rgb)) if rgb else _PLAIN
 
 
-def _with_cursor(runs: list[TextRun], column: int) -> list[Run]:
-    """Return a row of the canvas with the cursor's line in it; a column outside it draws none."""
+def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
+    """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
     line: list[Run] = []
     at = 0
     for text, rgb in runs:
-        inside = column - at
-        if 0 <= inside < len(text):
-            mark = text[inside]
-            line.append((text[:inside], _styled(rgb)))
-            line.append((mark if mark != " " else "│", _styled(rgb) + _CURSOR if mark != " " else _CURSOR))
-            line.append((text[inside + 1 :], _styled(rgb)))
-        else:
-            line.append((text, _styled(rgb)))
+        done = 0
+        for inside in (column - at for column in columns):
+            if 0 <= inside < len(text):
+                mark = text[inside]
+                line.append((text[done:inside], _styled(rgb)))
+                line.append((mark if mark != " " else "│", _styled(rgb) + _CURSOR if mark != " " else _CURSOR))
+                done = inside + 1
+        line.append((text[done:], _styled(rgb)))
         at += len(text)
     return [run for run in line if run[0]]
 

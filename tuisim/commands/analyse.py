@@ -1,0 +1,47 @@
+"""`tuisim analyse`: a log on the screen. What the words mean; the screen itself is started by `cli`."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from dataclasses import dataclass
+
+from tuisim.commands.logs.sources import is_file
+from tuisim.errors import ConfigError
+from tuisim.switches import SwitchParser
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A file, or runs."""
+
+    file: str
+    """Empty for runs."""
+    runs: tuple[str, ...]
+
+
+def add_arguments(parser: SwitchParser) -> None:
+    """Declare the arguments of `tuisim analyse`."""
+    parser.usage = "tuisim analyse FILE|RUN… [options]"
+    parser.epilog = (
+        "A RUN is its number, its id, or `last` (also if none is named); several are laid over each other.\n"
+        "A FILE is CSV, Parquet, JSONL, Arrow or text with lines such as `Colour: 98.8`; - is the standard input."
+    )
+    parser.add_argument("words", nargs="*", metavar="LOG", help="runs, or a file")
+    parser.add_argument("--telemetry", action="store_true", help="every tick of a run instead of its samples")
+    parser.add_argument("--time", metavar="COLUMN", help="column with the time; empty counts the rows")
+    parser.add_argument(
+        "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
+    )
+
+
+def asked(arguments: Namespace) -> Asked:
+    """Return what the words name.
+
+    Raises:
+        ConfigError: a file among others.
+    """
+    words = arguments.words or ["last"]
+    files = [word for word in words if is_file(word)]
+    if files and len(words) > 1:
+        raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
+    return Asked(files[0] if files else "", () if files else tuple(words))

@@ -1,0 +1,93 @@
+"""Every key of the analyser: what it does and what it is called.
+
+To add a key: write its function in `doing.py` or `tabling.py` and add a line to `ACTIONS`. Binding, footer, help and
+command palette follow from the line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from tuisim.ui.analyser import doing, noting, tabling
+
+if TYPE_CHECKING:
+    from tuisim.ui.analyser.screen import Analyser
+
+CURSOR, PANE, CHART, TABLE, LOG = "Cursor", "Panes", "Chart", "Table", "Log"
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One line of `ACTIONS`."""
+
+    id: str
+    key: str
+    """As Textual names it."""
+    label: str
+    """As people write it."""
+    title: str
+    group: str
+    do: Callable[[Analyser], None]
+    footer: str = ""
+    """Short word for the footer; empty keeps it out."""
+
+
+# The footer shows them in this order, as far as they fit.
+ACTIONS: Mapping[str, Action] = {
+    action.id: action
+    for action in (
+        Action("table", "t", "t", "Table", PANE, partial(doing.turn_to, pane="table"), "table"),
+        Action("bands", "b", "b", "Bands: their levels and names", PANE, partial(doing.turn_to, pane="bands"), "bands"),
+        Action("statistics", "s", "s", "Statistics", PANE, partial(doing.turn_to, pane="statistics"), "stats"),
+        Action("notes", "n", "n", "Notes", PANE, partial(doing.turn_to, pane="notes"), "notes"),
+        Action("runs", "r", "r", "Runs of this log", PANE, partial(doing.turn_to, pane="runs"), "runs"),
+        Action("note", "m", "m", "Note on the sample, the band, or the span from A", LOG, noting.write, "note"),
+        Action("up", "up", "↑", "Row before", CURSOR, partial(doing.rows, step=-1)),
+        Action("down", "down", "↓", "Next row", CURSOR, partial(doing.rows, step=1)),
+        Action("page-up", "pageup", "page up", "Page before", CURSOR, partial(doing.pages, step=-1)),
+        Action("page-down", "pagedown", "page down", "Next page", CURSOR, partial(doing.pages, step=1)),
+        Action("head", "home", "home", "First row", CURSOR, partial(doing.to_end, last=False)),
+        Action("tail", "end", "end", "Last row", CURSOR, partial(doing.to_end, last=True)),
+        Action("left", "left", "←", "Cursor back by a column of the chart", CURSOR, partial(doing.columns, step=-1)),
+        Action("right", "right", "→", "Cursor on by a column of the chart", CURSOR, partial(doing.columns, step=1)),
+        Action("far-left", "shift+left", "⇧←", "Cursor back by ten", CURSOR, partial(doing.columns, step=-10)),
+        Action("far-right", "shift+right", "⇧→", "Cursor on by ten", CURSOR, partial(doing.columns, step=10)),
+        Action("go-to", "g", "g", "Go to a row, or a time such as 2.5s", CURSOR, doing.ask_where, "go to"),
+        Action("mark", "a", "a", "Measure from here (A), or no longer", CHART, doing.mark, "A"),
+        Action("zoom-in", "z", "z", "Less time, around the cursor", CHART, partial(doing.zoom, factor=0.5), "zoom"),
+        Action("zoom-out", "Z", "Z", "More time", CHART, partial(doing.zoom, factor=2.0)),
+        Action("pan-left", "left_square_bracket", "[", "Earlier", CHART, partial(doing.pan, share=-0.25)),
+        Action("pan-right", "right_square_bracket", "]", "Later", CHART, partial(doing.pan, share=0.25)),
+        Action("fit", "f", "f", "The whole time", CHART, doing.fit),
+        Action("variable", "v", "v", "Next variable", CHART, partial(doing.select, step=1), "variable"),
+        Action("variable-before", "V", "V", "Variable before", CHART, partial(doing.select, step=-1)),
+        Action("tick", "space", "space", "Show or hide the variable", CHART, doing.tick, "tick"),
+        Action("facets", "x", "x", "One chart for each variable, or one for all", CHART, doing.facets, "facets"),
+        Action("marks", "X", "X", "Points or lines", CHART, doing.marks),
+        Action("hold", "H", "H", "Hold each value until the next, or not", CHART, doing.hold),
+        Action("larger", "plus", "+", "Chart and pane, chart alone, pane alone", CHART, doing.larger),
+        Action("column-before", "less_than_sign", "<", "Column before", TABLE, partial(tabling.choose, step=-1)),
+        Action("column", "greater_than_sign", ">", "Next column", TABLE, partial(tabling.choose, step=1)),
+        Action("sort", "o", "o", "Sort by the column: up, down, not", TABLE, tabling.sort, "sort"),
+        Action("filter", "F", "F", "Filter: value > 50 and variable == Colour", TABLE, tabling.ask_filter, "filter"),
+        Action("unfilter", "U", "U", "All rows, all columns", TABLE, tabling.show_all),
+        Action("search", "slash", "/", "Search", TABLE, tabling.ask_search, "search"),
+        Action("find-next", "N", "N", "Next place found", TABLE, partial(tabling.find, step=1)),
+        Action("find-before", "P", "P", "Place found before", TABLE, partial(tabling.find, step=-1)),
+        Action("hide", "h", "h", "Hide the column", TABLE, tabling.hide),
+        Action("freeze", "p", "p", "Keep the column at the left", TABLE, tabling.freeze),
+        Action("copy", "y", "y", "Copy the value", LOG, tabling.copy_value, "copy"),
+        Action("copy-row", "Y", "Y", "Copy the row", LOG, tabling.copy_row),
+        Action("copy-pane", "ctrl+y", "ctrl+y", "Copy the table as shown, or the pane", LOG, tabling.copy_pane),
+        Action("delete-note", "delete", "delete", "Delete the chosen note", LOG, noting.delete),
+        Action("telemetry", "T", "T", "What every tick recorded, or what was printed", LOG, doing.telemetry),
+        Action("open-runs", "R", "R", "Open other runs, several laid over each other", LOG, doing.ask_runs),
+        Action("beside", "w", "w", "World beside the log, or not", PANE, doing.beside),
+        Action("help", "question_mark", "?", "Help", LOG, doing.show_help, "help"),
+        Action("leave", "q,escape", "q", "Leave the analyser", LOG, doing.leave, "leave"),
+    )
+}  # fmt: skip
+"""Every key by the id of what it does."""

@@ -1,0 +1,59 @@
+"""The analyser by itself, as `tuisim analyse` starts it."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.app import App
+
+from tuisim.errors import TuisimError
+from tuisim.ui.analyser.screen import Analyser
+from tuisim.ui.analyser.subject import Wanted
+
+
+class AnalyserApp(App[None]):
+    """An app with one screen.
+
+    Args:
+        wanted: What to open.
+    """
+
+    CSS_PATH = "../tuisim.tcss"
+    TITLE = "tuisim"
+    NOTIFICATION_TIMEOUT = 4
+    ENABLE_COMMAND_PALETTE: ClassVar[bool] = True
+
+    def __init__(self, wanted: Wanted) -> None:
+        super().__init__()
+        self.wanted = wanted
+        self.failure: TuisimError | None = None
+        """What kept the log from being opened."""
+
+    def on_mount(self) -> None:
+        """Show the analyser; leaving it ends the app."""
+        self.push_screen(_First(self.wanted), lambda _: self.exit())
+
+
+class _First(Analyser):
+    """The only screen: an error before there is anything to see ends the app."""
+
+    def complain(self, error: TuisimError) -> None:
+        """Show an error, or keep it for the shell."""
+        app = self.app
+        if self.model is None and isinstance(app, AnalyserApp):
+            app.failure = error
+        else:
+            super().complain(error)
+
+
+def run_analyser(wanted: Wanted) -> int:
+    """Run the analyser in this terminal until the user leaves it; return the exit code.
+
+    Raises:
+        LogError: there is no such log, or it cannot be read.
+    """
+    app = AnalyserApp(wanted)
+    app.run()
+    if app.failure is not None:
+        raise app.failure
+    return app.return_code or 0

@@ -1,0 +1,198 @@
+"""What the keys of the analyser do, but for table and notes."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tuisim.errors import LogError
+from tuisim.ui.analyser.asking import Asking
+
+if TYPE_CHECKING:
+    from tuisim.ui.analyser.screen import Analyser
+
+_SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
+_WHERE = (("120", "row 120"), ("2.5s", "the sample nearest to 2.5 seconds"), ("50%", "halfway through the table"))
+_WHICH = (("last", "the newest run"), ("12", "run 12"), ("12 13 14", "three runs, laid over each other"))
+
+
+def turn_to(screen: Analyser, pane: str) -> None:
+    """Show a pane."""
+    screen.pane.turn_to(pane)
+    if not screen.pane.display:
+        screen.lay_out(chart=True, pane=True)
+    screen.update()
+
+
+def rows(screen: Analyser, step: int) -> None:
+    """Go to another row of the pane."""
+    model, pane = screen.model, screen.pane
+    if model is None:
+        return
+    if pane.name_shown == "table":
+        if len(model.rows):
+            place = model.rows.place(model.row) + step
+            model.go_to_row(model.rows.row(min(max(place, 0), len(model.rows) - 1)))
+            model.follow_cursor()
+    else:
+        screen.choose(pane.chosen + step)
+    screen.update()
+
+
+def pages(screen: Analyser, step: int) -> None:
+    """Go to another page of the pane."""
+    rows(screen, step * screen.pane.lines)
+
+
+def to_end(screen: Analyser, last: bool) -> None:
+    """Go to the first or the last row."""
+    if screen.model is not None:
+        rows(screen, screen.model.log.rows if last else -screen.model.log.rows)
+
+
+def columns(screen: Analyser, step: int) -> None:
+    """Move the cursor by columns of the chart, at least to another sample."""
+    model = screen.model
+    if model is None or not model.log.rows:
+        return
+    before = model.row
+    model.go_to_time(screen.chart.time_beside(model.cursor_s, step))
+    if model.row == before:
+        model.step(1 if step > 0 else -1)
+    model.follow_cursor()
+    screen.update()
+
+
+def ask_where(screen: Analyser) -> None:
+    """Ask where to go."""
+    model = screen.model
+    if model is None:
+        return
+
+    def go(text: str) -> None:
+        seconds = _SECONDS.fullmatch(text)
+        if seconds:
+            model.go_to_time(float(seconds[1]))
+        elif text.endswith("%") and text[:-1].strip().isdecimal():
+            share = min(int(text[:-1]), 100) / 100
+            model.go_to_row(model.rows.row(round(share * (len(model.rows) - 1))))
+        elif text.isdecimal() and 0 < int(text) <= model.log.rows:
+            model.go_to_row(int(text) - 1)
+        else:
+            raise LogError(f"{text!r} is no place", f"a row from 1 to {model.log.rows}, or a time such as 2.5s")
+        model.follow_cursor()
+        screen.update()
+
+    screen.app.push_screen(Asking("Go to", go, forms=_WHERE))
+
+
+def mark(screen: Analyser) -> None:
+    """Put the other cursor here, or take it away."""
+    if screen.model is not None:
+        screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
+        screen.update()
+
+
+def zoom(screen: Analyser, factor: float) -> None:
+    """Show less or more time."""
+    if screen.model is not None:
+        screen.model.zoom(factor)
+        screen.update()
+
+
+def pan(screen: Analyser, share: float) -> None:
+    """Show what is earlier or later."""
+    if screen.model is not None:
+        screen.model.pan(share)
+        screen.update()
+
+
+def fit(screen: Analyser) -> None:
+    """Show the whole time."""
+    if screen.model is not None:
+        screen.model.limits = None
+        screen.update()
+
+
+def select(screen: Analyser, step: int) -> None:
+    """Choose another variable."""
+    if screen.model is not None:
+        screen.model.select(step)
+        screen.update()
+
+
+def tick(screen: Analyser) -> None:
+    """Show or hide the chosen variable."""
+    if screen.model is not None and screen.model.selected:
+        screen.model.trace.on = not screen.model.trace.on
+        screen.update()
+
+
+def facets(screen: Analyser) -> None:
+    """One chart for each variable, or one for all."""
+    screen.chart.look.facets = not screen.chart.look.facets
+    screen.redraw_chart()
+
+
+def marks(screen: Analyser) -> None:
+    """Points or lines."""
+    screen.chart.look.marks = not screen.chart.look.marks
+    screen.redraw_chart()
+
+
+def hold(screen: Analyser) -> None:
+    """Hold each value until the next one, or not."""
+    screen.chart.look.hold = not screen.chart.look.hold
+    screen.redraw_chart()
+
+
+def larger(screen: Analyser) -> None:
+    """Chart and pane, chart alone, pane alone."""
+    both = screen.chart.display and screen.pane.display
+    screen.lay_out(chart=both or not screen.chart.display, pane=not both)
+
+
+def beside(screen: Analyser) -> None:
+    """The world beside the log, or not."""
+    screen.beside.display = not screen.beside.display
+    screen.call_after_refresh(screen.update)
+
+
+def telemetry(screen: Analyser) -> None:
+    """What every tick recorded, or what was printed."""
+    wanted = screen.wanted
+    if wanted.file:
+        screen.say("A file has no recording besides: R opens stored runs")
+        return
+    screen.open(replace(wanted, telemetry=not wanted.telemetry))
+
+
+def ask_runs(screen: Analyser) -> None:
+    """Ask which runs to open."""
+    wanted = screen.wanted
+
+    def go(text: str) -> None:
+        from tuisim.datalog.store import RunStore
+        from tuisim.ui.analyser.subject import Wanted
+
+        words = tuple(text.split())
+        if not words:
+            raise LogError("which runs?", "their numbers, ids, or last")
+        store = RunStore()
+        ids = tuple(store.find(word).id for word in words)
+        screen.open(Wanted(runs=ids))
+
+    screen.app.push_screen(Asking("Open runs", go, " ".join(wanted.runs) and "last", _WHICH))
+
+
+def show_help(screen: Analyser) -> None:
+    """Show every key."""
+    from tuisim.ui.analyser.help import AnalyserHelp
+
+    screen.app.push_screen(AnalyserHelp())
+
+
+def leave(screen: Analyser) -> None:
+    """Leave the analyser."""
+    screen.leave()

@@ -1,0 +1,233 @@
+"""What stands below the chart, as lines of text: table, bands, statistics, notes, runs. Pure drawing.
+
+To add a pane: write its two functions and add a line to `PANES`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from rich.style import Style
+
+from tuisim.datalog.analysis.logbands import in_words
+from tuisim.datalog.analysis.statistics import QUANTILES, summary_of
+from tuisim.ui.analyser.model import Model
+from tuisim.ui.cellview import Run
+from tuisim.ui.verbs import end_label
+
+Line = list[Run]
+Cells = tuple[str, ...]
+
+PLAIN, DIM = Style(color="#d8dee6"), Style(color="#9fb0c3")
+HEAD = Style(color="#5fafff", bold=True)
+HERE = Style(color="#ffffff", bgcolor="#2f4a66")
+CHOSEN = Style(color="#ffd75f", bold=True)
+_WIDEST = 28
+_SAMPLED = 40
+"""Rows of a table that decide how wide a column is, besides those that are seen."""
+
+EMPTY = (
+    "This log is empty. To log a value, print it with a name:",
+    "    print('Colour: ' + str(value))",
+    "Run the program again; T shows what every tick recorded.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Pane:
+    """One line of `PANES`."""
+
+    title: str
+    rows: Callable[[Model], Sequence[Cells]]
+    """Its rows as texts; not for the table, which has too many."""
+    heads: Cells
+    below: Callable[[Model], Sequence[str]] = lambda _: ()
+    """Sentences below the rows."""
+    empty: str = ""
+
+
+def _figure(value: float, digits: str = ".4g") -> str:
+    return f"{value:{digits}}" if isfinite(value) else "–"
+
+
+def _bands(model: Model) -> list[Cells]:
+    return [
+        (
+            band.variable, str(band.number), f"{band.true_level:.2f}", band.grey or "–", f"{band.start_s:.2f}",
+            f"{band.stop_s:.2f}", str(band.samples), _figure(band.width_mm, ".0f"), f"{band.spread:.2f}",
+        )
+        for band in model.bands()
+    ]  # fmt: skip
+
+
+def _bands_in_words(model: Model) -> list[str]:
+    return [in_words(model.report(trace.name)) for trace in model.traces.ticked()]
+
+
+def _statistics(model: Model) -> list[Cells]:
+    rows = []
+    for trace in model.traces.ticked():
+        found = summary_of(trace.series.values)
+        figures = (found.min, found.mean, found.max, found.std, *found.quantiles)
+        rows.append((trace.name, f"{found.count:,}", *map(_figure, figures)))
+    return rows
+
+
+def _notes(model: Model) -> list[Cells]:
+    return [
+        (
+            f"{note.start_s:.2f}",
+            f"{note.stop_s:.2f}" if note.stop_s > note.start_s else "",
+            note.variable,
+            str(model.subject.runs[run].number) if len(model.subject.runs) > 1 else "",
+            note.text,
+        )
+        for run, note in model.notes
+    ]
+
+
+def _runs(model: Model) -> list[Cells]:
+    return [
+        (
+            str(run.number or run.id), run.program.name, run.spec.world.background, end_label(run.state),
+            f"{max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz:.2f}", run.spec.profile.name,
+            str(run.spec.seed),
+        )
+        for run in model.subject.runs
+    ]  # fmt: skip
+
+
+PANES: Mapping[str, Pane] = {
+    "table": Pane("Table", lambda _: (), ()),
+    "bands": Pane(
+        "Bands", _bands, ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
+        _bands_in_words, "No band: no ticked variable keeps a level",
+    ),
+    "statistics": Pane(
+        "Statistics", _statistics,
+        ("variable", "count", "min", "mean", "max", "std", *(f"{100 * part:g} %" for part in QUANTILES)),
+        empty="Tick a variable: v chooses one, space ticks it",
+    ),
+    "notes": Pane(
+        "Notes", _notes, ("from s", "to s", "variable", "run", "note"),
+        empty="No notes yet: m writes one about the sample at the cursor, or about a band",
+    ),
+    "runs": Pane(
+        "Runs", _runs, ("run", "program", "mat", "end", "s", "profile", "seed"),
+        empty="This log is a file: R opens stored runs instead, several to lay them over each other",
+    ),
+}  # fmt: skip
+"""Every pane by its name."""
+
+
+def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) -> list[Line]:
+    """Return a pane as lines.
+
+    Args:
+        name: Key of `PANES`.
+        model: What is looked at.
+        chosen: Row that stands out; the table has that of the cursor.
+        width: Characters.
+        height: Lines, at least 1.
+    """
+    if not model.log.rows and name != "runs":
+        return [[(text, PLAIN)] for text in EMPTY]
+    if name == "table":
+        return table_lines(model, width, height)
+    pane = PANES[name]
+    rows = pane.rows(model)
+    if not rows:
+        return [[(pane.empty, DIM)]]
+    below = _wrapped(pane.below(model), width)[: max(0, height - 4)]
+    room = max(height - 1 - len(below), 1)
+    first = _first(chosen, len(rows), room)
+    widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
+    used = [at for at in range(len(widths)) if any(row[at] for row in rows)]
+    lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], HEAD)]
+    for number, row in enumerate(rows[first : first + room], first):
+        style = HERE if number == chosen else PLAIN
+        line = _row([row[at] for at in used], [widths[at] for at in used], style)
+        if number == chosen:
+            line.append((" " * width, HERE))
+        lines.append(line)
+    return lines + [[(text, DIM)] for text in below]
+
+
+def _first(chosen: int, count: int, room: int) -> int:
+    """First row shown, so that the chosen one is near the middle."""
+    return min(max(chosen - room // 2, 0), max(count - room, 0))
+
+
+def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:
+    parts = (
+        text.rjust(width) if text[:1].isdigit() or text[:1] == "-" else text.ljust(width)
+        for text, width in zip(texts, widths, strict=True)
+    )
+    return [("  ".join(parts), style)]
+
+
+def _wrapped(texts: Sequence[str], width: int) -> list[str]:
+    from textwrap import wrap
+
+    return [line for text in texts for line in wrap(text, max(width, 10), subsequent_indent="  ")]
+
+
+def table_lines(model: Model, width: int, height: int) -> list[Line]:
+    """Return the rows of the table around the cursor, with as many columns as there is room for."""
+    rows = model.rows
+    if not len(rows):
+        return [[("No row fulfils the conditions: U shows all again", DIM)]]
+    place = rows.place(model.row)
+    room = max(height - 1, 1)
+    first = _first(place, len(rows), room)
+    shown = [rows.row(at) for at in range(first, min(first + room, len(rows)))]
+    number_width = max(len(f"{shown[-1] + 1:,}"), len(f"{shown[0] + 1:,}"))
+    columns, widths = _fitting(model, shown, width - number_width - 2)
+    head: Line = [(" " * (number_width + 2), HEAD)]
+    for column, wide in zip(columns, widths, strict=True):
+        arrow = ("↓" if rows.descending else "↑") if column == rows.sorted_by else ""
+        text = (column + arrow)[:wide].ljust(wide)
+        head += [(text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD), ("  ", HEAD)]
+    lines = [head]
+    for row in shown:
+        style = HERE if row == model.row else PLAIN
+        line: Line = [(f"{row + 1:>{number_width},}  ", HERE if row == model.row else DIM)]
+        for column, wide in zip(columns, widths, strict=True):
+            text = rows.text(row, column).replace("\n", "↵").replace("\t", " ")
+            cut = text if len(text) <= wide else text[: wide - 1] + "…"
+            line.append(((cut.rjust(wide) if _is_number(text) else cut.ljust(wide)) + "  ", style))
+        if row == model.row:
+            line.append((" " * width, HERE))
+        lines.append(line)
+    return lines
+
+
+def _is_number(text: str) -> bool:
+    return text[:1].isdigit() or (text[:1] == "-" and text[1:2].isdigit())
+
+
+def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], list[int]]:
+    """The columns that are shown and how wide they are: the frozen ones, then those up to the chosen one."""
+    rows = model.rows
+    seen = shown[:_SAMPLED]
+
+    def wide(column: str) -> int:
+        return min(max([len(column) + 1, *(len(rows.text(row, column)) for row in seen)]), _WIDEST)
+
+    frozen = rows.columns[: rows.frozen]
+    widths = {column: wide(column) for column in frozen}
+    left = width - sum(widths.values()) - 2 * len(frozen)
+    others = rows.columns[rows.frozen :]
+    at = max(rows.column - rows.frozen, 0)
+    # First leftwards from the chosen column until the width is used up, then on to the right of it.
+    chosen: list[str] = []
+    for column in [*reversed(others[: at + 1]), *others[at + 1 :]]:
+        need = wide(column) + 2
+        if need > left and chosen:
+            break
+        widths[column], left = min(need, max(left, 3)) - 2, left - need
+        chosen.append(column)
+    columns = frozen + [column for column in others if column in chosen]
+    return columns, [widths[column] for column in columns]

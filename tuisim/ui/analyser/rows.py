@@ -1,0 +1,233 @@
+"""The table of a log as rows of text: which columns, in which order, and which rows; only those seen are read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tuisim.errors import LogError
+
+if TYPE_CHECKING:
+    from datetime import timedelta
+
+    from tuisim.datalog.arrays import IntArray
+    from tuisim.datalog.opening import Log
+
+FORM = "column, one of < <= > >= == != ~ and a value; several with `and`"
+_CONDITION = re.compile(r"\s*(?P<column>[^<>=!~]+?)\s*(?P<op><=|>=|==|!=|=|<|>|~)\s*(?P<value>.*?)\s*")
+_COMPARED: Mapping[str, str] = {
+    "<": "less", "<=": "less_equal", ">": "greater", ">=": "greater_equal", "==": "equal", "=": "equal",
+    "!=": "not_equal",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What a row must fulfil."""
+
+    column: str
+    op: str
+    value: str
+
+    def __str__(self) -> str:
+        return f"{self.column} {self.op} {self.value}"
+
+
+def conditions_of(text: str, columns: list[str]) -> list[Condition]:
+    """Return the conditions in a text such as `variable == Colour and value > 50`.
+
+    Raises:
+        LogError: one is none, or there is no such column.
+    """
+    found = []
+    for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
+        match = _CONDITION.fullmatch(part)
+        if match is None:
+            raise LogError(f"no condition: {part!r}", FORM)
+        condition = Condition(match["column"], match["op"], match["value"].strip("'\""))
+        if condition.column not in columns:
+            raise LogError(f"no column {condition.column!r}", f"there are {', '.join(columns)}")
+        found.append(condition)
+    return found
+
+
+class Rows:
+    """What the table shows.
+
+    Args:
+        log: The log.
+    """
+
+    def __init__(self, log: Log) -> None:
+        self._log = log
+        self.columns: list[str] = list(log.table.column_names)
+        """Those that are shown, the frozen ones first."""
+        self.frozen = 0
+        """So many columns stay at the left."""
+        self.column = 0
+        """Position of the chosen one in `columns`."""
+        self.conditions: tuple[Condition, ...] = ()
+        self.sorted_by = ""
+        self.descending = False
+        self._masked: np.ndarray[Any, np.dtype[np.bool_]] | None = None
+        self._order: IntArray | None = None
+        """Rows of the log that are shown, in order; None for all as they are."""
+
+    def __len__(self) -> int:
+        return self._log.rows if self._order is None else len(self._order)
+
+    @property
+    def chosen(self) -> str:
+        """Name of the chosen column."""
+        return self.columns[self.column]
+
+    def row(self, place: int) -> int:
+        """Return the row of the log that stands at a place of the table."""
+        return place if self._order is None else int(self._order[place])
+
+    def place(self, row: int) -> int:
+        """Return the place at which a row of the log stands, or else the nearest to it."""
+        if self._order is None or not len(self._order):
+            return row
+        if self.sorted_by:
+            found = np.flatnonzero(self._order == row)
+            return int(found[0]) if len(found) else 0
+        return min(int(np.searchsorted(self._order, row)), len(self._order) - 1)
+
+    def text(self, row: int, column: str) -> str:
+        """Return a cell as text."""
+        return text_of(self._log.table.column(column)[row].as_py())
+
+    # Which rows, in which order
+
+    def filter(self, conditions: tuple[Condition, ...]) -> None:
+        """Show only the rows that fulfil all conditions.
+
+        Raises:
+            LogError: a value is none that its column could have.
+        """
+        masks = [_mask(self._log.table.column(condition.column), condition) for condition in conditions]
+        self.conditions = conditions
+        self._masked = np.logical_and.reduce(masks) if masks else None
+        self._arrange()
+
+    def sort(self, column: str, descending: bool) -> None:
+        """Put the rows in the order of a column; empty for that of the log."""
+        self.sorted_by, self.descending = column, descending
+        self._arrange()
+
+    def _arrange(self) -> None:
+        import pyarrow as pa
+        import pyarrow.compute as pc
+
+        order = None if self._masked is None else np.flatnonzero(self._masked)
+        if self.sorted_by:
+            column = self._log.table.column(self.sorted_by)
+            column = _texts(column) if pa.types.is_dictionary(column.type) else column
+            way = "descending" if self.descending else "ascending"
+            taken = column if order is None else column.take(order)
+            places = pc.sort_indices(taken, sort_keys=[("", way)]).to_numpy().astype(np.int64)
+            order = places if order is None else order[places]
+        self._order = order
+
+    # Which columns
+
+    def choose(self, step: int) -> None:
+        """Go to another column."""
+        self.column = min(max(self.column + step, 0), len(self.columns) - 1)
+
+    def hide(self) -> None:
+        """Hide the chosen column, unless it is the only one."""
+        if len(self.columns) > 1:
+            self.frozen -= self.column < self.frozen
+            del self.columns[self.column]
+            self.column = min(self.column, len(self.columns) - 1)
+
+    def show_all(self) -> None:
+        """Show every column in the order of the log."""
+        self.columns = list(self._log.table.column_names)
+        self.frozen = self.column = 0
+
+    def freeze(self) -> None:
+        """Keep the chosen column at the left, or let it go."""
+        name = self.columns.pop(self.column)
+        if self.column < self.frozen:
+            self.frozen -= 1
+            self.column = self.frozen
+        else:
+            self.column = self.frozen
+            self.frozen += 1
+        self.columns.insert(self.column, name)
+
+    def take_over(self, other: Rows) -> None:
+        """Show the same columns and conditions as another table of the same log."""
+        self.columns, self.frozen, self.column = other.columns, other.frozen, other.column
+        self.sorted_by, self.descending = other.sorted_by, other.descending
+        self.filter(other.conditions)
+
+    # Search
+
+    def find(self, text: str, from_place: int, step: int) -> int | None:
+        """Return the next place whose row has a text in one of the shown columns, going round; None if none has."""
+        import pyarrow.compute as pc
+
+        found = np.zeros(self._log.rows, bool)
+        for name in self.columns:
+            texts = _texts(self._log.table.column(name))
+            found |= np.asarray(pc.fill_null(pc.match_substring(texts, text, ignore_case=True), False).to_numpy(), bool)
+        places = np.flatnonzero(found if self._order is None else found[self._order])
+        if not len(places):
+            return None
+        ahead = places[places > from_place] if step > 0 else places[places < from_place][::-1]
+        return int(ahead[0]) if len(ahead) else int(places[0] if step > 0 else places[-1])
+
+
+def _texts(column: Any) -> Any:
+    import pyarrow as pa
+
+    kind = column.type
+    if pa.types.is_duration(kind):
+        column = column.cast(pa.int64()).cast(pa.float64(), safe=False)
+    return column.cast(pa.string())
+
+
+def _mask(column: Any, condition: Condition) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    if condition.op == "~":
+        made = pc.match_substring(_texts(column), condition.value, ignore_case=True)
+    else:
+        compare: Callable[[Any, Any], Any] = getattr(pc, _COMPARED[condition.op])
+        kind = column.type
+        if pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_duration(kind):
+            try:
+                value = float(condition.value)
+            except ValueError as error:
+                raise LogError(f"{condition}: no number", f"{condition.column} has numbers") from error
+            if pa.types.is_duration(kind):
+                column = pc.divide(column.cast(pa.int64()).cast(pa.float64(), safe=False), _per_s(kind.unit))
+            made = compare(column.cast(pa.float64(), safe=False), value)
+        else:
+            made = compare(_texts(column), condition.value)
+    return np.asarray(pc.fill_null(made, False).to_numpy(zero_copy_only=False), bool)
+
+
+def _per_s(unit: str) -> float:
+    return {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[unit]
+
+
+def text_of(value: Any) -> str:
+    """Return a value as a cell shows it."""
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if hasattr(value, "total_seconds"):
+        span: timedelta = value
+        return f"{span.total_seconds():.3f}"
+    return str(value)

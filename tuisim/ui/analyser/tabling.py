@@ -1,0 +1,150 @@
+"""What the keys of the analyser's table do: columns, sorting, filters, search, and copying."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tuisim.errors import LogError
+from tuisim.ui.analyser.asking import Asking
+from tuisim.ui.analyser.panes import PANES
+from tuisim.ui.analyser.rows import conditions_of
+
+if TYPE_CHECKING:
+    from tuisim.ui.analyser.screen import Analyser
+
+MOST_COPIED = 10_000
+"""Rows: terminals drop what is much longer."""
+
+_FILTERS = (
+    ("value > 50", "the rows in which that holds; < <= > >= == !="),
+    ("variable ~ col", "those with that in their text"),
+    ("value > 50 and time < 3", "those in which all holds"),
+    ("(nothing)", "all rows"),
+)
+
+
+def choose(screen: Analyser, step: int) -> None:
+    """Go to another column."""
+    if screen.model is not None:
+        screen.model.rows.choose(step)
+        screen.update()
+
+
+def sort(screen: Analyser) -> None:
+    """Sort by the chosen column: upwards, downwards, not at all."""
+    if screen.model is None:
+        return
+    rows = screen.model.rows
+    if rows.sorted_by != rows.chosen:
+        rows.sort(rows.chosen, False)
+    elif not rows.descending:
+        rows.sort(rows.chosen, True)
+    else:
+        rows.sort("", False)
+    screen.update()
+
+
+def ask_filter(screen: Analyser) -> None:
+    """Ask which rows to show."""
+    model = screen.model
+    if model is None:
+        return
+
+    def keep(text: str) -> None:
+        model.rows.filter(tuple(conditions_of(text, model.log.table.column_names)) if text else ())
+        if len(model.rows):
+            model.go_to_row(model.rows.row(model.rows.place(model.row)))
+        screen.update()
+
+    now = " and ".join(map(str, model.rows.conditions))
+    screen.app.push_screen(Asking("Filter", keep, now, _FILTERS))
+
+
+def show_all(screen: Analyser) -> None:
+    """Show every row and every column, in the order of the log."""
+    if screen.model is not None:
+        screen.model.rows.filter(())
+        screen.model.rows.sort("", False)
+        screen.model.rows.show_all()
+        screen.update()
+
+
+def ask_search(screen: Analyser) -> None:
+    """Ask what to search for."""
+
+    def go(text: str) -> None:
+        screen.searched = text
+        if text and not _find(screen, 1):
+            raise LogError(f"{text!r} is nowhere", "in the rows and columns that are shown")
+
+    if screen.model is not None:
+        screen.app.push_screen(Asking("Search", go, screen.searched))
+
+
+def find(screen: Analyser, step: int) -> None:
+    """Go to the next or the former place found."""
+    if not screen.searched:
+        ask_search(screen)
+    elif not _find(screen, step):
+        screen.say(f"{screen.searched!r} is nowhere in the rows and columns that are shown")
+
+
+def _find(screen: Analyser, step: int) -> bool:
+    model = screen.model
+    if model is None:
+        return False
+    place = model.rows.find(screen.searched, model.rows.place(model.row), step)
+    if place is None:
+        return False
+    screen.pane.turn_to("table")
+    model.go_to_row(model.rows.row(place))
+    model.follow_cursor()
+    screen.update()
+    return True
+
+
+def hide(screen: Analyser) -> None:
+    """Hide the chosen column."""
+    if screen.model is not None:
+        screen.model.rows.hide()
+        screen.update()
+
+
+def freeze(screen: Analyser) -> None:
+    """Keep the chosen column at the left, or let it go."""
+    if screen.model is not None:
+        screen.model.rows.freeze()
+        screen.update()
+
+
+def copy_value(screen: Analyser) -> None:
+    """Copy the chosen cell."""
+    if screen.model is not None and screen.model.log.rows:
+        rows = screen.model.rows
+        screen.copy(rows.text(screen.model.row, rows.chosen), f"{rows.chosen} of row {screen.model.row + 1}")
+
+
+def copy_row(screen: Analyser) -> None:
+    """Copy the row of the cursor, its cells apart by tabs."""
+    if screen.model is not None and screen.model.log.rows:
+        rows, row = screen.model.rows, screen.model.row
+        screen.copy("\t".join(rows.text(row, column) for column in rows.columns), f"row {row + 1}")
+
+
+def copy_pane(screen: Analyser) -> None:
+    """Copy the pane: of the table all rows that are shown, under their heads."""
+    model, name = screen.model, screen.pane.name_shown
+    if model is None or not model.log.rows:
+        return
+    if name != "table":
+        pane = PANES[name]
+        lines = ["\t".join(row) for row in (pane.heads, *pane.rows(model))]
+        screen.copy("\n".join([*lines, *pane.below(model)]), pane.title.lower())
+        return
+    rows = model.rows
+    if len(rows) > MOST_COPIED:
+        screen.say(f"{len(rows):,} rows are too many for a clipboard: F filters, `tuisim log export` writes a file")
+        return
+    places = (rows.row(place) for place in range(len(rows)))
+    lines = ["\t".join(rows.text(row, column) for column in rows.columns) for row in places]
+    screen.copy("\n".join(["\t".join(rows.columns), *lines]), f"{len(rows):,} rows")

@@ -1,0 +1,130 @@
+"""The variables of a log as traces of a chart: read when they are first drawn, drawn from few points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.datalog.analysis.signals import value_at
+from tuisim.ui.render.axes import Limits
+from tuisim.ui.render.pyramid import Pyramid
+from tuisim.ui.render.reduce import FloatArray
+from tuisim.ui.render.traces import Trace, Traces
+
+if TYPE_CHECKING:
+    from tuisim.datalog.opening import Log, Series
+
+MOST_ON = 4
+"""So many variables are ticked at first."""
+_ANGLES = ("_deg", "_mm", "_dps")
+"""Ends of names whose values do not fit the scale of light."""
+
+
+class LogTrace(Trace):
+    """One variable of one run.
+
+    Args:
+        log: Where it is.
+        name: As in `Log.names`.
+        number: Chooses colour and mark.
+    """
+
+    def __init__(self, log: Log, name: str, number: int) -> None:
+        super().__init__(name, number)
+        self.on = number < MOST_ON
+        self.other_scale = self.other_scale or name.partition(" #")[0].endswith(_ANGLES)
+        self.shift_s = 0.0
+        """Added to its times, so that runs begin at the same event."""
+        self._log = log
+        self._series: Series | None = None
+        self._pyramid: Pyramid | None = None
+        self._shown: tuple[FloatArray, FloatArray] = (np.empty(0), np.empty(0))
+
+    @property
+    def series(self) -> Series:
+        """All its samples."""
+        if self._series is None:
+            self._series = self._log.series(self.name)
+        return self._series
+
+    @property
+    def pyramid(self) -> Pyramid:
+        """Its finite points, in order of time."""
+        if self._pyramid is None:
+            series = self.series
+            self._pyramid = Pyramid(series.time_s + self.shift_s if self.shift_s else series.time_s, series.values)
+        return self._pyramid
+
+    def shift(self, shift_s: float) -> None:
+        """Put it elsewhere in time."""
+        if shift_s != self.shift_s:
+            self.shift_s, self._pyramid = shift_s, None
+
+    def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
+        """Choose the points that a chart of that width shows."""
+        times_s, values = self.pyramid.points(x_limits, columns)
+        self._shown = held(times_s, values) if hold else (times_s, values)
+
+    @property
+    def times_s(self) -> FloatArray:
+        """Times of the points to be drawn."""
+        return self._shown[0]
+
+    @property
+    def values(self) -> FloatArray:
+        """Values of the points to be drawn."""
+        return self._shown[1]
+
+    def at(self, time_s: float) -> float | None:
+        """Return the last value at or before a time, None before the first."""
+        found = self.pyramid
+        if not len(found.times_s) or time_s < found.times_s[0]:
+            return None
+        return float(value_at(found.times_s, found.values, np.array([time_s]))[0])
+
+
+def held(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the corners of a line that keeps each value until the next one comes."""
+    if len(times_s) < 2:
+        return times_s, values
+    return np.repeat(times_s, 2)[1:], np.repeat(values, 2)[:-1]
+
+
+class LogTraces(Traces):
+    """The traces of a log, in its order."""
+
+    def __init__(self, log: Log) -> None:
+        super().__init__()
+        self._all = [LogTrace(log, name, number) for number, name in enumerate(log.names)]
+        self._by_log_name = {trace.name: trace for trace in self._all}
+
+    def __iter__(self) -> Iterator[LogTrace]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._by_log_name
+
+    def named(self, name: str) -> LogTrace:
+        """Return the trace of a variable.
+
+        Raises:
+            KeyError: there is none.
+        """
+        return self._by_log_name[name]
+
+    def ticked(self) -> list[LogTrace]:
+        """Return the traces that are drawn if they have points."""
+        return [trace for trace in self._all if trace.on]
+
+    def span_s(self) -> Limits:
+        """Return the first and the last time of the ticked traces, with room for a moment where they are one."""
+        ends = [trace.pyramid.times_s[[0, -1]] for trace in self.ticked() if len(trace.pyramid.times_s)]
+        if not ends:
+            return 0.0, 1.0
+        low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
+        return (low, high) if high > low else (low - 0.5, high + 0.5)

@@ -1,0 +1,77 @@
+"""Series of any length, ready to be drawn: least and greatest values of ever larger blocks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tuisim.ui.render.reduce import FloatArray
+
+_BLOCK = 16
+"""Each level has this many times fewer blocks than the one below."""
+_ENOUGH = 4
+"""Blocks for each column of the chart: with fewer, edges would be seen at the wrong column."""
+
+
+class Pyramid:
+    """The finite points of a series, in order of time.
+
+    Args:
+        times_s: Shape (n,).
+        values: Shape (n,); what is not finite is left out.
+    """
+
+    def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
+        good = np.isfinite(values) & np.isfinite(times_s)
+        if not good.all():
+            times_s, values = times_s[good], values[good]
+        if len(times_s) > 1 and (times_s[1:] < times_s[:-1]).any():
+            order = np.argsort(times_s, kind="stable")
+            times_s, values = times_s[order], values[order]
+        self.times_s, self.values = times_s, values
+        self._levels: list[tuple[FloatArray, FloatArray]] = []
+
+    def points(self, x_limits: tuple[float, float], columns: int) -> tuple[FloatArray, FloatArray]:
+        """Return points that look the same as all points do, times and values, a few thousand at most.
+
+        Args:
+            x_limits: First and last time shown; the neighbours of what lies between stay as well.
+            columns: Width of the chart, at least 1.
+        """
+        first = max(int(np.searchsorted(self.times_s, x_limits[0], "left")) - 1, 0)
+        last = min(int(np.searchsorted(self.times_s, x_limits[1], "right")) + 1, len(self.times_s))
+        level, size = -1, 1
+        while (last - first) // (size * _BLOCK) >= _ENOUGH * columns:
+            level, size = level + 1, size * _BLOCK
+        if level < 0:
+            return self.times_s[first:last], self.values[first:last]
+        least, greatest = self._level(level)
+        blocks = np.arange(first // size, (last - 1) // size + 1)
+        starts, ends = blocks * size, np.minimum((blocks + 1) * size, len(self.times_s)) - 1
+        low, high = least[blocks], greatest[blocks]
+        rising = self.values[starts] <= self.values[ends]
+        times_s, values = np.empty(2 * len(blocks)), np.empty(2 * len(blocks))
+        times_s[0::2], times_s[1::2] = self.times_s[starts], self.times_s[ends]
+        values[0::2], values[1::2] = np.where(rising, low, high), np.where(rising, high, low)
+        return times_s, values
+
+    def _level(self, number: int) -> tuple[FloatArray, FloatArray]:
+        while len(self._levels) <= number:
+            least, greatest = self._levels[-1] if self._levels else (self.values, self.values)
+            starts = np.arange(0, len(least), _BLOCK)
+            self._levels.append((np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts)))
+        return self._levels[number]
+
+    def nearest(self, time_s: float) -> int:
+        """Return the index of the point nearest to a time; there must be one."""
+        after = int(np.searchsorted(self.times_s, time_s))
+        if after == 0:
+            return 0
+        if after == len(self.times_s):
+            return after - 1
+        return after if self.times_s[after] - time_s < time_s - self.times_s[after - 1] else after - 1
+
+    def between(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return the points of a span, both ends included."""
+        first = int(np.searchsorted(self.times_s, start_s, "left"))
+        last = int(np.searchsorted(self.times_s, stop_s, "right"))
+        return self.times_s[first:last], self.values[first:last]
