@@ -153,7 +153,7 @@ async def test_pen_is_p_and_not_shift_p() -> None:
 
 
 async def test_help_lists_every_key() -> None:
-    async with Lab(settings()).run_test(size=(120, 90)) as pilot:
+    async with Lab(settings()).run_test(size=(120, 140)) as pilot:
         app = await ready(pilot)
         await pilot.press("question_mark")
         assert isinstance(app.screen, HelpScreen)

@@ -40,7 +40,8 @@ def press_and_wait(terminal: Terminal, key: str, times: int) -> list[tuple[int, 
     return seen
 
 
-def test_the_log_program_taken_apart(terminal: Terminal, home: Path) -> None:
+def hold_at_line_15(terminal: Terminal) -> None:
+    """Open the log program and let a breakpoint hold it."""
     terminal.start(["log_greys"], 120, 40)
     terminal.until(lambda text: "R run" in text and "idle" in text.splitlines()[-1])
     terminal.keys("T")
@@ -52,6 +53,28 @@ def test_the_log_program_taken_apart(terminal: Terminal, home: Path) -> None:
     terminal.keys("R")
     terminal.until(lambda text: held_at(text) == (15, "0.12", "100.0"))
 
+
+def branch_with_noise(terminal: Terminal) -> None:
+    """From the instant that is looked at, go on with noise and without breakpoints, to the end."""
+    terminal.keys("z")
+    terminal.until(lambda text: "Light ◆" in text)
+    terminal.keys("Tab", "3", "0", "Enter")
+    terminal.until(lambda text: "Branch from 0.67 s?" in text)
+    terminal.keys("y")
+    terminal.until(lambda text: "paused" in text.splitlines()[-1] and "Branch from" not in text)
+    terminal.until(lambda text: held_at(text)[1] == "0.67" and "past" not in text)
+    terminal.keys("Tab", "T")
+    terminal.until(lambda text: "Breakpoints" in text)
+    terminal.keys("Home", "Delete")
+    terminal.until(lambda text: "None yet" in text)
+    terminal.keys("Escape")
+    terminal.until(lambda text: "Breakpoints" not in text)
+    terminal.keys("]", "]", "]", "space")
+    terminal.until(lambda text: "finished" in text.splitlines()[-1])
+
+
+def test_the_log_program_taken_apart(terminal: Terminal, home: Path) -> None:
+    hold_at_line_15(terminal)
     steps = press_and_wait(terminal, "n", 20)
     assert [line for line, _, _ in steps[:4]] == [12, 13, 14, 15]
     assert steps[-1][2].startswith("86.27")
@@ -73,21 +96,7 @@ def test_the_log_program_taken_apart(terminal: Terminal, home: Path) -> None:
     there = terminal.until(lambda text: "past 0.67 s" in text and held_at(text)[1] == "0.67")
     assert "86.27" in held_at(there)[2]
 
-    terminal.keys("z")
-    terminal.until(lambda text: "Light ◆" in text)
-    terminal.keys("Tab", "3", "0", "Enter")
-    terminal.until(lambda text: "Branch from 0.67 s?" in text)
-    terminal.keys("y")
-    terminal.until(lambda text: "paused" in text.splitlines()[-1] and "Branch from" not in text)
-    terminal.until(lambda text: held_at(text)[1] == "0.67" and "past" not in text)
-    terminal.keys("Tab", "T")
-    terminal.until(lambda text: "Breakpoints" in text)
-    terminal.keys("Home", "Delete")
-    terminal.until(lambda text: "None yet" in text)
-    terminal.keys("Escape")
-    terminal.until(lambda text: "Breakpoints" not in text)
-    terminal.keys("]", "]", "]", "space")
-    terminal.until(lambda text: "finished" in text.splitlines()[-1])
+    branch_with_noise(terminal)
     terminal.keys("q")
     terminal.until(lambda text: "EXIT 0" in text)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import ClassVar, Generic, TypeVar
@@ -60,13 +61,13 @@ class _Listed(Dialog[None], Generic[Entry]):
         """What may be entered."""
         yield from ()
 
+    @abstractmethod
     def parse(self, text: str) -> Entry:
         """Return what a text describes, or raise a ConfigError."""
-        raise NotImplementedError  # pragma: no cover
 
+    @abstractmethod
     def written(self, entry: Entry) -> str:
         """Return the text of an entry."""
-        raise NotImplementedError  # pragma: no cover
 
     def label(self, entry: Entry) -> str:
         """Return an entry as it is listed."""
