@@ -13,6 +13,7 @@ from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
 from tests.bench.frames import chart, frames
+from tests.bench.recording import recording
 from tests.bench.running import EMPTY, begin
 from tests.bench.speed import LOADS, speeds
 from tests.bench.starts import first_line, first_paint, help_text
@@ -31,6 +32,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "frames": frames,
     "chart": chart,
     "back": back,
+    "recording": recording,
     "variables": variables,
 }
 """Every bench by name."""
