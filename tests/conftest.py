@@ -10,7 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from tuisim.cli import run_command
+
 ROOT = Path(__file__).resolve().parent.parent
+
+
+Command = Callable[..., "subprocess.CompletedProcess[str]"]
+"""`tuisim(*words)`: runs the real command in an own folder; `environment` adds variables."""
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -37,8 +43,17 @@ def root() -> Path:
     return ROOT
 
 
-Command = Callable[..., "subprocess.CompletedProcess[str]"]
-"""`tuisim(*words)`: runs the real command in an own folder; `environment` adds variables."""
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
+    """As `tuisim`, but in this process, which saves the start of another one where that is not what is tested."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: object) -> subprocess.CompletedProcess[str]:
+        code = run_command([str(word) for word in words])
+        said = capsys.readouterr()
+        return subprocess.CompletedProcess([], code, said.out, said.err)
+
+    return run
 
 
 @pytest.fixture

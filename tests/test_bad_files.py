@@ -246,15 +246,13 @@ REAL_BROKEN = ("symlink loop", "100 MB", "binary", "deep", "unreadable")
 
 
 @pytest.mark.parametrize("case", [*REAL, *REAL_BROKEN])
-def test_the_command_says_it_in_one_line_and_runs_nothing(
-    case: str, home: Path, tmp_path: Path, tuisim: Command
-) -> None:
+def test_the_command_says_it_in_one_line_and_runs_nothing(case: str, home: Path, tmp_path: Path, here: Command) -> None:
     switch, name = FILES[case.partition(":")[0] if ":" in case else "world"]
     content, said = {**BROKEN, **WRONG}[case]
     put(content, tmp_path / name)
     (tmp_path / "prog.py").write_text("print('Number: 1')\n")
     before = state(tmp_path)
-    done = tuisim("run", "prog.py", switch, name, "--export", "rows.csv")
+    done = here("run", "prog.py", switch, name, "--export", "rows.csv")
     (line,) = done.stderr.splitlines()
     assert line.startswith(f"tuisim: {name}: {said}")
     assert (done.returncode, done.stdout) == (2, "")

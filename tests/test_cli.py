@@ -93,9 +93,9 @@ EXITS = {
 
 
 @pytest.mark.parametrize(("text", "words", "code"), EXITS.values(), ids=EXITS)
-def test_exit_codes(text: str, words: list[object], code: int, tmp_path: Path, tuisim: Command) -> None:
+def test_exit_codes(text: str, words: list[object], code: int, tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text(text)
-    done = tuisim("run", "prog.py", *words)
+    done = here("run", "prog.py", *words)
     assert done.returncode == code, done.stderr
     assert "tuisim/" not in done.stderr
 
@@ -118,7 +118,13 @@ def test_command_line_wins_over_the_magic_line(tmp_path: Path, tuisim: Command) 
 
 
 @pytest.mark.parametrize(
-    "words", [[], ["-N", 20, "-M", 50], ["--profile", "nbev3devsim"]], ids=["calm", "noise", "old"]
+    "words",
+    [
+        [],
+        pytest.param(["-N", 20, "-M", 50], marks=pytest.mark.slow),
+        pytest.param(["--profile", "nbev3devsim"], marks=pytest.mark.slow),
+    ],
+    ids=["calm", "noise", "old"],
 )
 def test_the_same_run_gives_the_same_files_at_any_speed(words: list[object], tmp_path: Path, tuisim: Command) -> None:
     (tmp_path / "prog.py").write_text(DRIVES)

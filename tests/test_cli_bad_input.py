@@ -68,9 +68,9 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(("words", "said"), BAD.values(), ids=BAD)
-def test_bad_input(words: str, said: str, folder: Path, home: Path, tuisim: Command) -> None:
+def test_bad_input(words: str, said: str, folder: Path, home: Path, here: Command) -> None:
     before = sorted(folder.rglob("*"))
-    done = tuisim(*words.split())
+    done = here(*words.split())
     (line,) = done.stderr.splitlines()
     assert line.startswith("tuisim: ")
     assert said in line

@@ -8,59 +8,33 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from tests.conftest import ROOT
+from tests.conftest import ROOT, Command
 from tuisim.cli import run_command
 from tuisim.commands.log import SUBCOMMANDS
-
-
-@dataclass(frozen=True)
-class Said:
-    """What a command said."""
-
-    returncode: int
-    stdout: str
-    stderr: str
-
-
-Shell = Callable[..., Said]
-
-
-@pytest.fixture
-def shell(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Shell:
-    """`shell(*words)`: the command in this process, which saves its start."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*words: str) -> Said:
-        code = run_command(words)
-        return Said(code, *capsys.readouterr())
-
-    return run
-
 
 FIVE = (100.0, 86.27450980392157, 82.74509803921568, 50.19607843137255, 0.0)
 ORDER = ("white", "pale grey", "white", "light grey", "white", "grey", "white", "black")
 
 
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
-def test_bands_of_the_greys(shell: Shell, profile: str) -> None:
-    shell("run", "log_greys", "--profile", profile)
-    found = json.loads(shell("log", "bands", "last", "--json").stdout)
+def test_bands_of_the_greys(here: Command, profile: str) -> None:
+    here("run", "log_greys", "--profile", profile)
+    found = json.loads(here("log", "bands", "last", "--json").stdout)
     assert tuple(band["grey"] for band in found) == ORDER
     assert {band["level"] for band in found} == set(FIVE)
-    said = shell("log", "bands", "last").stdout
+    said = here("log", "bands", "last").stdout
     assert "5 levels: 100.00 white (4x), 86.27 pale grey, 82.75 light grey, 50.20 grey, 0.00 black" in said
 
 
-def test_bands_under_noise(shell: Shell) -> None:
-    shell("run", "log_greys", "-N", "20")
-    found = json.loads(shell("log", "bands", "last", "--json").stdout)
+def test_bands_under_noise(here: Command) -> None:
+    here("run", "log_greys", "-N", "20")
+    found = json.loads(here("log", "bands", "last", "--json").stdout)
     assert tuple(band["grey"] for band in found) == ORDER
     for band in found:
         assert band["true_level"] == pytest.approx(band["grey_percent"], abs=2.0)
@@ -88,38 +62,38 @@ SIGNALS: dict[str, tuple[tuple[str, ...], Callable[[pd.DataFrame], bool]]] = {
 
 
 @pytest.mark.parametrize(("action", "how"), SIGNALS.items(), ids=SIGNALS)
-def test_signals(shell: Shell, log: Path, action: str, how: tuple[tuple[str, ...], Callable[..., bool]]) -> None:
-    assert how[1](frame_of(shell("log", action, str(log), *how[0]).stdout))
+def test_signals(here: Command, log: Path, action: str, how: tuple[tuple[str, ...], Callable[..., bool]]) -> None:
+    assert how[1](frame_of(here("log", action, str(log), *how[0]).stdout))
 
 
-def test_summary(shell: Shell, log: Path) -> None:
-    left, right = json.loads(shell("log", "summary", str(log), "--json").stdout)
+def test_summary(here: Command, log: Path) -> None:
+    left, right = json.loads(here("log", "summary", str(log), "--json").stdout)
     assert (left["variable"], left["count"], left["mean"], left["max"]) == ("left", 10, 4.5, 9.0)
     assert (right["min"], right["first_s"], right["last_s"]) == (1.0, 0.0, 4.5)
 
 
-def test_events(shell: Shell, log: Path) -> None:
-    found = json.loads(shell("log", "events", str(log), "--at", "4.5", "--json").stdout)
+def test_events(here: Command, log: Path) -> None:
+    found = json.loads(here("log", "events", str(log), "--at", "4.5", "--json").stdout)
     assert [(event["variable"], event["time_s"], event["crossing"]) for event in found] == [
         ("left", 2.25, "rises"),
         ("right", 2.75, "falls"),
     ]
 
 
-def test_reckoning_without_noise_is_exact(shell: Shell) -> None:
-    shell("run", "square")
-    found = frame_of(shell("log", "reckon", "last").stdout)
+def test_reckoning_without_noise_is_exact(here: Command) -> None:
+    here("run", "square")
+    found = frame_of(here("log", "reckon", "last").stdout)
     assert found.error_mm.max() < 1.0
-    shell("run", "square", "-M", "300")
-    assert frame_of(shell("log", "reckon", "last").stdout).error_mm.max() < 1000.0
+    here("run", "square", "-M", "300")
+    assert frame_of(here("log", "reckon", "last").stdout).error_mm.max() < 1000.0
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet", "jsonl", "arrow"])
-def test_export_keeps_the_values(shell: Shell, tmp_path: Path, suffix: str) -> None:
-    shell("run", "log_greys")
+def test_export_keeps_the_values(here: Command, tmp_path: Path, suffix: str) -> None:
+    here("run", "log_greys")
     target = tmp_path / f"out.{suffix}"
-    shell("log", "export", "last", "--out", str(target))
-    found = json.loads(shell("log", "summary", str(target), "--json").stdout)
+    here("log", "export", "last", "--out", str(target))
+    found = json.loads(here("log", "summary", str(target), "--json").stdout)
     assert (found[0]["variable"], found[0]["count"], found[0]["min"]) == ("Colour", 51, 0.0)
 
 
@@ -149,8 +123,8 @@ BAD = {
 
 
 @pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
-def test_bad_input(shell: Shell, log: Path, words: tuple[str, ...], expected: str) -> None:
-    done = shell("log", *(word.format(log=log) for word in words))
+def test_bad_input(here: Command, log: Path, words: tuple[str, ...], expected: str) -> None:
+    done = here("log", *(word.format(log=log) for word in words))
     assert done.returncode == 2
     assert expected in done.stderr
     assert len(done.stderr.splitlines()) == 1
@@ -163,10 +137,10 @@ def test_help_lists_every_subcommand(capsys: pytest.CaptureFixture[str]) -> None
     assert all(f"  {name} " in said for name in SUBCOMMANDS)
 
 
-def test_empty_run_says_how_to_log(shell: Shell, tmp_path: Path) -> None:
+def test_empty_run_says_how_to_log(here: Command, tmp_path: Path) -> None:
     program = tmp_path / "quiet.py"
     program.write_text("x = 1\n")
-    shell("run", str(program))
-    done = shell("log", "bands", "last")
+    here("run", str(program))
+    done = here("log", "bands", "last")
     assert (done.returncode, "Colour: 50" in done.stderr) == (2, True)
-    assert not math.isnan(json.loads(shell("log", "summary", "last", "--telemetry", "--json").stdout)[0]["mean"])
+    assert not math.isnan(json.loads(here("log", "summary", "last", "--telemetry", "--json").stdout)[0]["mean"])

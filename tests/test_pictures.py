@@ -104,11 +104,11 @@ def test_bad_files_are_explained_and_nothing_is_kept(
 
 @pytest.mark.parametrize(("make", "message"), BAD)
 def test_the_command_refuses_bad_files_in_one_line(
-    make: Callable[[Path], object], message: str, tuisim: Command, home: Path, tmp_path: Path
+    make: Callable[[Path], object], message: str, here: Command, home: Path, tmp_path: Path
 ) -> None:
     make(tmp_path / "mat.png")
     (tmp_path / "program.py").write_text("print(1)\n", encoding="utf-8")
-    done = tuisim("run", "program.py", "-b", "mat.png", "--export", "out.csv")
+    done = here("run", "program.py", "-b", "mat.png", "--export", "out.csv")
     assert (done.returncode, done.stdout) == (2, "")
     assert "mat.png" in done.stderr and "Traceback" not in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1

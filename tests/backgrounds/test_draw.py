@@ -18,6 +18,7 @@ FOLDER = Path(draw.__file__).parent
 WHITE, BLACK = (255, 255, 255), (0, 0, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MATS)
 def test_picture_equals_a_fresh_drawing(name: str) -> None:
     with Image.open(FOLDER / f"{name}.png") as image:

@@ -95,6 +95,7 @@ def test_the_noise_is_of_the_measured_kind() -> None:
         assert (red[:, lag:] * red[:, :-lag]).mean() / red.var() == pytest.approx(expected, abs=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "column", "row", "color"),
     [

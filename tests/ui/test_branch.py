@@ -73,7 +73,12 @@ async def _nothing(pilot: Pilot[Any], app: Lab) -> None:
 
 @pytest.mark.parametrize(
     ("deed", "kind"),
-    [(_nudge, "set_pose"), (_noise, "set_noise"), (_pen, "set_pen"), (_nothing, "")],
+    [
+        (_nudge, "set_pose"),
+        pytest.param(_noise, "set_noise", marks=pytest.mark.slow),
+        pytest.param(_pen, "set_pen", marks=pytest.mark.slow),
+        (_nothing, ""),
+    ],
     ids=["nudge", "noise", "pen", "branch key"],
 )
 async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str) -> None:

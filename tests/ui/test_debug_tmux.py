@@ -73,6 +73,7 @@ def branch_with_noise(terminal: Terminal) -> None:
     terminal.until(lambda text: "finished" in text.splitlines()[-1])
 
 
+@pytest.mark.slow
 def test_the_log_program_taken_apart(terminal: Terminal, home: Path) -> None:
     hold_at_line_15(terminal)
     steps = press_and_wait(terminal, "n", 20)
