@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import os
 import random
+import signal
 from pathlib import Path
 
 import pytest
@@ -12,8 +15,9 @@ from tests.runtime.test_steering import until
 from tuisim.cli import run_command
 from tuisim.datalog.diff import diff_runs
 from tuisim.datalog.store import RunStore
+from tuisim.errors import LogError
 from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
-from tuisim.rerun import rerun, same
+from tuisim.rerun import STOP_FILE, rerun, same
 
 LOOP = """
 import random, time
@@ -136,3 +140,53 @@ def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
     said = capsys.readouterr().out
     assert "set-up, seed: 0 | 4" in said and "first differing tick: tick 1," in said and "over 1 mm: from" in said
     assert run_command(["log", "diff", one]) == 2
+
+
+CLEANS_UP = """
+import time
+try:
+    while True:
+        tank_drive.on(20, 40)
+        time.sleep(0.05)
+        print('Light:', colorLeft.reflected_light_intensity_pc)
+finally:
+    tank_drive.on_for_seconds(-30, 10, 0.3)
+    print('Far:', ultrasonic.distance_centimeters)
+"""
+
+
+@pytest.mark.parametrize("live", [True, False], ids=["live", "headless"])
+def test_a_stop_is_given_again_at_its_tick(start: object, tmp_path: Path, live: bool) -> None:  # noqa: F811
+    text = CLEANS_UP if live else CLEANS_UP.replace("time.sleep(0.05)", "time.sleep(1e6)")
+    handle = start(text, noise=(10, 20), live=live, time_limit_s=0.0)  # type: ignore[operator]
+    until(handle, lambda: handle.telemetry.count > 20)
+    handle.stop()
+    assert handle.wait(30.0) is not None and handle.ended.end == "stopped"
+    stored = RunStore().load_run(handle.run_id)
+    assert any(row.text.startswith("Far:") for row in stored.output.rows())
+    stopped_at = json.loads((handle.folder / STOP_FILE).read_text())["tick"]
+    assert stored.telemetry.count > stopped_at + 30
+    store = RunStore(tmp_path)
+    again = rerun(stored, store)
+    assert again.wait(30.0) is not None and again.ended is not None and again.ended.end == "stopped"
+    second = store.load_run(again.run_id)
+    assert second.telemetry.array().tobytes() == stored.telemetry.array().tobytes()
+    assert second.output.all_rows() == stored.output.all_rows()
+    assert same(stored, second).same
+    (stored.folder / STOP_FILE).write_text("rubbish")
+    with pytest.raises(LogError, match=STOP_FILE):
+        rerun(stored, store)
+
+
+def test_a_killed_run_is_compared_up_to_its_last_record(start: object, tmp_path: Path) -> None:  # noqa: F811
+    handle = start(CLEANS_UP, live=True)  # type: ignore[operator]
+    until(handle, lambda: handle.telemetry.count > 20)
+    os.kill(handle._process.pid, signal.SIGKILL)
+    assert handle.wait(30.0) is not None and handle.ended.end == "crashed"
+    stored = RunStore().load_run(handle.run_id)
+    store = RunStore(tmp_path)
+    again = rerun(stored, store)
+    again.wait(30.0)
+    second = store.load_run(again.run_id)
+    assert second.telemetry.count > 20
+    assert same(stored, second).same

@@ -213,10 +213,10 @@ class ScriptedAction:
     tick: int
     """It takes effect when so many ticks are done, right before the next one."""
     action: Message
-    """One of `ACTIONS`."""
+    """One of `ACTIONS`, or `Stop`."""
 
     def __post_init__(self) -> None:
-        if not isinstance(self.action, ACTIONS):
+        if not isinstance(self.action, (*ACTIONS, Stop)):
             raise TypeError(f"not a user action: {self.action!r}")
 
     def to_plain(self) -> dict[str, Any]:

@@ -5,13 +5,14 @@ What a run folder does not hold is taken from where it was: the image of the mat
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tuisim.datalog.diff import RunDiff, diff_runs
 from tuisim.errors import LogError
 from tuisim.host import Program, RunHandle, RunOptions, start_run
-from tuisim.protocol import ScriptedAction
+from tuisim.protocol import ScriptedAction, Stop
 
 if TYPE_CHECKING:
     from tuisim.datalog.runfile import StoredRun
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled"})
 """Ends that did not come out of the program and its limits: such a run is a piece of the one that is run again."""
+
+STOP_FILE = "stop.json"
+"""Written by the run: right before which tick the user's stop reached the program."""
 
 
 def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
@@ -42,10 +46,25 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
     """Compare a run with its re-run; `same` of the result tells whether all bits are equal.
 
     Args:
-        run: The run; one that was cut off is compared up to its last record.
+        run: The run; one that was cut off is compared up to its last record, unless it is known where.
         again: Its re-run.
     """
-    return diff_runs(run, again, prefix=run.state in CUT_OFF)
+    return diff_runs(run, again, prefix=run.state in CUT_OFF and not _stopped_by_itself(run))
+
+
+def _stopped_by_itself(run: StoredRun) -> bool:
+    """Whether the program followed a stop that can be given again at the same place."""
+    # One that had to be killed says more than that.
+    return run.end is not None and run.end.summary == "stopped" and _stop_tick(run) is not None
+
+
+def _stop_tick(run: StoredRun) -> int | None:
+    try:
+        return int(json.loads((run.folder / STOP_FILE).read_text("utf-8"))["tick"])
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(run.folder / STOP_FILE)) from error
 
 
 def _options(run: StoredRun) -> RunOptions:
@@ -54,7 +73,8 @@ def _options(run: StoredRun) -> RunOptions:
         raise LogError("has no recording: it ended before its first tick", file=str(run.folder))
     # A run that was stopped might never end by itself; any other ends before the tick after its last.
     enough_s = (last.tick + 1) / run.spec.profile.tick_hz
-    stored = run.options
+    stored, stop_tick = run.options, _stop_tick(run)
+    stop = () if stop_tick is None else (ScriptedAction(stop_tick, Stop()),)
     try:
         limit_s = float(stored.get("time_limit_s", 0.0))
         return RunOptions(
@@ -65,7 +85,8 @@ def _options(run: StoredRun) -> RunOptions:
             actions=tuple(
                 ScriptedAction.from_plain({"tick": action.tick, "kind": action.kind, **action.fields})
                 for action in run.actions
-            ),
+            )
+            + stop,
         )
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(f"cannot be run again: {error}", file=str(run.folder)) from error

@@ -21,7 +21,7 @@ from tuisim.protocol import Spoke
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.halt import StopProgram
 from tuisim.runtime.output import Output
-from tuisim.runtime.steering import LIVE, Steering
+from tuisim.runtime.steering import LIVE, STOPPED, Steering
 
 if TYPE_CHECKING:
     from tuisim.core.marks import PenMarks
@@ -231,7 +231,7 @@ class Session:
                 return True
             if self.slow & ATTENTION:
                 self.now = max(self.now, sim.due_ns(sim.tick))
-                self.checkpoint()
+                self.checkpoint(before_tick=True)
         return False
 
     def _run_live(self, until: int, on_change: bool) -> bool:
@@ -265,8 +265,12 @@ class Session:
 
     # Stopping
 
-    def checkpoint(self) -> None:
+    def checkpoint(self, before_tick: bool = False) -> None:
         """Look for commands; raise if the program is to stop.
+
+        Args:
+            before_tick: A tick is about to be done, and nothing of the program comes before it: a place that can be
+                found again.
 
         Raises:
             StopProgram: first when stopping is asked for, then again once the grace time is over.
@@ -278,6 +282,8 @@ class Session:
             return
         if self._stop_raised_at is None:
             self._stop_raised_at = self.now
+            if before_tick and reason.end == STOPPED:
+                self.steering.write_down_stop(self.sim.tick)
             raise reason
         if self.now - self._stop_raised_at > STOP_GRACE_NS or self.steering.grace_is_over():
             raise reason

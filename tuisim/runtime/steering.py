@@ -25,7 +25,11 @@ if TYPE_CHECKING:
 
 LIVE = 1
 """Bit of `Session.slow`: the steering is asked before ticks."""
+STOPPED = "stopped"
+"""Why a run ends that the user stops."""
 ACTIONS_FILE = "actions.jsonl"
+STOP_FILE = "stop.json"
+"""Says right before which tick the user's stop reached the program; missing if it came elsewhere."""
 SLICE_S = 0.02
 """Longest uninterrupted real wait."""
 BEHIND_S = 0.25
@@ -80,7 +84,7 @@ class Steering:
         for command in self._channel.receive():
             match command:
                 case protocol.Stop():
-                    session.ask_stop("stopped", "stopped")
+                    session.ask_stop(STOPPED, STOPPED)
                 case protocol.Pause():
                     self._paused, self._steps, self._reason = True, 0, "asked"
                     session.slow |= LIVE if self.live else 0
@@ -143,7 +147,7 @@ class Steering:
         self.receive(session)
         self._apply_actions(session)
         if session.stop_reason is not None:
-            session.checkpoint()
+            session.checkpoint(before_tick=True)
             return most
         if self._script:
             # The next one must find its tick.
@@ -155,7 +159,7 @@ class Steering:
         if self._paused and not self._steps:
             sim = session.sim
             self.hold(session, protocol.Paused(sim.tick, session.now, sim.line, self._reason))
-            session.checkpoint()
+            session.checkpoint(before_tick=True)
         if self._steps:
             self._steps -= 1
             return 1
@@ -206,7 +210,7 @@ class Steering:
                 self.receive(session)
                 self._apply_actions(session)
                 if session.stop_reason is not None:
-                    session.checkpoint()
+                    session.checkpoint(before_tick=True)
                     return most
                 if self._paused:
                     return self.before_ticks(session, most)
@@ -223,6 +227,10 @@ class Steering:
         """Carry out a user action now, right before the next tick, and write it down."""
         sim = session.sim
         match action:
+            case protocol.Stop():
+                # No change of the world, and not counted as one.
+                session.ask_stop(STOPPED, STOPPED)
+                return
             case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
                 sim.place(Pose(x, y, heading))
             case protocol.SetNoise(light=light, motor=motor):
@@ -238,6 +246,10 @@ class Steering:
         sim.actions += 1
         sim.rewrite_record()
         self._write_down(sim.tick, action)
+
+    def write_down_stop(self, tick: int) -> None:
+        """Note that the stop reaches the program right before the tick after `tick`."""
+        (self._folder / STOP_FILE).write_text(json.dumps({"tick": tick}), "utf-8")
 
     def _write_down(self, tick: int, action: Message) -> None:
         if self._actions_fd < 0:
