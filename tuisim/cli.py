@@ -114,12 +114,26 @@ def _analyse(arguments: Namespace) -> int:
     what = asked(arguments)
     if not sys.stdout.isatty():
         raise ConfigError("the analyser needs a terminal", "use `tuisim log` where there is none")
+    from tuisim.datalog.opening.loading import STDIN
     from tuisim.ui.analyser.app import run_analyser
     from tuisim.ui.analyser.subject import Wanted
 
+    if what.file == STDIN:
+        _keys_from_terminal()
     wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value))
     with _drawing_on_stdout():
         return run_analyser(wanted)
+
+
+def _keys_from_terminal() -> None:
+    """Let the log come from the standard input as it was, and the keys from the terminal."""
+    try:
+        terminal = os.open("/dev/tty", os.O_RDWR)
+    except OSError as error:
+        raise ConfigError("there is no terminal to take keys from", "name a file instead of -") from error
+    sys.stdin = os.fdopen(os.dup(0))
+    os.dup2(terminal, 0)
+    os.close(terminal)
 
 
 @contextmanager

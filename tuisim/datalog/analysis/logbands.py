@@ -70,7 +70,7 @@ def band_report(log: Log, name: str) -> BandReport:
     """
     series = log.series(name)
     found = plateaus(series.values)
-    driven = _driven_mm(log, series)
+    driven = driven_mm(log, series)
     scale, noise = light_scale(series.values), light_noise(log.metadata, series.run)
     bands = tuple(_band(series, number, plateau, driven, scale, noise) for number, plateau in enumerate(found, 1))
     total = int(np.isfinite(series.values).sum())
@@ -127,7 +127,8 @@ def light_noise(metadata: Mapping[str, Any], run: int) -> int:
         return 0
 
 
-def _driven_mm(log: Log, series: Series) -> FloatArray | None:
+def driven_mm(log: Log, series: Series) -> FloatArray | None:
+    """Return how far the robot had driven at each sample, shape (n,); None if the log does not say where it was."""
     names = log.table.column_names
     if "x_mm" not in names or "y_mm" not in names or not len(series.rows):
         return None

@@ -33,17 +33,21 @@ class Action:
     do: Callable[[Analyser], None]
     footer: str = ""
     """Short word for the footer; empty keeps it out."""
+    of_rows: bool = True
+    """Whether it does something with the rows, and so nothing if there are none."""
 
 
 # The footer shows them in this order, as far as they fit.
 ACTIONS: Mapping[str, Action] = {
     action.id: action
     for action in (
-        Action("table", "t", "t", "Table", PANE, partial(doing.turn_to, pane="table"), "table"),
-        Action("bands", "b", "b", "Bands: their levels and names", PANE, partial(doing.turn_to, pane="bands"), "bands"),
-        Action("statistics", "s", "s", "Statistics", PANE, partial(doing.turn_to, pane="statistics"), "stats"),
-        Action("notes", "n", "n", "Notes", PANE, partial(doing.turn_to, pane="notes"), "notes"),
-        Action("runs", "r", "r", "Runs of this log", PANE, partial(doing.turn_to, pane="runs"), "runs"),
+        Action("table", "t", "t", "Table", PANE, partial(doing.turn_to, pane="table"), "table", of_rows=False),
+        Action("bands", "b", "b", "Bands: their levels and names", PANE,
+                partial(doing.turn_to, pane="bands"), "bands", of_rows=False),
+        Action("statistics", "s", "s", "Statistics", PANE,
+                partial(doing.turn_to, pane="statistics"), "stats", of_rows=False),
+        Action("notes", "n", "n", "Notes", PANE, partial(doing.turn_to, pane="notes"), "notes", of_rows=False),
+        Action("runs", "r", "r", "Runs of this log", PANE, partial(doing.turn_to, pane="runs"), "runs", of_rows=False),
         Action("note", "m", "m", "Note on the sample, the band, or the span from A", LOG, noting.write, "note"),
         Action("up", "up", "↑", "Row before", CURSOR, partial(doing.rows, step=-1)),
         Action("down", "down", "↓", "Next row", CURSOR, partial(doing.rows, step=1)),
@@ -68,7 +72,9 @@ ACTIONS: Mapping[str, Action] = {
         Action("facets", "x", "x", "One chart for each variable, or one for all", CHART, doing.facets, "facets"),
         Action("marks", "X", "X", "Points or lines", CHART, doing.marks),
         Action("hold", "H", "H", "Hold each value until the next, or not", CHART, doing.hold),
-        Action("larger", "plus", "+", "Chart and pane, chart alone, pane alone", CHART, doing.larger),
+        Action("align", "A", "A", "Lay runs over each other by time, distance or an event", CHART, doing.ask_alignment),
+        Action("against", "k", "k", "Draw the path, or one variable against another", CHART, doing.ask_against),
+        Action("larger", "plus", "+", "Chart and pane, chart alone, pane alone", CHART, doing.larger, of_rows=False),
         Action("column-before", "less_than_sign", "<", "Column before", TABLE, partial(tabling.choose, step=-1)),
         Action("column", "greater_than_sign", ">", "Next column", TABLE, partial(tabling.choose, step=1)),
         Action("sort", "o", "o", "Sort by the column: up, down, not", TABLE, tabling.sort, "sort"),
@@ -83,11 +89,13 @@ ACTIONS: Mapping[str, Action] = {
         Action("copy-row", "Y", "Y", "Copy the row", LOG, tabling.copy_row),
         Action("copy-pane", "ctrl+y", "ctrl+y", "Copy the table as shown, or the pane", LOG, tabling.copy_pane),
         Action("delete-note", "delete", "delete", "Delete the chosen note", LOG, noting.delete),
-        Action("telemetry", "T", "T", "What every tick recorded, or what was printed", LOG, doing.telemetry),
-        Action("open-runs", "R", "R", "Open other runs, several laid over each other", LOG, doing.ask_runs),
-        Action("beside", "w", "w", "World beside the log, or not", PANE, doing.beside),
-        Action("help", "question_mark", "?", "Help", LOG, doing.show_help, "help"),
-        Action("leave", "q,escape", "q", "Leave the analyser", LOG, doing.leave, "leave"),
+        Action("telemetry", "T", "T", "What every tick recorded, or what was printed", LOG,
+                doing.telemetry, of_rows=False),
+        Action("open-runs", "R", "R", "Open other runs, several laid over each other", LOG,
+                doing.ask_runs, of_rows=False),
+        Action("beside", "w", "w", "World beside the log, or not", PANE, doing.beside, of_rows=False),
+        Action("help", "question_mark", "?", "Help", LOG, doing.show_help, "help", of_rows=False),
+        Action("leave", "q,escape", "q", "Leave the analyser", LOG, doing.leave, "leave", of_rows=False),
     )
 }  # fmt: skip
 """Every key by the id of what it does."""

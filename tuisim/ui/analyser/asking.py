@@ -37,7 +37,7 @@ class Asking(Dialog[bool]):
 
     def content(self) -> ComposeResult:
         """The field, what is wrong with what stands there, and what may stand there."""
-        yield Input(self._value, compact=True)
+        yield Input(self._value, compact=True, select_on_focus=False)
         yield Static(id="message", classes="wrong", markup=False)
         forms = Table.grid(padding=(0, 2))
         for form, meaning in self._forms:

@@ -11,10 +11,13 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.datalog.analysis.statistics import summary_of
+from tuisim.ui.analyser.aligning import DISTANCE
 from tuisim.ui.cellview import LinesView, Run
 from tuisim.ui.render import axes
 from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState
+from tuisim.ui.render.plot import BRAILLE
 from tuisim.ui.render.traces import Traces
+from tuisim.ui.render.xy import xy_lines
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.model import Model
@@ -33,6 +36,8 @@ class ChartLook:
     marks: bool = False
     hold: bool = False
     """Keep each value until the next one comes, instead of going straight to it."""
+    against: tuple[str, str] | None = None
+    """What is drawn against what, x and y, instead of all over time."""
 
 
 class _One(Traces):
@@ -88,17 +93,22 @@ class LogChart(Widget):
         width, height = self._text.size
         if not width or not height or not self.display:
             return
+        if self.look.against and model.log.rows:
+            self._pictures = []
+            self._text.set_lines(self._against(model, self.look.against, width, height))
+            return
         x_limits = model.x_limits()
         ticked = model.traces.ticked()
         for trace in ticked:
             trace.prepare(x_limits, width, self.look.hold)
-        measured = _measured(model, width)
+        unit = "mm" if model.alignment == DISTANCE else "s"
+        measured = _measured(model, unit, width)
         height -= len(measured)
         facets = ticked if self.look.facets and len(ticked) > 1 and height >= 2 * _LEAST_FACET_ROWS else []
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
             model.selected, model.cursor_s if model.log.rows else None, x_limits, bool(self.app.no_color),
-            model.mark_s, self.look.marks,
+            model.mark_s, unit, self.look.marks,
         )  # fmt: skip
         self._pictures = []
         lines: list[list[Run]] = []
@@ -110,6 +120,12 @@ class LogChart(Widget):
             self._pictures.append((len(lines), picture))
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
         self._text.set_lines([*lines, *measured])
+
+    def _against(self, model: Model, names: tuple[str, str], width: int, height: int) -> list[list[Run]]:
+        trace = model.trace
+        xs, ys = (model.along(name) for name in names)
+        marker = trace.mark if self.app.no_color or self.look.marks else BRAILLE
+        return xy_lines(xs, ys, model.sample, names, trace.rgb, marker, width, height)
 
     def columns(self) -> int:
         """Return the width of the canvas in characters, 1 if there is none."""
@@ -150,7 +166,7 @@ def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[L
     return facets[first : first + most]
 
 
-def _measured(model: Model, width: int) -> list[list[Run]]:
+def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
     """The line that says what lies between the two cursors."""
     if model.mark_s is None or not model.log.rows:
         return []
@@ -160,12 +176,16 @@ def _measured(model: Model, width: int) -> list[list[Run]]:
     start_s, stop_s = sorted((model.mark_s, model.cursor_s))
     trace = model.trace
     before, after = trace.at(model.mark_s), trace.at(model.cursor_s)
-    line: list[Run] = [(f"A {model.mark_s:.2f} s  Δt ", plain), (f"{model.cursor_s - model.mark_s:.3f} s", strong)]
+    step = "Δt" if unit == "s" else "Δ"
+    line: list[Run] = [
+        (f"A {model.mark_s:.2f} {unit}  {step} ", plain),
+        (f"{model.cursor_s - model.mark_s:.3f} {unit}", strong),
+    ]
     if before is not None and after is not None:
         line += [("  Δ ", plain), (f"{after - before:.5g}", strong)]
         if stop_s > start_s:
             slope = (after - before) / (model.cursor_s - model.mark_s)
-            line += [("  slope ", plain), (f"{slope:.4g}/s", strong)]
+            line += [("  slope ", plain), (f"{slope:.4g}/{unit}", strong)]
     figures = summary_of(trace.pyramid.between(start_s, stop_s)[1])
     for word, value in (("n", figures.count), ("mean", figures.mean), ("std", figures.std), ("min", figures.min),
                         ("max", figures.max)):  # fmt: skip

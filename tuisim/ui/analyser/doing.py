@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.errors import LogError
+from tuisim.ui.analyser.aligning import TIME
 from tuisim.ui.analyser.asking import Asking
 
 if TYPE_CHECKING:
@@ -14,6 +15,16 @@ if TYPE_CHECKING:
 
 _SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
 _WHERE = (("120", "row 120"), ("2.5s", "the sample nearest to 2.5 seconds"), ("50%", "halfway through the table"))
+_ALIGNMENTS = (
+    ("time", "their beginnings"),
+    ("distance", "how far each has driven"),
+    ("Colour < 50", "the moment at which each first comes to that"),
+)
+_AGAINST = (
+    ("y_mm against x_mm", "the path of the robot"),
+    ("Ultrasonic", "the chosen variable against another one"),
+    ("(nothing)", "all over time"),
+)
 _WHICH = (("last", "the newest run"), ("12", "run 12"), ("12 13 14", "three runs, laid over each other"))
 
 
@@ -157,6 +168,43 @@ def beside(screen: Analyser) -> None:
     """The world beside the log, or not."""
     screen.beside.display = not screen.beside.display
     screen.call_after_refresh(screen.update)
+
+
+def ask_alignment(screen: Analyser) -> None:
+    """Ask how runs are laid over each other."""
+    model = screen.model
+    if model is None:
+        return
+
+    def go(text: str) -> None:
+        model.align(text or TIME)
+        screen.redraw_chart()
+        screen.update()
+
+    screen.app.push_screen(Asking("Lay runs over each other by", go, model.alignment, _ALIGNMENTS))
+
+
+def ask_against(screen: Analyser) -> None:
+    """Ask what to draw against what."""
+    model, look = screen.model, screen.chart.look
+    if model is None or not model.log.rows:
+        return
+
+    def go(text: str) -> None:
+        names = [name.strip() for name in text.split(" against ")]
+        if not text:
+            look.against = None
+        else:
+            if len(names) > 2:
+                raise LogError(f"cannot draw {text!r}", "a name, or two with `against` between them")
+            y, x = names if len(names) == 2 else (model.selected, names[0])
+            for name in (x, y):
+                model.along(name)
+            look.against = x, y
+        screen.redraw_chart()
+
+    now = f"{look.against[1]} against {look.against[0]}" if look.against else ""
+    screen.app.push_screen(Asking("Draw", go, now, _AGAINST))
 
 
 def telemetry(screen: Analyser) -> None:

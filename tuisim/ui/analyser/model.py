@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.datalog.analysis.logbands import Band, BandReport, band_report
+from tuisim.datalog.analysis.signals import value_at
+from tuisim.datalog.analysis.statistics import Summary, summary_of
+from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.notes import Note, read_notes, write_notes
+from tuisim.datalog.opening.layout import is_numeric
+from tuisim.datalog.opening.log import numbers_of
 from tuisim.errors import LogError
+from tuisim.ui.analyser.aligning import TIME, aligned
 from tuisim.ui.analyser.rows import Rows
 from tuisim.ui.analyser.traces import LogTrace, LogTraces
 from tuisim.ui.render.axes import Limits
@@ -47,7 +54,10 @@ class Model:
         """The other cursor of the chart."""
         self.limits: Limits | None = None
         """Times that the chart shows, None for all."""
+        self.alignment = TIME
+        """How runs are laid over each other."""
         self._reports: dict[str, BandReport] = {}
+        self._summaries: dict[str, Summary] = {}
         self._places = subject.notes_places()
         self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]
         if names and len(self.trace.series.rows):
@@ -73,13 +83,41 @@ class Model:
 
     @property
     def cursor_s(self) -> float:
-        """Time of the row that is looked at, as the chart counts it."""
-        return self.time_of(self.row) + self.trace_of_row(self.row).shift_s
+        """Where the row that is looked at stands along the chart: its time, unless it was aligned in another way."""
+        trace = self.trace_of_row(self.row)
+        return float(trace.places[self._sample(trace, self.row)])
 
     def time_of(self, row: int) -> float:
         """Return the time of a row in its run."""
-        series = self.trace_of_row(row).series
-        return float(series.time_s[min(int(np.searchsorted(series.rows, row)), len(series.rows) - 1)])
+        trace = self.trace_of_row(row)
+        return float(trace.series.time_s[self._sample(trace, row)])
+
+    @staticmethod
+    def _sample(trace: LogTrace, row: int) -> int:
+        """Which sample of a variable stands in a row, or is the next one after it."""
+        rows = trace.series.rows
+        return min(int(np.searchsorted(rows, row)), len(rows) - 1)
+
+    @property
+    def sample(self) -> int:
+        """Which sample of the selected variable is looked at, or comes next."""
+        return self._sample(self.trace, self.row)
+
+    def along(self, name: str) -> FloatArray:
+        """Return the values of a variable or column at each sample of the selected variable, shape (n,).
+
+        Raises:
+            LogError: there is none of that name, or it holds no numbers.
+        """
+        series = self.trace.series
+        if name in self.traces:
+            other = self.traces.named(name).series
+            return other.values if other is series else value_at(other.time_s, other.values, series.time_s)
+        if name not in self.log.table.column_names or not is_numeric(self.log.table.column(name).type):
+            numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
+            known = dict.fromkeys((*self.log.names, *numbers))
+            raise LogError(f"no variable {name!r}", f"there are {', '.join(known)}", file=self.log.title)
+        return numbers_of(self.log.table.column(name))[series.rows]
 
     def run_of(self, row: int) -> int:
         """Return which run a row is of, from 0."""
@@ -92,21 +130,30 @@ class Model:
         return int(self.log.table.column("line")[self.row].as_py() or 0)
 
     def go_to_time(self, time_s: float) -> None:
-        """Go to the sample of the selected variable that is nearest to a time of the chart."""
-        series, shift_s = self.trace.series, self.trace.shift_s
-        if len(series.time_s):
-            self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s + (shift_s - time_s))))])
+        """Go to the sample of the selected variable that is nearest to a place of the chart."""
+        if len(self.trace.pyramid.times_s):
+            self.row = int(self.trace.series.rows[self.trace.pyramid.nearest(time_s)])
+
+    def go_to_moment(self, time_s: float) -> None:
+        """Go to the sample of the selected variable that is nearest to a time of its run."""
+        series = self.trace.series
+        if len(series.rows):
+            self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s - time_s)))])
 
     def step(self, samples: int) -> None:
         """Go to a sample of the selected variable before or after the one that is looked at."""
         rows = self.trace.series.rows
         if len(rows):
-            at = int(np.searchsorted(rows, self.row)) + samples
+            # The row may be one of another variable, between two samples.
+            at = int(np.searchsorted(rows, self.row, "right" if samples > 0 else "left")) + samples - (samples > 0)
             self.row = int(rows[min(max(at, 0), len(rows) - 1)])
 
     def take_over(self, other: Model) -> None:
         """Go on where one was in the same log, of which there is more now."""
         self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
+        if other.row == other.log.rows - 1:
+            # Whoever looks at the end of a log that grows goes on looking at its end.
+            self.row = self.log.rows - 1
         if other.selected in self.traces:
             self.selected = other.selected
         for trace in other.traces:
@@ -123,6 +170,20 @@ class Model:
         names = [trace.name for trace in self.traces]
         if names:
             self.selected = names[(names.index(self.selected) + step) % len(names)]
+
+    def align(self, way: str) -> None:
+        """Lay the runs over each other.
+
+        Args:
+            way: `time`; `distance`, so far as each has driven; or an event such as `Colour < 50`.
+
+        Raises:
+            LogError: the log does not say how far the robot drove, or no run has such an event.
+        """
+        places_of_all = aligned(self.log, [trace.series for trace in self.traces], way)
+        for trace, places in zip(self.traces, places_of_all, strict=True):
+            trace.align(places)
+        self.alignment, self.limits, self.mark_s = way, None, None
 
     # The part of the time that the chart shows
 
@@ -159,15 +220,28 @@ class Model:
 
     # Bands
 
-    def report(self, name: str) -> BandReport:
-        """Return the bands of a variable, found once."""
-        if name not in self._reports:
+    def unsearched(self) -> list[str]:
+        """Return the ticked variables whose bands have not been searched for."""
+        return [trace.name for trace in self.traces.ticked() if trace.name not in self._reports]
+
+    def find_bands(self, names: Sequence[str]) -> None:
+        """Search variables for bands. Slow for a long log: call it in a thread."""
+        for name in names:
             self._reports[name] = band_report(self.log, name)
-        return self._reports[name]
+
+    def reports(self) -> list[BandReport]:
+        """Return what was found in the ticked variables."""
+        return [self._reports[trace.name] for trace in self.traces.ticked() if trace.name in self._reports]
 
     def bands(self) -> list[Band]:
-        """Return the bands of the ticked variables."""
-        return [band for trace in self.traces.ticked() for band in self.report(trace.name).bands]
+        """Return the bands of the ticked variables, as far as they were searched for."""
+        return [band for report in self.reports() for band in report.bands]
+
+    def summary(self, name: str) -> Summary:
+        """Return the figures of a variable, reckoned once."""
+        if name not in self._summaries:
+            self._summaries[name] = summary_of(self.traces.named(name).series.values)
+        return self._summaries[name]
 
     # Notes
 

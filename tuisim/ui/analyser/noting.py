@@ -8,6 +8,7 @@ from tuisim.errors import LogError, TuisimError
 from tuisim.ui.analyser.asking import Asking
 
 if TYPE_CHECKING:
+    from tuisim.ui.analyser.model import Model
     from tuisim.ui.analyser.screen import Analyser
 
 
@@ -28,7 +29,7 @@ def write(screen: Analyser) -> None:
         value = f"band {band.number}: {band.true_level:.2f}" + (f" {band.grey}" if band.grey else "")
         title = f"Note on {name} from {start_s:.2f} s to {stop_s:.2f} s"
     elif model.mark_s is not None:
-        start_s, stop_s = sorted((model.mark_s - trace.shift_s, start_s))
+        start_s, stop_s = sorted((_mark_time_s(model), start_s))
         title = f"Note on {name} from {start_s:.2f} s to {stop_s:.2f} s"
 
     def keep(text: str) -> None:
@@ -39,6 +40,12 @@ def write(screen: Analyser) -> None:
         screen.update()
 
     screen.app.push_screen(Asking(title, keep, value))
+
+
+def _mark_time_s(model: Model) -> float:
+    """Time in its run of the sample at the other cursor."""
+    trace = model.trace_of_row(model.row)
+    return float(trace.series.time_s[trace.pyramid.nearest(model.mark_s or 0.0)])
 
 
 def delete(screen: Analyser) -> None:

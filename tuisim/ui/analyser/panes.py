@@ -12,7 +12,7 @@ from math import isfinite
 from rich.style import Style
 
 from tuisim.datalog.analysis.logbands import in_words
-from tuisim.datalog.analysis.statistics import QUANTILES, summary_of
+from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.cellview import Run
 from tuisim.ui.verbs import end_label
@@ -63,13 +63,13 @@ def _bands(model: Model) -> list[Cells]:
 
 
 def _bands_in_words(model: Model) -> list[str]:
-    return [in_words(model.report(trace.name)) for trace in model.traces.ticked()]
+    return [in_words(report) for report in model.reports()]
 
 
 def _statistics(model: Model) -> list[Cells]:
     rows = []
     for trace in model.traces.ticked():
-        found = summary_of(trace.series.values)
+        found = model.summary(trace.name)
         figures = (found.min, found.mean, found.max, found.std, *found.quantiles)
         rows.append((trace.name, f"{found.count:,}", *map(_figure, figures)))
     return rows
@@ -91,11 +91,12 @@ def _notes(model: Model) -> list[Cells]:
 def _runs(model: Model) -> list[Cells]:
     return [
         (
+            f"#{at}" if len(model.subject.runs) > 1 else "",
             str(run.number or run.id), run.program.name, run.spec.world.background, end_label(run.state),
             f"{max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz:.2f}", run.spec.profile.name,
             str(run.spec.seed),
         )
-        for run in model.subject.runs
+        for at, run in enumerate(model.subject.runs, 1)
     ]  # fmt: skip
 
 
@@ -115,7 +116,7 @@ PANES: Mapping[str, Pane] = {
         empty="No notes yet: m writes one about the sample at the cursor, or about a band",
     ),
     "runs": Pane(
-        "Runs", _runs, ("run", "program", "mat", "end", "s", "profile", "seed"),
+        "Runs", _runs, ("", "run", "program", "mat", "end", "s", "profile", "seed"),
         empty="This log is a file: R opens stored runs instead, several to lay them over each other",
     ),
 }  # fmt: skip
@@ -139,8 +140,9 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     pane = PANES[name]
     rows = pane.rows(model)
     if not rows:
-        return [[(pane.empty, DIM)]]
-    below = _wrapped(pane.below(model), width)[: max(0, height - 4)]
+        searching = name == "bands" and model.unsearched()
+        return [[("The bands are being searched for …" if searching else pane.empty, DIM)]]
+    below = _wrapped(pane.below(model), width)[: max(0, height // 3)]
     room = max(height - 1 - len(below), 1)
     first = _first(chosen, len(rows), room)
     widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]

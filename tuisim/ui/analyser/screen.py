@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from time import monotonic
 from typing import ClassVar
 
+import numpy as np
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -24,6 +26,11 @@ from tuisim.ui.cellview import LinesView
 
 _KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
 _ALWAYS = ("help", "leave")
+_LOOK_S = 1.0
+_SEARCHED_AT_ONCE = 20_000
+"""Rows in which bands are found within a few hundredths of a second."""
+_PATIENCE = 10.0
+"""Times as long as the reading took there is no other one."""
 
 
 def _palette() -> type[Provider]:
@@ -55,6 +62,12 @@ class Analyser(Screen[None]):
         self.wanted = wanted
         self.model: Model | None = None
         self.searched = ""
+        self._searching: Model | None = None
+        """The log that is being searched for bands."""
+        self._reading = False
+        self._began_s = self._next_look_s = 0.0
+        self._stamp: object = None
+        """How long the log was when it was read."""
         self.title_line = LinesView()
         self.title_line.id = "title"
         self.keys = LinesView()
@@ -76,6 +89,7 @@ class Analyser(Screen[None]):
     def on_mount(self) -> None:
         """Begin to open the log."""
         self.open(self.wanted)
+        self.set_interval(_LOOK_S, self.look_again)
 
     def on_resize(self) -> None:
         """Fit the keys to the width."""
@@ -86,6 +100,7 @@ class Analyser(Screen[None]):
     def open(self, wanted: Wanted) -> None:
         """Open another log; the one that is shown stays until then."""
         self.wanted = wanted
+        self._reading, self._began_s = True, monotonic()
         self._tell("opening …")
         self.run_worker(partial(self._open, wanted), thread=True, group="log", exclusive=True)
 
@@ -101,6 +116,7 @@ class Analyser(Screen[None]):
     def _failed(self, wanted: Wanted, error: TuisimError) -> None:
         if wanted is not self.wanted:
             return
+        self._reading = False
         self.complain(error)
         if self.model is None:
             self.dismiss(None)
@@ -112,6 +128,10 @@ class Analyser(Screen[None]):
         if subject.wanted is not self.wanted:
             return
         before = self.model
+        if subject.done:
+            now_s = monotonic()
+            self._reading, self._next_look_s = False, now_s + _PATIENCE * (now_s - self._began_s)
+            self._stamp = subject.stamp()
         try:
             self.model = Model(subject)
         except TuisimError as error:
@@ -119,12 +139,22 @@ class Analyser(Screen[None]):
             return
         if before is not None and before.subject.wanted is subject.wanted:
             self.model.take_over(before)
+        else:
+            self.chart.look.against = None
         self.chart.take(self.model)
         self.beside.take(self.model)
         self.update()
-        if subject.done:
+        if subject.done and (before is None or before.subject.log.notes != subject.log.notes):
             for note in subject.log.notes:
                 self.say(note)
+
+    def look_again(self) -> None:
+        """Read on when the log has grown; the longer the reading took, the seldomer."""
+        model = self.model
+        if model is None or not model.subject.done or self._reading or monotonic() < self._next_look_s:
+            return
+        if model.subject.stamp() != self._stamp:
+            self.open(self.wanted)
 
     # Showing
 
@@ -135,9 +165,30 @@ class Analyser(Screen[None]):
             return
         part = model.subject.part
         self._tell("" if model.subject.done else f"reading {part:.0%} …" if part == part else "reading …")
+        if self.pane.name_shown == "bands":
+            self._find_bands(model)
         self.chart.show(model)
         self.pane.show(model)
         self.beside.show(model)
+
+    def _find_bands(self, model: Model) -> None:
+        """Search for the bands that are to be shown, beside the screen if that takes long."""
+        names = model.unsearched()
+        if not names or model is self._searching:
+            return
+        if model.log.rows <= _SEARCHED_AT_ONCE:
+            model.find_bands(names)
+            return
+        self._searching = model
+        self.run_worker(partial(self._search_bands, model, names), thread=True, group="bands")
+
+    def _search_bands(self, model: Model, names: list[str]) -> None:
+        model.find_bands(names)
+        self.app.call_from_thread(self._found_bands)
+
+    def _found_bands(self) -> None:
+        self._searching = None
+        self.update()
 
     def redraw_chart(self) -> None:
         """Draw the chart anew, in another way."""
@@ -159,13 +210,14 @@ class Analyser(Screen[None]):
         self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
         if bands:
             model.selected = bands[number].variable
-            model.go_to_row((bands[number].first_row + bands[number].last_row) // 2)
-            model.go_to_time(model.cursor_s)
+            rows = model.trace.series.rows
+            first, last = np.searchsorted(rows, (bands[number].first_row, bands[number].last_row))
+            model.go_to_row(int(rows[(first + last) // 2]))
         elif notes:
             _, note = notes[number]
             if note.variable in model.traces:
                 model.selected = note.variable
-            model.go_to_time(note.start_s)
+            model.go_to_moment(note.start_s)
         model.follow_cursor()
 
     def _tell(self, progress: str) -> None:
@@ -195,7 +247,11 @@ class Analyser(Screen[None]):
 
     def action_act(self, name: str) -> None:
         """Do what a key stands for."""
-        ACTIONS[name].do(self)
+        action = ACTIONS[name]
+        if action.of_rows and (self.model is None or not self.model.log.rows):
+            self.say("There are no rows yet")
+            return
+        action.do(self)
 
     def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
         """Go to a time that was pointed at."""

@@ -53,6 +53,15 @@ class Subject:
         file = Path(self.wanted.file)
         return (notes_of_file(file),) if file.is_file() else ()
 
+    def stamp(self) -> object:
+        """Return something that changes when there is more to read."""
+        if self.runs:
+            return tuple((run.telemetry.count if self.wanted.telemetry else run.output.length) for run in self.runs)
+        try:
+            return Path(self.wanted.file).stat().st_size
+        except OSError:
+            return None
+
 
 def opening(wanted: Wanted) -> Iterator[Subject]:
     """Open what was asked for; yield what there is of it, soon after the start and then now and then.

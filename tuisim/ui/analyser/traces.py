@@ -35,8 +35,7 @@ class LogTrace(Trace):
         super().__init__(name, number)
         self.on = number < MOST_ON
         self.other_scale = self.other_scale or name.partition(" #")[0].endswith(_ANGLES)
-        self.shift_s = 0.0
-        """Added to its times, so that runs begin at the same event."""
+        self._places: FloatArray | None = None
         self._log = log
         self._series: Series | None = None
         self._pyramid: Pyramid | None = None
@@ -51,16 +50,19 @@ class LogTrace(Trace):
 
     @property
     def pyramid(self) -> Pyramid:
-        """Its finite points, in order of time."""
+        """Its finite points, in the order in which they stand along the chart."""
         if self._pyramid is None:
-            series = self.series
-            self._pyramid = Pyramid(series.time_s + self.shift_s if self.shift_s else series.time_s, series.values)
+            self._pyramid = Pyramid(self.places, self.series.values)
         return self._pyramid
 
-    def shift(self, shift_s: float) -> None:
-        """Put it elsewhere in time."""
-        if shift_s != self.shift_s:
-            self.shift_s, self._pyramid = shift_s, None
+    @property
+    def places(self) -> FloatArray:
+        """Where its samples stand along the chart, shape (n,): their times, unless it was aligned in another way."""
+        return self.series.time_s if self._places is None else self._places
+
+    def align(self, places: FloatArray | None) -> None:
+        """Put its samples elsewhere along the chart; None: at their times."""
+        self._places, self._pyramid = places, None
 
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
         """Choose the points that a chart of that width shows."""

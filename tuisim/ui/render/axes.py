@@ -75,15 +75,15 @@ def row_labels(limits: Limits, rows: int) -> dict[int, str]:
     return {math.floor((high - y) / (high - low) * (rows - 0.25)): label(y, step) for y in positions}
 
 
-def time_axis(limits: Limits, columns: int) -> tuple[str, str]:
-    """Return a horizontal axis in seconds: the line with its ticks, and the labels below, each `columns` long."""
+def time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, str]:
+    """Return a horizontal axis: the line with its ticks, and the labels below, each `columns` long."""
     positions = ticks(limits, max(1, columns // 10))
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
     line, below = ["─"] * columns, [" "] * columns
     free_from = 0
     for at in positions:
         column = column_of(at, limits, columns)
-        text = label(at, step) + (" s" if at == positions[-1] else "")
+        text = label(at, step) + (f" {unit}" if at == positions[-1] else "")
         start = min(max(column - len(text) // 2, 0), columns - len(text))
         line[column] = "┬"
         if start >= free_from:

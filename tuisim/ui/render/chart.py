@@ -43,6 +43,8 @@ class ChartState:
     grey: bool = False
     other_s: float | None = None
     """A second cursor, that the first is measured from."""
+    unit: str = "s"
+    """Of the horizontal axis."""
     marks: bool = False
     """Draw the points as marks, not joined by lines."""
 
@@ -84,7 +86,7 @@ class ChartPainter:
         drawn = traces.drawn()
         if not drawn:
             return ChartPicture((lines + _empty(len(traces) > 0, width, height - len(lines)))[:height], boxes)
-        values = _values_at(drawn, state.cursor_s, width) if state.cursor_s is not None else []
+        values = _values_at(drawn, state.cursor_s, state.unit, width) if state.cursor_s is not None else []
         with_line = height >= 9
         rows = max(height - len(lines) - len(values) - 1 - with_line, 1)
         x_limits = state.x_limits or axes.time_limits(traces.end_s())
@@ -95,7 +97,7 @@ class ChartPainter:
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
         at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
         lines += [scales.framed(row, _with_cursors(self._canvas[row], at)) for row in range(rows)]
-        line, below = axes.time_axis(x_limits, columns)
+        line, below = axes.time_axis(x_limits, columns, state.unit)
         if with_line:
             lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), _AXIS)])
         lines.append([(" " * left + below, _AXIS)])
@@ -229,9 +231,9 @@ def _box_runs(text: str, trace: Trace, selected: bool, grey: bool) -> list[Run]:
     return [(text, color + Style(reverse=True) if selected else color)]
 
 
-def _values_at(drawn: list[Trace], cursor_s: float, width: int) -> list[list[Run]]:
+def _values_at(drawn: list[Trace], cursor_s: float, unit: str, width: int) -> list[list[Run]]:
     """Return the line that says what each trace is at the cursor, as many as there is room for."""
-    line: list[Run] = [(f"{cursor_s:.2f} s", _STRONG)]
+    line: list[Run] = [(f"{cursor_s:.2f} {unit}", _STRONG)]
     used = len(line[0][0])
     for at, trace in enumerate(drawn):
         value = trace.at(cursor_s)

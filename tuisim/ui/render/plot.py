@@ -28,6 +28,8 @@ class Curve:
     rgb: Rgb
     marker: str = BRAILLE
     """`braille`, or one character, for terminals without colours."""
+    rising: bool = True
+    """Whether the times rise, so that points may be left out; a path may go anywhere."""
 
 
 @lru_cache(maxsize=1)
@@ -63,7 +65,9 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
         figure.ruler(axis, 0).lim(*limits)
     figure.plot_size(columns, rows)
     for curve in curves:
-        times_s, values = min_max(curve.times_s, curve.values, x_limits, columns)
+        times_s, values = curve.times_s, curve.values
+        if curve.rising:
+            times_s, values = min_max(times_s, values, x_limits, columns)
         if len(times_s):
             marker = plotext.marker(curve.marker, curve.rgb)
             signal = figure.signal(times_s.tolist(), values.tolist(), marker=marker)

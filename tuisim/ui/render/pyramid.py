@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from tuisim.ui.render.reduce import FloatArray
 
@@ -22,11 +23,15 @@ class Pyramid:
 
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
         good = np.isfinite(values) & np.isfinite(times_s)
+        self._index: npt.NDArray[np.intp] | None = None
+        """Which of the given points each one was, None if all are still where they were."""
         if not good.all():
+            self._index = np.flatnonzero(good)
             times_s, values = times_s[good], values[good]
         if len(times_s) > 1 and (times_s[1:] < times_s[:-1]).any():
             order = np.argsort(times_s, kind="stable")
             times_s, values = times_s[order], values[order]
+            self._index = order if self._index is None else self._index[order]
         self.times_s, self.values = times_s, values
         self._levels: list[tuple[FloatArray, FloatArray]] = []
 
@@ -62,13 +67,11 @@ class Pyramid:
         return self._levels[number]
 
     def nearest(self, time_s: float) -> int:
-        """Return the index of the point nearest to a time; there must be one."""
-        after = int(np.searchsorted(self.times_s, time_s))
-        if after == 0:
-            return 0
-        if after == len(self.times_s):
-            return after - 1
-        return after if self.times_s[after] - time_s < time_s - self.times_s[after - 1] else after - 1
+        """Return which of the given points is nearest to a time; there must be a finite one."""
+        at = int(np.searchsorted(self.times_s, time_s))
+        if at == len(self.times_s) or (at and time_s - self.times_s[at - 1] <= self.times_s[at] - time_s):
+            at -= 1
+        return at if self._index is None else int(self._index[at])
 
     def between(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
         """Return the points of a span, both ends included."""

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.ui.render.pyramid import Pyramid
+from tuisim.ui.render.xy import seen_points, xy_lines
+
+TIMES = np.arange(200_000) / 1000.0
+
+
+@pytest.mark.parametrize("limits", [(0.0, 200.0), (50.0, 150.0), (10.0, 10.05), (-5.0, 500.0)], ids=str)
+def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
+    values = np.sin(TIMES)
+    values[123_456] = 9.0
+    times_s, drawn = Pyramid(TIMES, values).points(limits, 100)
+    inside = (limits[0] <= TIMES) & (limits[1] >= TIMES)
+    assert len(times_s) <= 2 * 16 * 4 * 100 + 4
+    assert drawn.max() >= values[inside].max()
+    assert drawn.min() <= values[inside].min()
+    assert (np.diff(times_s) >= 0).all()
+
+
+def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
+    pyramid = Pyramid(np.array([3.0, 1.0, 2.0, 5.0]), np.array([30.0, 10.0, np.nan, 50.0]))
+    assert pyramid.times_s.tolist() == [1.0, 3.0, 5.0]
+    assert [pyramid.nearest(time_s) for time_s in (-9.0, 1.9, 2.1, 4.1, 99.0)] == [1, 1, 0, 3, 3]
+    assert pyramid.between(1.0, 3.0)[1].tolist() == [10.0, 30.0]
+
+
+def test_no_points_at_all() -> None:
+    assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).points((0.0, 1.0), 10)[0])
+
+
+def test_a_path_keeps_one_point_a_dot() -> None:
+    angles = np.linspace(0.0, 2000 * np.pi, 500_000)
+    xs, ys = seen_points(np.cos(angles), np.sin(angles), ((-1.0, 1.0), (-1.0, 1.0)), 40, 20)
+    assert len(xs) < 2000
+    assert xs.max() > 0.9 and ys.min() < -0.9
+
+
+def test_the_place_that_is_looked_at_is_marked() -> None:
+    xs, ys = np.array([0.0, 5.0, 10.0]), np.array([0.0, 5.0, 10.0])
+    lines = xy_lines(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)
+    text = ["".join(part for part, _ in line) for line in lines]
+    assert len(text) == 12
+    assert "●" in text[1]
+    assert text[0].endswith("x 10  y 10")
