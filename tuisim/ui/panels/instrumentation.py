@@ -14,6 +14,7 @@ from tuisim.core.sensors.color import ColorReading
 from tuisim.ui.cellview import LinesView, Run
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.throttle import Throttle
+from tuisim.ui.verbs import end_label
 
 _PERIOD_S = 0.1
 """Figures that change faster cannot be read."""
@@ -265,7 +266,7 @@ def _clock(now: Snapshot, width: int) -> Line:
 
 
 def _state_word(now: Snapshot) -> str:
-    return now.end.replace("_", " ") if now.state == ENDED and now.end else now.state
+    return end_label(now.end) if now.state == ENDED and now.end else now.state
 
 
 def _state(now: Snapshot, width: int) -> Line:
