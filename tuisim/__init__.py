@@ -9,19 +9,33 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from IPython.core.interactiveshell import InteractiveShell
+
+    from tuisim.api import simulate
     from tuisim.datalog.export import read_log
     from tuisim.datalog.store import load_run
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "load_run", "read_log"]
+__all__ = ["__version__", "load_run", "read_log", "simulate"]
 
-_HOMES = {"load_run": "tuisim.datalog.store", "read_log": "tuisim.datalog.export"}
+_HOMES = {
+    "load_run": "tuisim.datalog.store",
+    "read_log": "tuisim.datalog.export",
+    "simulate": "tuisim.api",
+}
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)
+
+
+def load_ipython_extension(shell: InteractiveShell) -> None:
+    """Give a notebook the magics, `roboSim` and `eds`: what `%load_ext tuisim` calls."""
+    from tuisim.notebook.magics import install
+
+    install(shell)
 
 
 def __dir__() -> list[str]:

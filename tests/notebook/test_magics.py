@@ -1,0 +1,193 @@
+"""Every magic and switch, in a shell."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.notebook.conftest import Cell
+
+LOGGER = """\
+%%sim_magic_preloaded -x 100 --autorun -WH
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+while colorLeft.reflected_light_intensity_pc > 0:
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+tank_drive.off()
+"""
+PLATEAUS = [100.0, 86.27450980392157, 82.74509803921568, 50.19607843137255]
+
+
+def program(words: str, text: str = "print('ran')") -> str:
+    return f"%%sim_magic_preloaded {words}\n{text}\n"
+
+
+def test_the_log_has_the_plateaus_and_adds_up_until_it_is_cleared(cell: Cell) -> None:
+    cell("%sim_magic -b Grey_bands")
+    first = cell(LOGGER)
+    assert first.out.startswith("Colour: 100.0\n")
+    assert not first.bundles
+    once = cell("%sim_data").result
+    assert sorted(once["value"].value_counts().index[:4], reverse=True) == PLATEAUS
+    assert list(once.columns[:4]) == ["index", "variable", "value", "time"]
+    # As in the cell: the magic stands in line 1.
+    assert set(once["line"]) == {4}
+    cell(LOGGER)
+    twice = cell("%sim_data").result
+    assert (len(twice), list(twice["run"].unique())) == (2 * len(once), [1, 2])
+    cell("%sim_data --clear")
+    assert len(cell("%sim_data").result) == 0
+    cell(LOGGER)
+    assert cell("%sim_data").result.equals(once)
+
+
+SHOWS = [
+    ("", "<world,"),
+    ("-A", "<sensor arrays,"),
+    ("--array", "<sensor arrays,"),
+    ("-c", "<chart,"),
+    ("--chart", "<chart,"),
+    ("-i", "Instrumentation\n  LeftMotor"),
+    ("--instrumentation", "Sensor1 (left)   red 100.0 %"),
+    ("-X", "Positioning\n  x        150.0 mm"),
+    ("--positioning", "heading  0.0°"),
+    ("-z -N 7 -M 9", "Noise\n  light  7\n  motor  9"),
+    ("--noisecontrols --sensornoise 8", "light  8"),
+    ("-Z", "mat        Grey_bands"),
+    ("--settings --seed 5", "seed       5"),
+    ("-Z --profile ev3", "profile    ev3"),
+    ("-Z -r Small_Robot", "robot      Small_Robot"),
+    ("-Z -o Wall", "obstacles  1"),
+    ("-X -x 11 -y 22 -a -90", "x        11.0 mm\n  y        22.0 mm\n  heading  -90.0°"),
+    ("-D", "print('ran')"),
+    ("--code", "print('ran')"),
+    ("-O", "ready: -R runs the program"),
+    ("-OAc", "<chart,"),
+    ("-p -P green -C -u -q -F 0.5 -m -S -L", "<world,"),
+    ("--pendown --pencolor orange --clear --ultrasound --quiet --refresh --move --stop --collab", "<world,"),
+    ("-s roboSim", "<world,"),
+]
+
+
+@pytest.mark.parametrize(("words", "seen"), SHOWS, ids=[words or "nothing" for words, _ in SHOWS])
+def test_switch_shows(words: str, seen: str, cell: Cell) -> None:
+    shown = cell(program(f"-b Grey_bands {words}"))
+    assert (shown.err, shown.out) == ("", "")
+    assert seen in shown.plain
+
+
+@pytest.mark.parametrize(
+    ("words", "pictures", "status"),
+    [("-R", 1, True), ("--autorun -W", 0, True), ("-RH", 1, False), ("-RHW", 0, False), ("-OHRA", 2, False)],
+)
+def test_what_is_hidden_is_not_there(words: str, pictures: int, status: bool, cell: Cell) -> None:
+    shown = cell(program(words))
+    assert (shown.out, shown.pictures, "finished · " in shown.plain) == ("ran\n", pictures, status)
+
+
+@pytest.mark.parametrize("words", ["-v", "--preview", "--previewcode"])
+def test_preview_shows_the_program(words: str, cell: Cell) -> None:
+    assert cell(program(words)).out == "print('ran')\n\n"
+
+
+@pytest.mark.parametrize("words", ["-h", "--help"])
+def test_help_tells_every_switch(words: str, cell: Cell) -> None:
+    told = cell(f"%sim_magic {words}").out
+    assert all(flag in told for flag in ("--background", "--collab", "--seed", "-F", "-s NAME"))
+
+
+@pytest.mark.parametrize(
+    ("magic", "text", "out"),
+    [
+        ("sim_magic", "print('tank_drive' in dir())", "False\n"),
+        ("sim_magic_imports", "print('MoveTank' in dir(), 'tank_drive' in dir())", "True False\n"),
+        ("sim_magic_preloaded", "print('MoveTank' in dir(), 'tank_drive' in dir())", "True True\n"),
+    ],
+)
+def test_each_magic_gives_its_names(magic: str, text: str, out: str, cell: Cell) -> None:
+    assert cell(f"%%{magic} -R\n{text}\n").out == out
+
+
+def test_the_program_of_the_cell_before_is_run(cell: Cell) -> None:
+    assert cell(program("")).out == ""
+    assert cell("%sim_magic -RW").out == "ran\n"
+
+
+def test_a_simulator_can_run_all_cells_at_once(cell: Cell) -> None:
+    cell("get_ipython().magics_manager")
+    cell("from tuisim.notebook.magics import roboSim\nroboSim.autorun = True")
+    assert cell(program("")).out == "ran\n"
+    assert cell("%sim_magic -x 10").out == ""
+
+
+MISTAKES = [
+    ("-Y", "no such switch or argument: -Y"),
+    ("-b Nope", "no such mat 'Nope'"),
+    ("-r Nope", "Nope"),
+    ("-o Nope", "Nope"),
+    ("-x far", "-x: must be a number"),
+    ("-N 300", "-N: must be a whole number from 0 to 128"),
+    ("-P greenish", "no such colour 'greenish'"),
+    ("--profile Nope", "Nope"),
+    ("-s nobody", "-s: no simulator 'nobody'"),
+    ("-F 0", "-F: must be a number"),
+    ("'", "cannot be split into words"),
+]
+
+
+@pytest.mark.parametrize(("words", "told"), MISTAKES, ids=[words for words, _ in MISTAKES])
+def test_a_mistake_is_one_line_and_changes_nothing(words: str, told: str, cell: Cell) -> None:
+    cell(program("-b Grey_bands -x 300"))
+    before = cell("%sim_robot_state").result
+    shown = cell(program(f"-R -y 77 {words}", "print('never')"))
+    assert (shown.out, shown.bundles) == ("", ())
+    assert shown.err.startswith("tuisim: ")
+    assert told in shown.err
+    assert shown.err.count("\n") == 1
+    assert cell("%sim_robot_state").result == before
+    assert cell("%sim_magic -RW").out == "ran\n"
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["%sim_magic -R", "%sim_data -x", "%sim_image_pair", "%sim_bw_image_data -i 3", "%sim_robot_state now"],
+)
+def test_other_magics_tell_mistakes_in_one_line(line: str, cell: Cell) -> None:
+    shown = cell(line)
+    assert shown.err.startswith("tuisim: ")
+    assert shown.err.count("\n") == 1
+
+
+def test_a_new_mat_brings_its_own_start(cell: Cell) -> None:
+    cell("%sim_magic -b Grey_bands -x 700")
+    assert cell("%sim_robot_state").result["x_mm"] == 700
+    cell("%sim_magic -W")
+    assert cell("%sim_robot_state").result["x_mm"] == 700
+    cell("%sim_magic -b Grey_bands")
+    assert cell("%sim_robot_state").result["x_mm"] == 150
+
+
+def test_an_error_of_the_program_shows_its_own_line(cell: Cell) -> None:
+    shown = cell(program("-RW", "print('Colour: 1')\n1 / 0"))
+    assert "line 3, in <module>" in shown.err
+    assert "ZeroDivisionError" in shown.err
+    assert "raised" in shown.plain
+    assert len(cell("%sim_data").result) == 1
+
+
+def test_pixel_arrays_are_frames_and_pictures(cell: Cell) -> None:
+    cell(program("-b Grey_bands -x 1520 -RW", "print('image_data both')\nprint('image_data left')"))
+    frame = cell("from tuisim.notebook import eds\nfrom tuisim.notebook.magics import roboSim\nroboSim.image_data()")
+    assert list(frame.result.side) == ["left", "right", "left"]
+    assert {len(vals) for vals in frame.result.vals} == {1600}
+    assert cell("%sim_image_pair").pictures == 2
+    dark = cell("%sim_bw_image_data -i 0").result
+    # The disc lies on the black band: its 305 pixels are dark, the corners are not.
+    assert (dark.shape, int(dark.to_numpy().sum())) == ((20, 20), 305)
+
+
+def test_a_responder_hears_what_is_meant_for_it(cell: Cell) -> None:
+    cell("from tuisim.notebook.magics import roboSim\nheard = []\nroboSim.responder = heard.append")
+    text = "print('PY::hello')\nprint('other')\nprint('IMG_DATA left')"
+    cell(program("-RW", text))
+    assert cell("heard").result == []
+    cell(program("-RWL", text))
+    assert cell("heard").result == ["hello", "IMG_DATA left"]

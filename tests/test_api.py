@@ -1,0 +1,66 @@
+"""Runs from scripts: `tuisim.simulate`."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+import tuisim
+from tests.conftest import ROOT
+from tuisim.errors import ConfigError
+
+LOGGER = """\
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+while colorLeft.reflected_light_intensity_pc > 0:
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+tank_drive.off()
+"""
+
+
+def test_a_run_has_samples_telemetry_output_and_a_picture() -> None:
+    run = tuisim.simulate(LOGGER, background="Grey_bands", x=100, pendown=True)
+    assert run.state == "finished"
+    assert len(run.samples) == run.output.count("Colour: ") > 100
+    assert run.telemetry["x_mm"].iloc[0] == 100
+    assert run.time_s == pytest.approx(run.telemetry["time"].iloc[-1])
+    picture = run.picture()
+    assert picture.size == (787, 381)
+    # The pen is red, and nothing on this mat is.
+    assert (255, 0, 0) in {color for _, color in picture.getcolors(1 << 20)}
+
+
+def test_same_seed_same_frames() -> None:
+    first, second, other = (
+        tuisim.simulate(LOGGER, background="Grey_bands", sensornoise=20, seed=seed).samples for seed in (3, 3, 4)
+    )
+    assert first.equals(second)
+    assert not first.equals(other)
+
+
+def test_an_error_of_the_program_is_in_the_run() -> None:
+    run = tuisim.simulate("x = 1\n1 / 0\n")
+    assert (run.state, "ZeroDivisionError" in run.error) == ("raised", True)
+
+
+@pytest.mark.parametrize(
+    ("choices", "told"),
+    [
+        pytest.param({"backgrond": "Loop"}, "did you mean background", id="unknown argument"),
+        pytest.param({"background": "Nope"}, "no such mat", id="unknown mat"),
+        pytest.param({"x": "far"}, "x: must be a number", id="no number"),
+        pytest.param({"pendown": 1}, "must be True or False", id="no truth value"),
+        pytest.param({"timeout_s": 0}, "must be above 0", id="no time"),
+    ],
+)
+def test_bad_choices_are_refused(choices: dict[str, Any], told: str) -> None:
+    with pytest.raises(ConfigError, match=told):
+        tuisim.simulate(LOGGER, **choices)
+
+
+def test_import_loads_next_to_nothing() -> None:
+    program = "import sys; before = set(sys.modules); import tuisim; print(*(set(sys.modules) - before))"
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.host"} & set(done.stdout.split())

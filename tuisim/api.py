@@ -1,0 +1,161 @@
+"""Runs from scripts and notebooks: `simulate` starts a program and returns what it did."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.config import build_run_spec
+from tuisim.datalog.records import STDOUT
+from tuisim.datalog.runfile import StoredRun
+from tuisim.datalog.store import RunStore
+from tuisim.datalog.views import TickRecord
+from tuisim.errors import ConfigError
+from tuisim.host import Program, RunOptions, start_run
+from tuisim.programfile import ProgramSource, program_of_text, read_program
+from tuisim.switches import SWITCHES, Switch, nearest, settings_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from PIL.Image import Image
+
+NS_PER_S = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedRun:
+    """A run that is over."""
+
+    stored: StoredRun
+    """The run as it is kept in the store."""
+
+    @property
+    def state(self) -> str:
+        """How it ended: finished, raised, stopped, time_limit …"""
+        return self.stored.state
+
+    @property
+    def error(self) -> str:
+        """The program's own traceback, empty if there is none."""
+        return self.stored.end.error if self.stored.end else ""
+
+    @property
+    def time_s(self) -> float:
+        """Simulated seconds that it took."""
+        return self.stored.end.time_ns / NS_PER_S if self.stored.end else 0.0
+
+    @property
+    def output(self) -> str:
+        """What the program printed."""
+        return "".join(row.text + "\n" for row in self.stored.output.rows() if row.stream == STDOUT)
+
+    @property
+    def samples(self) -> pd.DataFrame:
+        """One row a printed `NAME: number`; columns as in `datalog.frames.SAMPLE_COLUMNS`."""
+        from tuisim.datalog.frames import samples_frame
+
+        return samples_frame([self.stored])
+
+    @property
+    def telemetry(self) -> pd.DataFrame:
+        """One row a tick; times in s, lengths in mm, angles in degrees."""
+        from tuisim.datalog.frames import telemetry_frame
+
+        return telemetry_frame(self.stored)
+
+    def picture(self) -> Image:
+        """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
+        from tuisim.datalog.mats import mat_files
+        from tuisim.fields import mat_pixels
+        from tuisim.figures import world_picture
+
+        return world_picture(self.stored.spec, mat_pixels(mat_files(self.stored)), records_of(self.stored))
+
+
+def records_of(run: StoredRun) -> list[TickRecord]:
+    """Return the telemetry of a run so far."""
+    return [TickRecord(*row) for row in run.telemetry.array().tolist()]
+
+
+def _by_name() -> dict[str, Switch]:
+    """Every switch that takes part in a run, by its long names."""
+    return {
+        flag.lstrip("-").replace("-", "_"): switch
+        for switch in SWITCHES
+        if not switch.panel and switch.group != "app"
+        for flag in switch.flags
+        if flag.startswith("--")
+    }
+
+
+def choices_of(choices: Mapping[str, Any]) -> dict[str, Any]:
+    """Return keyword arguments as fields of `Settings`.
+
+    Args:
+        choices: By the long name of a switch, such as `background` or `x`; None is left out.
+
+    Raises:
+        ConfigError: there is no such switch, or its value is wrong.
+    """
+    known, found = _by_name(), {}
+    for name, value in choices.items():
+        if name not in known:
+            raise ConfigError(f"no such argument {name!r}", nearest(name, known))
+        switch = known[name]
+        if value is None:
+            continue
+        if switch.convert is None:
+            if not isinstance(value, bool):
+                raise ConfigError(f"must be True or False, got {value!r}", key=name)
+            found[switch.field] = switch.value if value else not switch.value
+        else:
+            text = ("on" if value else "off") if isinstance(value, bool) else str(value)
+            found[switch.field] = switch.convert(text, name)
+    return found
+
+
+def _source(program: str | Path) -> ProgramSource:
+    if isinstance(program, str) and "\n" in program:
+        return program_of_text(program, None, "program")
+    path = Path(program)
+    if path.parent == Path() and not path.exists():
+        from tuisim.assets import programs_folder
+
+        for name in (path.name, f"{path.name}.py"):
+            if (example := programs_folder() / name).is_file():
+                return read_program(example)
+    return read_program(path)
+
+
+def simulate(
+    program: str | Path, *, answers: tuple[str, ...] = (), timeout_s: float = 600.0, **choices: Any
+) -> SimulatedRun:
+    """Run a program to its end, as fast as possible, and return what it did.
+
+    An exception of the program is no exception here: see `state` and `error`.
+
+    Args:
+        program: A file, the name of an example, or a text of several lines.
+        answers: What `input()` returns, one after another.
+        timeout_s: Simulated seconds allowed.
+        choices: Switches by their long names: `background="Grey_bands", x=100, seed=7`.
+
+    Raises:
+        ConfigError: program, magic line or a choice is wrong; nothing was run.
+        KeyboardInterrupt: ctrl-C; the run has been stopped, and what it logged is stored.
+    """
+    if not timeout_s > 0:
+        raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
+    source = _source(program)
+    settings = settings_of(source.switches, choices_of(choices))
+    started = Program(source.name, source.text, settings.preload or source.prelude, source.path)
+    store = RunStore()
+    options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
+    handle = start_run(started, build_run_spec(settings), options, store)
+    try:
+        handle.wait()
+    finally:
+        handle.close()
+    return SimulatedRun(store.load_run(handle.run_id))

@@ -1,0 +1,128 @@
+"""What the runs of a notebook logged, as frames and pictures."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from tuisim.core.field import Field
+from tuisim.core.sensors.color import pixel_array
+from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
+from tuisim.datalog.mats import open_mat
+from tuisim.datalog.records import STDOUT
+from tuisim.datalog.runfile import StoredRun
+from tuisim.datalog.views import TickRecord, instant_of
+from tuisim.errors import LogError
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from PIL.Image import Image
+
+_IMAGE_LINE = re.compile(r"(?:IMG_DATA|image_data):?\s+(left|right|both)\s*")
+
+IMAGE_COLUMNS = ("side", "vals", "clock", "run")
+"""Columns of the frame of pixel arrays."""
+
+
+def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
+    """Return the samples of runs as one long frame, see `datalog.frames.samples_frame`."""
+    from tuisim.datalog.frames import samples_frame
+
+    return samples_frame(log)
+
+
+def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
+    """Return the pixel arrays that programs asked for with `print('image_data left|right|both')`.
+
+    Columns: `side`; `vals`, the bytes of an RGBA picture, row by row, as a list of whole
+    numbers; `clock` in simulated seconds; `run`, from 1.
+
+    Raises:
+        LogError: a recording is damaged, or its mat is gone.
+    """
+    import pandas as pd
+
+    rows = [
+        (sensor.name, list(rgba), time_s, ordinal)
+        for ordinal, run in enumerate(log, 1)
+        for sensor, rgba, time_s in _logged_arrays(run)
+    ]
+    return pd.DataFrame(rows, columns=list(IMAGE_COLUMNS))
+
+
+def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, float]]:
+    field: Field | None = None
+    for row in run.output.rows():
+        asked = _IMAGE_LINE.fullmatch(row.text) if row.stream == STDOUT else None
+        if asked is None or row.tick >= run.telemetry.count:
+            continue
+        field = field or open_mat(run)
+        record = run.telemetry.record(row.tick)
+        for sensor, pixels in arrays_at(run.spec, record, run.noise_at(record), field):
+            if asked[1] in (sensor.name, "both"):
+                yield sensor, with_alpha(pixels), row.time_ns / 1e9
+
+
+def arrays_at(spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field) -> list[tuple[ColorSensorSpec, bytes]]:
+    """Return what the colour sensors saw at a tick: RGB bytes, row by row."""
+    instant = instant_of(record, spec, noise)
+    return [(sensor, pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors]
+
+
+def with_alpha(rgb: bytes) -> bytes:
+    """Return RGB bytes as RGBA, all opaque."""
+    return b"".join(rgb[at : at + 3] + b"\xff" for at in range(0, len(rgb), 3))
+
+
+def picture_of(vals: Iterable[int]) -> Image:
+    """Return the picture of one row's `vals`.
+
+    Raises:
+        LogError: it is not the bytes of a square RGBA picture.
+    """
+    from PIL import Image
+
+    data = bytes(vals)
+    side = round((len(data) / 4) ** 0.5)
+    if side * side * 4 != len(data) or not side:
+        raise LogError(f"{len(data)} numbers are no square picture of 4 numbers a pixel")
+    return Image.frombytes("RGBA", (side, side), data)
+
+
+def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
+    """Return the pictures of left and right that were logged at one moment.
+
+    Args:
+        frame: As from `get_image_data_from_datalog`.
+        index: Which moment, from 0; -1 is the last.
+
+    Raises:
+        LogError: there is no such moment.
+    """
+    moments = frame[["run", "clock"]].drop_duplicates().to_numpy()
+    if not -len(moments) <= index < len(moments):
+        raise LogError(f"no pixel arrays {index}", f"{len(moments)} are logged; print('image_data both') logs more")
+    run, clock = moments[index]
+    here = frame[(frame.run == run) & (frame.clock == clock)].drop_duplicates("side")
+    return [picture_of(vals) for vals in here.vals]
+
+
+def bw_image_data(frame: pd.DataFrame, index: int = -1, threshold: int = 127) -> pd.DataFrame:
+    """Return one logged picture in black and white: a row a pixel row, 1 is dark.
+
+    Args:
+        frame: As from `get_image_data_from_datalog`.
+        index: Row of the frame, from 0; -1 is the last.
+        threshold: The lightest grey, 0 … 255, that counts as dark.
+
+    Raises:
+        LogError: there is no such row.
+    """
+    import numpy as np
+    import pandas as pd
+
+    if not -len(frame) <= index < len(frame):
+        raise LogError(f"no pixel array {index}", f"{len(frame)} are logged; print('image_data both') logs more")
+    grey = np.asarray(picture_of(frame.vals.iloc[index]).convert("L"))
+    return pd.DataFrame((grey <= threshold).astype(int))

@@ -1,0 +1,159 @@
+"""What a cell shows: pictures and tables that change while the program runs, and stay when it is over."""
+
+from __future__ import annotations
+
+import html
+import io
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from IPython.display import DisplayHandle, display
+
+from tuisim.core.sensors import mounted
+from tuisim.core.sensors.color import ColorReading
+from tuisim.core.spec import RunSpec
+from tuisim.datalog.records import OutputRow
+from tuisim.datalog.samples import samples_of
+from tuisim.datalog.views import TickRecord, instant_of
+from tuisim.fields import FieldFiles, mat_pixels, open_field
+from tuisim.figures import arrays_picture, chart_picture, world_picture
+from tuisim.notebook.eds import arrays_at
+from tuisim.switches import Settings
+
+_LEFT_RIGHT = ("left", "right")
+
+Row = tuple[str, str]
+
+
+def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
+    """Return a Pillow image as what a cell shows."""
+    png = io.BytesIO()
+    picture.save(png, "PNG")
+    return {"image/png": png.getvalue(), "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>"}
+
+
+def table_bundle(title: str, rows: Sequence[Row]) -> dict[str, Any]:
+    """Return rows of name and value as what a cell shows."""
+    wide = max((len(name) for name, _ in rows), default=0)
+    plain = "\n".join([title, *(f"  {name:<{wide}}  {value}" for name, value in rows)])
+    cells = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in rows)
+    return {"text/plain": plain, "text/html": f"<table><caption>{html.escape(title)}</caption>{cells}</table>"}
+
+
+def _reading(name: str, values: dict[str, float]) -> str:
+    if f"{name}_red" in values:
+        seen = ColorReading(*(values[f"{name}_{channel}"] for channel in ("red", "green", "blue")))
+        return f"red {seen.red_percent:.1f} %, mean {seen.mean_percent:.1f} %, rgb {seen.rgb}, {seen.name}"
+    return ", ".join(f"{value:g}" for column, value in values.items() if column.startswith(name))
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What there is to show."""
+
+    spec: RunSpec
+    files: FieldFiles
+    text: str
+    """The program."""
+    records: Sequence[TickRecord] = ()
+    """The telemetry so far; none: nothing has run yet."""
+    output: Sequence[OutputRow] = ()
+
+    @property
+    def last(self) -> TickRecord:
+        """The moment that is shown."""
+        start = self.spec.world.start
+        return (
+            self.records[-1] if self.records else TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, *[0] * 7)
+        )
+
+
+def instrumentation(scene: Scene) -> list[Row]:
+    """Return motors, sensors and pose at the scene's moment."""
+    spec, record, field = scene.spec, scene.last, open_field(scene.files)
+    instant = instant_of(record, spec, spec.world.noise)
+    rows = [
+        ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
+        ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
+    ]
+    for kind, sensor in mounted(spec.robot):
+        values = dict(zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True))
+        name = getattr(sensor, "name", "gyro")
+        shown = f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})" if name in _LEFT_RIGHT else name.capitalize()
+        rows.append((shown, _reading(name, values)))
+    return [*rows, ("Clock", f"{record.tick / spec.profile.tick_hz:.2f} s")]
+
+
+def _positioning(scene: Scene) -> list[Row]:
+    pose = scene.last.pose
+    return [("x", f"{pose.x_mm:.1f} mm"), ("y", f"{pose.y_mm:.1f} mm"), ("heading", f"{pose.heading_deg:.1f}°")]
+
+
+def _noise(scene: Scene) -> list[Row]:
+    noise = scene.spec.world.noise
+    return [("light", str(noise.light)), ("motor", str(noise.motor))]
+
+
+def _settings(scene: Scene) -> list[Row]:
+    spec = scene.spec
+    world, names = spec.world, (spec.robot.name, spec.profile.name)
+    what = ("robot", "profile", "mat", "obstacles", "seed")
+    return list(zip(what, (*names, world.background, str(len(world.obstacles)), str(spec.seed)), strict=True))
+
+
+def _code(scene: Scene) -> list[Row]:
+    return [(str(number), line) for number, line in enumerate(scene.text.splitlines(), 1)]
+
+
+_TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
+    "instrumentation": instrumentation,
+    "positioning": _positioning,
+    "noise": _noise,
+    "settings": _settings,
+    "code": _code,
+}
+"""By panel, what its table shows."""
+
+
+class Stage:
+    """The panels of one cell, each a display that is drawn anew in its place.
+
+    Args:
+        settings: Which panels are on and off.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._handles: dict[str, DisplayHandle] = {}
+
+    def _put(self, panel: str, bundle: dict[str, Any]) -> None:
+        if panel in self._handles:
+            self._handles[panel].update(bundle, raw=True)
+        else:
+            handle = display(bundle, raw=True, display_id=True)
+            # Outside a notebook nothing can be drawn anew: the first drawing is what there is.
+            if handle is not None:
+                self._handles[panel] = handle
+
+    def show(self, scene: Scene, status: str) -> None:
+        """Draw all panels.
+
+        Args:
+            scene: What there is to show.
+            status: One line about the run.
+        """
+        on, off, spec = self._settings.panels_on, self._settings.panels_off, scene.spec
+        if "world" not in off:
+            picture = world_picture(spec, mat_pixels(scene.files), scene.records, rays=self._settings.rays)
+            self._put("world", picture_bundle(picture, "world"))
+        if "arrays" in on:
+            arrays = arrays_at(spec, scene.last, spec.world.noise, open_field(scene.files))
+            self._put("arrays", picture_bundle(arrays_picture(arrays), "sensor arrays"))
+        if "chart" in on:
+            self._put("chart", picture_bundle(chart_picture(samples_of(scene.output)), "chart"))
+        for panel, rows in _TABLES.items():
+            if panel in on:
+                self._put(panel, table_bundle(panel.capitalize(), rows(scene)))
+        if "controls" not in off:
+            self._put("controls", {"text/plain": status})
