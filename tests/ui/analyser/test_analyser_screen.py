@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from textual.command import CommandPalette
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.ui.app_help import LOGS, program, until
+from tests.ui.app_help import LOGS, program, ready, until
 from tuisim.config import build_run_spec
 from tuisim.core.spec import NoiseSpec
+from tuisim.datalog.export import read_log
 from tuisim.datalog.notes import NOTES_FILE, read_notes
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
@@ -24,6 +26,8 @@ from tuisim.ui.analyser.app import AnalyserApp
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.screen import Analyser
 from tuisim.ui.analyser.subject import Wanted
+from tuisim.ui.app import Lab
+from tuisim.ui.session import AppSettings
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
 
@@ -182,6 +186,37 @@ async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path
     async with app.run_test() as pilot:
         await until(pilot, lambda: app.failure is not None)
     assert isinstance(app.failure, LogError)
+
+
+async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
+    spec = build_run_spec(Settings(background="Grey_bands"))
+    async with Lab(AppSettings(spec=spec, program=program(LOGS))).run_test(size=(120, 40)) as pilot:
+        lab = await ready(pilot)
+        below, pose = lab.screen, lab.bridge.snapshot().instant.pose
+        analyser = Analyser(Wanted(runs=(run.id,)))
+        await lab.push_screen(analyser)
+        await until(pilot, lambda: analyser.model is not None)
+        await pilot.press("j", "d", "c", "left", "shift+up")
+        assert lab.screen is analyser
+        assert lab.bridge.snapshot().instant.pose == pose
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(lab.screen, CommandPalette))
+        await pilot.press("escape")
+        await until(pilot, lambda: lab.screen is analyser)
+        await pilot.press("q")
+        await until(pilot, lambda: lab.screen is below)
+
+
+async def test_the_rows_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
+    file = tmp_path / "rows.parquet"
+    async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        _, model = await opened(pilot)
+        await typed(pilot, "F", "=value<60", "enter", "h", "e", f"={file}", "enter")
+        await until(pilot, file.exists)
+        frame = read_log(file)
+        assert len(frame) == len(model.rows) < model.log.rows
+        assert list(frame.columns) == model.rows.columns
+        assert frame["value"].max() < 60
 
 
 def test_keys_are_told_apart() -> None:

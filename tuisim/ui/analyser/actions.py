@@ -88,6 +88,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("copy", "y", "y", "Copy the value", LOG, tabling.copy_value, "copy"),
         Action("copy-row", "Y", "Y", "Copy the row", LOG, tabling.copy_row),
         Action("copy-pane", "ctrl+y", "ctrl+y", "Copy the table as shown, or the pane", LOG, tabling.copy_pane),
+        Action("export", "e", "e", "Export the rows and columns as shown", LOG, tabling.ask_export, "export"),
         Action("delete-note", "delete", "delete", "Delete the chosen note", LOG, noting.delete),
         Action("telemetry", "T", "T", "What every tick recorded, or what was printed", LOG,
                 doing.telemetry, of_rows=False),

@@ -46,7 +46,8 @@ class Model:
         self.rows = Rows(subject.log)
         self.traces = LogTraces(subject.log)
         names = subject.log.names
-        self.selected: str = names[0] if names else ""
+        ticked = self.traces.ticked()
+        self.selected: str = ticked[0].name if ticked else ""
         """Variable whose samples the cursor goes along."""
         self.row: int = 0
         """Row of the table that everything shows."""
@@ -160,6 +161,10 @@ class Model:
             if trace.name in self.traces:
                 self.traces.named(trace.name).on = trace.on
         self.rows.take_over(other.rows)
+        if other.alignment != TIME:
+            limits = self.limits
+            self.align(other.alignment)
+            self.limits, self.mark_s = limits, other.mark_s
 
     def go_to_row(self, row: int) -> None:
         """Go to a row of the table, the nearest there is."""

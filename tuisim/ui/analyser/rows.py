@@ -14,6 +14,8 @@ from tuisim.errors import LogError
 if TYPE_CHECKING:
     from datetime import timedelta
 
+    import pyarrow as pa
+
     from tuisim.datalog.arrays import IntArray
     from tuisim.datalog.opening import Log
 
@@ -101,6 +103,11 @@ class Rows:
     def text(self, row: int, column: str) -> str:
         """Return a cell as text."""
         return text_of(self._log.table.column(column)[row].as_py())
+
+    def shown(self) -> pa.Table:
+        """Return what is shown as a table of its own."""
+        table = self._log.table.select(self.columns)
+        return table if self._order is None else table.take(self._order)
 
     # Which rows, in which order
 

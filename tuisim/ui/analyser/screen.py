@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from time import monotonic
 from typing import ClassVar
 
@@ -13,7 +14,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.command import Provider
 from textual.containers import Horizontal, Vertical
-from textual.screen import Screen
+from textual.screen import ModalScreen
 
 from tuisim.errors import TuisimError
 from tuisim.ui.analyser.actions import ACTIONS
@@ -39,8 +40,8 @@ def _palette() -> type[Provider]:
     return AnalyserActions
 
 
-class Analyser(Screen[None]):
-    """One log, looked at from all sides.
+class Analyser(ModalScreen[None]):
+    """One log, looked at from all sides. Modal, so that no key of the lab below it works here.
 
     Args:
         wanted: What to open.
@@ -54,7 +55,8 @@ class Analyser(Screen[None]):
     """
     COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {_palette}
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()
+        Binding("ctrl+p", "app.command_palette", "Command palette", show=False),
+        *(Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()),
     ]
 
     def __init__(self, wanted: Wanted) -> None:
@@ -277,6 +279,29 @@ class Analyser(Screen[None]):
     def say(self, text: str) -> None:
         """Show a short notice."""
         self.notify(text, timeout=3, markup=False)
+
+    def export(self, path: Path) -> None:
+        """Write the rows and columns that are shown to a file.
+
+        Raises:
+            ExportError: the file cannot be written.
+        """
+        from tuisim.datalog.export import check_target
+
+        if self.model is not None:
+            target = check_target(path)
+            self.run_worker(partial(self._write, self.model, target), thread=True, group="export")
+
+    def _write(self, model: Model, target: Path) -> None:
+        from tuisim.datalog.export import export_frame
+
+        try:
+            frame = model.rows.shown().to_pandas()
+            export_frame(frame, target, {**model.log.metadata, "columns": list(frame.columns)})
+        except TuisimError as error:
+            self.app.call_from_thread(self.complain, error)
+        else:
+            self.app.call_from_thread(self.say, f"The rows as shown are in {target}")
 
     def complain(self, error: TuisimError) -> None:
         """Show an error."""

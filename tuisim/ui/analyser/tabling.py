@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.errors import LogError
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 MOST_COPIED = 10_000
 """Rows: terminals drop what is much longer."""
 
+_FILES = (("rows.csv", "text"), (".parquet .arrow .jsonl", "the same with all types and what the log says of its runs"))
 _FILTERS = (
     ("value > 50", "the rows in which that holds; < <= > >= == !="),
     ("variable ~ col", "those with that in their text"),
@@ -115,6 +117,17 @@ def freeze(screen: Analyser) -> None:
     if screen.model is not None:
         screen.model.rows.freeze()
         screen.update()
+
+
+def ask_export(screen: Analyser) -> None:
+    """Ask for the file that the rows and columns that are shown are written to."""
+
+    def go(text: str) -> None:
+        if not text:
+            raise LogError("which file?", "such as rows.csv")
+        screen.export(Path(text).expanduser())
+
+    screen.app.push_screen(Asking("Export the rows as shown", go, "rows.csv", _FILES))
 
 
 def copy_value(screen: Analyser) -> None:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 MOST_ON = 4
 """So many variables are ticked at first."""
+_LIGHT = "_red"
+"""End of the names of what a colour sensor measures in red light."""
 _ANGLES = ("_deg", "_mm", "_dps")
 """Ends of names whose values do not fit the scale of light."""
 
@@ -100,7 +102,14 @@ class LogTraces(Traces):
     def __init__(self, log: Log) -> None:
         super().__init__()
         self._all = [LogTrace(log, name, number) for number, name in enumerate(log.names)]
+        self._tick_light()
         self._by_log_name = {trace.name: trace for trace in self._all}
+
+    def _tick_light(self) -> None:
+        """Of the many columns of a recording, what colour sensors saw says most."""
+        light = [trace for trace in self._all if trace.name.endswith(_LIGHT)]
+        for trace in self._all:
+            trace.on = trace in light[:MOST_ON] if light else trace.on
 
     def __iter__(self) -> Iterator[LogTrace]:
         return iter(self._all)
