@@ -49,7 +49,11 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
         run: The run; one that was cut off is compared up to its last record, unless it is known where.
         again: Its re-run.
     """
-    return diff_runs(run, again, prefix=run.state in CUT_OFF and not _stopped_by_itself(run))
+    if not _stopped_by_itself(run):
+        return diff_runs(run, again, prefix=run.state in CUT_OFF)
+    whole = diff_runs(run, again)
+    # How far threads get in the time that they have for cleaning up is a matter of the real clock.
+    return whole if whole.same else diff_runs(run, again, prefix=True, until=_stop_tick(run))
 
 
 def _stopped_by_itself(run: StoredRun) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from itertools import zip_longest
+from itertools import takewhile, zip_longest
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.spec import to_plain
@@ -86,13 +86,14 @@ class RunDiff:
         return {"same": self.same, **asdict(self)}
 
 
-def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False) -> RunDiff:
+def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, until: int | None = None) -> RunDiff:
     """Compare two runs.
 
     Args:
         first: One run.
         second: The other.
         prefix: The first run was cut off: what the second did after its last record does not count.
+        until: Last tick that counts, None for all.
 
     Raises:
         LogError: a recording is damaged.
@@ -100,6 +101,8 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False) -> R
     one, two = first.telemetry.array(), second.telemetry.array()
     hz = (first.spec.profile.tick_hz, second.spec.profile.tick_hz)
     by_time = hz[0] != hz[1]
+    if until is not None:
+        one, two = one[: until + 1], two[: until + 1]
     if prefix:
         two = two[: len(one)]
     old, new = first.program.text.splitlines(), second.program.text.splitlines()
@@ -110,8 +113,8 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False) -> R
         by_time=by_time,
         tick=None if by_time else first_tick(one, two, hz[0]),
         line=None if by_time else _first_line(one, two, hz[0]),
-        output=_first_row(_rows(first.output.rows()), _rows(second.output.rows()), prefix),
-        sample=_first_row(_samples(first), _samples(second), prefix),
+        output=_first_row(_rows(first, until), _rows(second, until), prefix),
+        sample=_first_row(_samples(first, until), _samples(second, until), prefix),
         divergence=divergence(one, two, hz) if len(one) and len(two) else None,
     )
 
@@ -180,13 +183,18 @@ _Row = tuple[Any, str, float]
 """What is compared, how it is shown, when it came in s."""
 
 
-def _rows(rows: Iterator[OutputRow]) -> Iterator[_Row]:
-    for row in rows:
+def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
+    # What came at the last tick itself may have come after what ended there.
+    return takewhile(lambda row: until is None or row.tick < until, run.output.rows())
+
+
+def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for row in _written(run, until):
         yield row, row.text, row.time_ns / 1e9
 
 
-def _samples(run: StoredRun) -> Iterator[_Row]:
-    for sample in samples_of(run.output.rows()):
+def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for sample in samples_of(_written(run, until)):
         yield (sample.name, sample.value, sample.time_s), f"{sample.name}: {sample.value:g}", sample.time_ns / 1e9
 
 
