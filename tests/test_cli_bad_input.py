@@ -16,7 +16,7 @@ BAD = {
     "no program": ("run", "no program is named (tuisim run PROGRAM…)"),
     "directory as program": ("run .", "is a directory, not a program"),
     "binary as program": ("run binary.py", "is not Python text"),
-    "notebook as program": ("run book.ipynb", "is a notebook"),
+    "notebook as program": ("run book.ipynb", "is no notebook"),
     "wrong magic": ("run magic.py", "magic.py, line 1: -x: must be a number"),
     "unknown mat": ("run prog.py -b Grey_band", "no such mat 'Grey_band' (did you mean Grey_bands?"),
     "unknown robot": ("run prog.py -r Smal_Robot", "no such robot 'Smal_Robot' (did you mean Small_Robot"),

@@ -74,8 +74,12 @@ def _parser(command: str) -> SwitchParser:
 
 def _open(arguments: Namespace) -> int:
     """Start the app."""
+    from tuisim.commands.notebooks import print_list, to_list
     from tuisim.commands.prepare import prepare_app, prepare_replay
 
+    if listed := to_list(arguments.words):
+        print_list(arguments.words[0], listed)
+        return 0
     replay = None
     if arguments.run is None:
         prepared = prepare_app(arguments.words, arguments)

@@ -17,6 +17,7 @@ from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
 from tuisim.host import Program
+from tuisim.notebook.reading import chosen_programs, is_notebook
 from tuisim.programfile import ProgramSource, read_program
 from tuisim.switches import Settings, given, settings_of
 
@@ -64,8 +65,11 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -
     if word is None:
         settings = settings_of(in_world, given(arguments))
         return Prepared(None, settings, build_run_spec(settings), world)
-    file = read_program(_find(word))
-    settings = settings_of(file.switches, in_world, given(arguments))
+    return _of_source(read_program(_find(word)), world, arguments)
+
+
+def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
+    settings = settings_of(file.switches, world.settings if world else {}, given(arguments))
     return Prepared(_program(file, settings), settings, build_run_spec(settings), world)
 
 
@@ -88,6 +92,8 @@ def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
     if len(programs) > 1:
         raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
     word = programs[0] if programs else world.program if world else None
+    if word is not None and is_notebook(word):
+        return _of_source(chosen_programs(word)[0].source, world, arguments)
     return _prepared(word, world, arguments)
 
 
@@ -130,4 +136,10 @@ def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared]:
     if not programs:
         where = f"{world.path} names no program" if world else "no program is named"
         raise ConfigError(where, "tuisim run PROGRAM…")
-    return [_prepared(word, world, arguments) for word in programs]
+    prepared: list[Prepared] = []
+    for word in programs:
+        if is_notebook(word):
+            prepared += [_of_source(program.source, world, arguments) for program in chosen_programs(word)]
+        else:
+            prepared.append(_prepared(word, world, arguments))
+    return prepared

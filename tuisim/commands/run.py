@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from tuisim.commands import outcome
 from tuisim.commands.breaks import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
 from tuisim.commands.follow import Follower
+from tuisim.commands.notebooks import print_list, print_results, to_list
 from tuisim.commands.prepare import Prepared, prepare_runs
 from tuisim.commands.press import parse_press, press_actions
 from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
@@ -31,7 +32,12 @@ def add_arguments(parser: SwitchParser) -> None:
         "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or a break; the worst counts."
     )
     parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--telemetry FILE] [--json] …"
-    parser.add_argument("programs", nargs="*", metavar="PROGRAM", help="a Python file, or an example's name")
+    parser.add_argument(
+        "programs",
+        nargs="*",
+        metavar="PROGRAM",
+        help="a Python file, a notebook or one of its cells (FILE.ipynb#2), or an example's name",
+    )
     parser.add_world()
     add = parser.add_argument_group("data and limits").add_argument
     add("--export", action="append", default=[], metavar="FILE",
@@ -43,6 +49,7 @@ def add_arguments(parser: SwitchParser) -> None:
     add("--press", action="append", default=[], metavar="BUTTON@S", type=parse_press,
         help="hold a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated")  # fmt: skip
     add_break_arguments(parser)
+    add("--all", action="store_true", help="all program cells of a notebook, and a table of what became of them")
     add("--json", action="store_true", help="one JSON object a program on stdout; what programs print goes to stderr")
     parser.add_switches()
 
@@ -55,6 +62,9 @@ def execute(arguments: Namespace) -> int:
         ExportError: a target cannot be written; checked before anything is run.
         HostError: a child process could not be started or spoke nonsense.
     """
+    if listed := to_list(arguments.programs, run_all=arguments.all):
+        print_list(arguments.programs[0], listed)
+        return 0
     # All input is checked before the first program runs.
     prepared = prepare_runs(arguments.programs, arguments)
     for one in prepared:
@@ -78,6 +88,8 @@ def execute(arguments: Namespace) -> int:
         export_samples(done, target)
     if telemetry is not None:
         export_telemetry(done[0], telemetry)
+    if arguments.all:
+        print_results(done)
     return code
 
 

@@ -1,0 +1,91 @@
+"""Notebooks on the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+
+LESSON = [
+    ("markdown", "# Lesson\n"),
+    ("code", "%load_ext tuisim"),
+    ("markdown", "## Hello"),
+    ("code", "%%sim_magic_preloaded\nprint('Colour: 1')\n"),
+    ("code", "%sim_magic -b Grey_bands -x 300\n"),
+    ("markdown", "## Grey\ntext"),
+    ("code", "\n%%sim_magic_preloaded -A\nprint('Colour: ' + str(colorLeft.reflected_light_intensity_pc))\n"),
+    ("code", "data_df = %sim_data\ndata_df.head()"),
+    ("code", "%%sim_magic -b Loop\n1 / 0\n"),
+]
+
+
+def write(path: Path, cells: list[tuple[str, str]]) -> Path:
+    rows = [{"cell_type": kind, "metadata": {}, "source": text.splitlines(keepends=True)} for kind, text in cells]
+    path.write_text(json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": rows}))
+    return path
+
+
+@pytest.mark.parametrize("command", [("run",), ()], ids=["run", "open"])
+def test_a_notebook_lists_its_programs(command: tuple[str, ...], tuisim: Command, tmp_path: Path) -> None:
+    done = tuisim(*command, write(tmp_path / "lesson.ipynb", LESSON))
+    rows = [line.split() for line in done.stdout.splitlines()[1:4]]
+    assert rows == [
+        ["1", "Hello", "preloaded"],
+        ["2", "Grey", "Grey_bands", "preloaded"],
+        ["3", "Grey", "Loop", "none"],
+    ]
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_cell_runs_in_the_world_that_cells_before_it_set(tuisim: Command, tmp_path: Path) -> None:
+    done = tuisim("run", f"{write(tmp_path / 'lesson.ipynb', LESSON)}#2")
+    assert (done.returncode, done.stdout) == (0, "Colour: 86.27450980392157\n")
+
+
+def test_all_cells_make_one_table(tuisim: Command, tmp_path: Path) -> None:
+    done = tuisim("run", write(tmp_path / "lesson.ipynb", LESSON), "--all")
+    assert done.returncode == 1
+    table = done.stdout.splitlines()[-3:]
+    assert [line.split()[:3] for line in table] == [
+        ["lesson.ipynb#1", "finished", "1"],
+        ["lesson.ipynb#2", "finished", "1"],
+        ["lesson.ipynb#3", "raised", "0"],
+    ]
+    assert "line 2" in done.stderr
+
+
+def test_twenty_cells_are_twenty_rows(tuisim: Command, tmp_path: Path) -> None:
+    cells = [("code", f"%%sim_magic_preloaded -x {100 * at}\nprint('Number: {at}')\n") for at in range(20)]
+    done = tuisim("run", write(tmp_path / "twenty.ipynb", cells), "--all")
+    table = done.stdout.splitlines()[-20:]
+    assert done.returncode == 0
+    assert [line.split()[:3] for line in table] == [[f"twenty.ipynb#{at}", "finished", "1"] for at in range(1, 21)]
+
+
+@pytest.mark.parametrize(
+    ("content", "cell", "told"),
+    [
+        pytest.param(None, "", "there is no such notebook", id="missing"),
+        pytest.param("{", "", "is no notebook that can be read", id="torn"),
+        pytest.param('{"cells": [1]}', "", "is no notebook that can be read", id="not cells"),
+        pytest.param('{"cells": []}', "", "has no program cells", id="empty"),
+        pytest.param(LESSON, "#4", "a number from 1 to 3", id="no such cell"),
+        pytest.param(LESSON, "#x", "a number from 1 to 3", id="no number"),
+        pytest.param([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such switch", id="wrong switch"),
+    ],
+)
+def test_what_is_wrong_is_told(
+    content: str | list[tuple[str, str]] | None, cell: str, told: str, tuisim: Command, tmp_path: Path
+) -> None:
+    path = tmp_path / "bad.ipynb"
+    if isinstance(content, str):
+        path.write_text(content)
+    elif content is not None:
+        write(path, content)
+    done = tuisim("run", f"{path}{cell}")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert told in done.stderr
+    assert done.stderr.count("\n") == 1
