@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -28,8 +29,8 @@ def test_a_run_has_samples_telemetry_output_and_a_picture() -> None:
     assert run.time_s == pytest.approx(run.telemetry["time"].iloc[-1])
     picture = run.picture()
     assert picture.size == (787, 381)
-    # The pen is red, and nothing on this mat is.
-    assert (255, 0, 0) in {color for _, color in picture.getcolors(1 << 20)}
+    # The red trace crosses the first grey band.
+    assert {picture.getpixel((120, row)) for row in range(211, 218)} == {(255, 0, 0), (220, 220, 220)}
 
 
 def test_same_seed_same_frames() -> None:
@@ -64,3 +65,13 @@ def test_import_loads_next_to_nothing() -> None:
     program = "import sys; before = set(sys.modules); import tuisim; print(*(set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
     assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.host"} & set(done.stdout.split())
+
+
+def test_the_readme_example_does_as_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```python\n")[1:]
+    (example,) = [block.partition("```")[0] for block in blocks if "simulate(" in block]
+    names: dict[str, Any] = {}
+    exec(example, names)
+    assert names["run"].state == "finished"
+    assert (tmp_path / "world.png").stat().st_size > 1000

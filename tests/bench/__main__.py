@@ -16,7 +16,7 @@ from tests.bench.frames import chart, frames
 from tests.bench.recording import recording
 from tests.bench.running import EMPTY, begin
 from tests.bench.speed import LOADS, speeds
-from tests.bench.starts import first_line, first_paint, help_text
+from tests.bench.starts import first_line, first_paint, help_text, imports
 from tests.bench.stops import stop_latency
 from tests.bench.variables import variables
 from tuisim.host import RunOptions
@@ -26,6 +26,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "crowded": crowded,
     "first-line": first_line,
     "help": help_text,
+    "imports": imports,
     "first-paint": first_paint,
     "stop": stop_latency,
     "debugger": debugging,

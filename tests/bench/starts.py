@@ -59,3 +59,15 @@ def _first_paint_cpu_s() -> tuple[float, float]:
         panels = cpu_s(terminal.pid)
         terminal.read_until(lambda: HALF_BLOCK in terminal.seen)
         return panels, cpu_s(terminal.pid)
+
+
+def imports(effort: Effort) -> Iterator[Figure]:
+    """Yield the CPU of `import tuisim`, and of `%load_ext tuisim` beyond pandas and IPython."""
+    shell = "from IPython.core.interactiveshell import InteractiveShell as S; import pandas; s = S.instance()"
+    for name, before, added, goal in (
+        ("import tuisim", "pass", "import tuisim", 30),
+        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 150),
+    ):
+        bare = median(command_cpu_s("-c", before) for _ in range(effort.repeats))
+        whole = median(command_cpu_s("-c", f"{before}; {added}") for _ in range(effort.repeats))
+        yield Figure(name, (whole - bare) * 1e3, "ms CPU", most=goal)

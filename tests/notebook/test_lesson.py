@@ -94,3 +94,15 @@ def test_an_interrupt_stops_the_program_and_keeps_the_rest(cell: Cell) -> None:
     assert "stopped" in shown.plain
     assert len(cell("%sim_data").result) == 1
     assert cell("%%sim_magic -RW\nprint('next')\n").out == "next\n"
+
+
+@pytest.mark.slow
+def test_the_example_notebook_shows_chart_and_bands() -> None:
+    notebook = nbformat.read(ROOT / "programs" / "sensor_to_chart.ipynb", as_version=4)
+    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    done = list(execute({text: text for text in cells}).values())
+    assert [stream(cell, "stderr") for cell in done] == [""] * len(done)
+    assert stream(done[1]) == "86.27450980392157\n"
+    assert kinds(done[2]) == ["image/png", "text/plain"]
+    bands = done[4].outputs[0].data["text/plain"]
+    assert all(level in bands for level in ("100.0", "86.3", "82.7", "50.2"))
