@@ -2,10 +2,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 
 from tests.ui.analyser.logs import long_log, model_of, wide_log
 from tuisim.datalog.notes import Note, notes_of_file, read_notes, write_notes
+from tuisim.datalog.opening import Layout, Log
+from tuisim.datalog.opening.layout import guessed
 from tuisim.errors import LogError
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.panes import pane_lines
@@ -84,6 +87,20 @@ def test_a_variable_along_another() -> None:
     assert model.along("Left").tolist() == [float(at) for at in range(10)]
     with pytest.raises(LogError, match="no variable 'z_mm'"):
         model.along("z_mm")
+
+
+def test_a_log_without_numbers_is_refused() -> None:
+    table = pa.table({"a": ["x", "y"]})
+    with pytest.raises(LogError, match="no column of numbers"):
+        model_of(Log("test", table, Layout()))
+
+
+def test_a_row_without_the_name_of_its_variable_is_shown_all_the_same() -> None:
+    table = pa.table({"variable": ["A", None, "A"], "value": [1.0, 2.0, 3.0], "time": [0.0, 1.0, 2.0]})
+    model = model_of(Log("test", table, guessed(table)))
+    model.go_to_row(1)
+    assert (model.trace_of_row(1).name, model.cursor_s) == ("A", 2.0)
+    assert "2" in text_of(model)
 
 
 # The table

@@ -37,7 +37,7 @@ class Model:
         subject: The log.
 
     Raises:
-        LogError: its notes cannot be read.
+        LogError: it has rows but no numbers, or its notes cannot be read.
     """
 
     def __init__(self, subject: Subject) -> None:
@@ -45,8 +45,9 @@ class Model:
         self.log = subject.log
         self.rows = Rows(subject.log)
         self.traces = LogTraces(subject.log)
-        names = subject.log.names
         ticked = self.traces.ticked()
+        if self.log.rows and not ticked:
+            raise LogError("no column of numbers", "there is nothing to draw", file=self.log.title)
         self.selected: str = ticked[0].name if ticked else ""
         """Variable whose samples the cursor goes along."""
         self.row: int = 0
@@ -61,7 +62,7 @@ class Model:
         self._summaries: dict[str, Summary] = {}
         self._places = subject.notes_places()
         self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]
-        if names and len(self.trace.series.rows):
+        if ticked and len(self.trace.series.rows):
             self.row = int(self.trace.series.rows[0])
 
     # The cursor
@@ -80,7 +81,8 @@ class Model:
             name = str(table.column(layout.variable)[row].as_py())
         if layout.run and (key := f"{name} #{table.column(layout.run)[row].as_py()}") in self.traces:
             name = key
-        return self.traces.named(name)
+        # What a row without a name or a run belongs to is not known.
+        return self.traces.named(name if name in self.traces else self.selected)
 
     @property
     def cursor_s(self) -> float:

@@ -45,7 +45,9 @@ def write(screen: Analyser) -> None:
 def _mark_time_s(model: Model) -> float:
     """Time in its run of the sample at the other cursor."""
     trace = model.trace_of_row(model.row)
-    return float(trace.series.time_s[trace.pyramid.nearest(model.mark_s or 0.0)])
+    if model.mark_s is None or not len(trace.pyramid.times_s):
+        return model.time_of(model.row)
+    return float(trace.series.time_s[trace.pyramid.nearest(model.mark_s)])
 
 
 def delete(screen: Analyser) -> None:

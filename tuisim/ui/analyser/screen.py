@@ -137,7 +137,7 @@ class Analyser(ModalScreen[None]):
         try:
             self.model = Model(subject)
         except TuisimError as error:
-            self.complain(error)
+            self._failed(subject.wanted, error)
             return
         if before is not None and before.subject.wanted is subject.wanted:
             self.model.take_over(before)

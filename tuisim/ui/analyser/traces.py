@@ -101,7 +101,9 @@ class LogTraces(Traces):
 
     def __init__(self, log: Log) -> None:
         super().__init__()
-        self._all = [LogTrace(log, name, number) for number, name in enumerate(log.names)]
+        # A row may lack the name of its variable: then there is a name without samples.
+        names = (name for name in log.names if not log.layout.variable or len(log.series(name).rows))
+        self._all = [LogTrace(log, name, number) for number, name in enumerate(names)]
         self._tick_light()
         self._by_log_name = {trace.name: trace for trace in self._all}
 

@@ -13,16 +13,20 @@ _ENOUGH = 4
 """Blocks for each column of the chart: with fewer, edges would be seen at the wrong column."""
 
 
+_MOST = 1e150
+"""What is larger cannot be reckoned with: the distance between two such numbers may be infinite."""
+
+
 class Pyramid:
     """The finite points of a series, in order of time.
 
     Args:
         times_s: Shape (n,).
-        values: Shape (n,); what is not finite is left out.
+        values: Shape (n,); what is not finite, or beyond all measure, is left out.
     """
 
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
-        good = np.isfinite(values) & np.isfinite(times_s)
+        good = (np.abs(values) < _MOST) & (np.abs(times_s) < _MOST)
         self._index: npt.NDArray[np.intp] | None = None
         """Which of the given points each one was, None if all are still where they were."""
         if not good.all():
