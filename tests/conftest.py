@@ -49,7 +49,11 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     monkeypatch.chdir(tmp_path)
 
     def run(*words: object) -> subprocess.CompletedProcess[str]:
-        code = run_command([str(word) for word in words])
+        try:
+            code = run_command([str(word) for word in words])
+        except SystemExit as left:
+            # Help and version end the process that they are asked in.
+            code = int(left.code or 0)
         said = capsys.readouterr()
         return subprocess.CompletedProcess([], code, said.out, said.err)
 

@@ -46,17 +46,17 @@ def program(tmp_path: Path) -> Path:
     return file
 
 
-def test_run_prints_to_stdout_and_the_last_state_to_stderr(program: Path, tuisim: Command) -> None:
-    done = tuisim("run", program.name)
+def test_run_prints_to_stdout_and_the_last_state_to_stderr(program: Path, here: Command) -> None:
+    done = here("run", program.name)
     assert done.returncode == 0
     assert done.stdout == "".join(f"Number: {number}\n" for number in range(5))
     (line,) = done.stderr.splitlines()
     assert line.startswith("prog.py: finished · 0.000 s, tick 0 · x 100.00 mm, y 800.00 mm, heading 0.00° · 5 samples")
 
 
-def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(tmp_path: Path, tuisim: Command) -> None:
+def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text(RAISES)
-    done = tuisim("run", "prog.py", "--export", "rows.csv")
+    done = here("run", "prog.py", "--export", "rows.csv")
     assert done.returncode == 1
     assert 'File "prog.py", line 3' in done.stderr
     assert "NameError: name 'sensor_val' is not defined" in done.stderr
@@ -65,8 +65,8 @@ def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(tmp_pat
     assert len(pd.read_csv(tmp_path / "rows.csv")) == 5
 
 
-def test_json_is_one_object_alone_on_stdout(program: Path, tuisim: Command) -> None:
-    done = tuisim("run", program.name, "--json", "--seed", 7, "-b", "Loop")
+def test_json_is_one_object_alone_on_stdout(program: Path, here: Command) -> None:
+    done = here("run", program.name, "--json", "--seed", 7, "-b", "Loop")
     facts = json.loads(done.stdout)
     wanted = {"program": "prog.py", "state": "finished", "seed": 7, "background": "Loop", "samples": 5, "exit_code": 0}
     assert facts.items() >= wanted.items()
@@ -101,19 +101,19 @@ def test_exit_codes(text: str, words: list[object], code: int, tmp_path: Path, h
 
 
 def test_several_programs_run_in_turn_into_one_log_and_the_worst_exit_code_counts(
-    tmp_path: Path, program: Path, tuisim: Command
+    tmp_path: Path, program: Path, here: Command
 ) -> None:
     (tmp_path / "bad.py").write_text(RAISES)
-    done = tuisim("run", "bad.py", program.name, "--export", "all.csv", "--export", "all.parquet")
+    done = here("run", "bad.py", program.name, "--export", "all.csv", "--export", "all.parquet")
     assert done.returncode == 1
     frame = package.read_log(tmp_path / "all.csv")
     assert frame["run"].tolist() == [1] * 5 + [2] * 5
     pd.testing.assert_frame_equal(frame, package.read_log(tmp_path / "all.parquet"))
 
 
-def test_command_line_wins_over_the_magic_line(tmp_path: Path, tuisim: Command) -> None:
+def test_command_line_wins_over_the_magic_line(tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text("%%sim_magic_preloaded -b Loop -x 700 -OHR\nprint(gyro.angle)\n")
-    facts = json.loads(tuisim("run", "prog.py", "-b", "Square", "--json").stdout)
+    facts = json.loads(here("run", "prog.py", "-b", "Square", "--json").stdout)
     assert (facts["background"], facts["x_mm"], facts["y_mm"], facts["heading_deg"]) == ("Square", 700, 300, -90)
 
 
@@ -126,38 +126,38 @@ def test_command_line_wins_over_the_magic_line(tmp_path: Path, tuisim: Command) 
     ],
     ids=["calm", "noise", "old"],
 )
-def test_the_same_run_gives_the_same_files_at_any_speed(words: list[object], tmp_path: Path, tuisim: Command) -> None:
+def test_the_same_run_gives_the_same_files_at_any_speed(words: list[object], tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text(DRIVES)
     speeds = {"max": "max", "again": "max", "paced": "40"}
     for name, speed in speeds.items():
         exports = ["--export", f"{name}.csv", "--telemetry", f"{name}.parquet"]
-        assert tuisim("run", "prog.py", "--speed", speed, *exports, *words).returncode == 0
+        assert here("run", "prog.py", "--speed", speed, *exports, *words).returncode == 0
     for suffix in ("csv", "csv.json", "parquet"):
         first, *others = [(tmp_path / f"{name}.{suffix}").read_bytes() for name in speeds]
         assert others == [first, first]
 
 
 def test_stored_runs_are_listed_shown_exported_and_removed(
-    home: Path, program: Path, tmp_path: Path, tuisim: Command
+    home: Path, program: Path, tmp_path: Path, here: Command
 ) -> None:
-    assert tuisim("runs").stdout == f"no runs yet in {home}\n"
-    tuisim("run", program.name, program.name)
-    listed = json.loads(tuisim("runs", "list", "--json").stdout)
+    assert here("runs").stdout == f"no runs yet in {home}\n"
+    here("run", program.name, program.name)
+    listed = json.loads(here("runs", "list", "--json").stdout)
     assert [(run["number"], run["program"], run["end"], run["samples"]) for run in listed] == [
         (1, "prog.py", "finished", 5),
         (2, "prog.py", "finished", 5),
     ]
-    assert len(tuisim("runs").stdout.splitlines()) == 3
-    shown = tuisim("runs", "show", "last")
+    assert len(here("runs").stdout.splitlines()) == 3
+    shown = here("runs", "show", "last")
     assert "prog.py: finished" in shown.stdout
     assert shown.stdout.endswith("Number: 4\n")
-    assert len(json.loads(tuisim("runs", "show", "1", "--json").stdout)["output"]) == 5
-    assert tuisim("runs", "export", "1", "2", "rows.jsonl", "--telemetry", "t.csv").returncode == 2
-    assert tuisim("runs", "export", "1", "2", "rows.jsonl").returncode == 0
+    assert len(json.loads(here("runs", "show", "1", "--json").stdout)["output"]) == 5
+    assert here("runs", "export", "1", "2", "rows.jsonl", "--telemetry", "t.csv").returncode == 2
+    assert here("runs", "export", "1", "2", "rows.jsonl").returncode == 0
     assert len(package.read_log(tmp_path / "rows.jsonl")) == 10
-    assert tuisim("runs", "export", "2", "--telemetry", "t.csv").returncode == 0
-    assert tuisim("runs", "rm", "1").returncode == 0
-    assert [run["number"] for run in json.loads(tuisim("runs", "--json").stdout)] == [2]
+    assert here("runs", "export", "2", "--telemetry", "t.csv").returncode == 0
+    assert here("runs", "rm", "1").returncode == 0
+    assert [run["number"] for run in json.loads(here("runs", "--json").stdout)] == [2]
 
 
 @pytest.mark.parametrize(
@@ -170,20 +170,20 @@ def test_stored_runs_are_listed_shown_exported_and_removed(
         ("profiles", "robolab"),
     ],
 )
-def test_lists(command: str, name: str, tuisim: Command) -> None:
-    assert name in tuisim(command).stdout
-    assert name in [entry["name"] for entry in json.loads(tuisim(command, "--json").stdout)]
+def test_lists(command: str, name: str, here: Command) -> None:
+    assert name in here(command).stdout
+    assert name in [entry["name"] for entry in json.loads(here(command, "--json").stdout)]
 
 
 @pytest.mark.parametrize("command", ["", *COMMANDS])
-def test_every_command_has_a_help(command: str, tuisim: Command) -> None:
-    done = tuisim(*filter(None, [command]), "--help")
+def test_every_command_has_a_help(command: str, here: Command) -> None:
+    done = here(*filter(None, [command]), "--help")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("usage: tuisim")
 
 
-def test_version(tuisim: Command) -> None:
-    assert tuisim("--version").stdout == f"tuisim {package.__version__}\n"
+def test_version(here: Command) -> None:
+    assert here("--version").stdout == f"tuisim {package.__version__}\n"
 
 
 def test_our_own_mistake_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

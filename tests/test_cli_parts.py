@@ -11,7 +11,7 @@ from tests.conftest import Command
 ASKS = "from ev3dev2.sensor.lego import {0}\nfrom ev3dev2.sensor import INPUT_1\nprint({0}(INPUT_1))\n"
 
 
-def test_bumper_meets_the_wall_from_robot_and_obstacle_files(tuisim: Command, tmp_path: Path) -> None:
+def test_bumper_meets_the_wall_from_robot_and_obstacle_files(here: Command, tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text("ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'\ny_mm = 60\n")
     (tmp_path / "boxes.toml").write_text("[[obstacle]]\nx_mm = 1000\ny_mm = 400\nwidth_mm = 50\nheight_mm = 400\n")
     (tmp_path / "prog.py").write_text(
@@ -23,7 +23,7 @@ def test_bumper_meets_the_wall_from_robot_and_obstacle_files(tuisim: Command, tm
         "tank.off()\nprint('Pressed:', nose.value())\n"
         "tank.on_for_rotations(SpeedPercent(-30), SpeedPercent(-30), 0.5)\nprint('Pressed:', nose.value())\n"
     )
-    done = tuisim("run", "prog.py")
+    done = here("run", "prog.py")
     assert done.stdout.split() == ["Pressed:", "1", "Pressed:", "0"], done.stderr
     assert "x 85" in done.stderr
 
@@ -45,14 +45,14 @@ until_s = 1.5
 """
 
 
-def test_beacon_and_remote_of_a_world_file(tuisim: Command, tmp_path: Path) -> None:
+def test_beacon_and_remote_of_a_world_file(here: Command, tmp_path: Path) -> None:
     (tmp_path / "lab.toml").write_text(WORLD)
     (tmp_path / "prog.py").write_text(
         "# %%sim_magic_imports\nfrom time import sleep\nfrom ev3dev2.sensor.lego import InfraredSensor\n"
         "eye = InfraredSensor(INPUT_3)\nprint(eye.heading(2) < 0, eye.distance(1))\n"
         "for _ in range(3):\n    print(eye.buttons_pressed(1))\n    sleep(0.8)\n"
     )
-    done = tuisim("run", "lab.toml", "prog.py")
+    done = here("run", "lab.toml", "prog.py")
     assert done.stdout.splitlines() == ["True None", "[]", "['top_left', 'top_right']", "[]"], done.stderr
 
 
@@ -64,25 +64,25 @@ def test_beacon_and_remote_of_a_world_file(tuisim: Command, tmp_path: Path) -> N
     ],
 )
 def test_missing_part_tells_which_ports_have_what(
-    tuisim: Command, tmp_path: Path, sensor: str, robot: str, hint: str
+    here: Command, tmp_path: Path, sensor: str, robot: str, hint: str
 ) -> None:
     (tmp_path / "prog.py").write_text(ASKS.format(sensor))
-    done = tuisim("run", "prog.py", "-r", robot)
+    done = here("run", "prog.py", "-r", robot)
     assert done.returncode == 1
     assert f"DeviceNotFound: {sensor}(ev3-ports:in1) is not connected" in done.stderr
     assert hint in done.stderr
     assert "line 3" in done.stderr
 
 
-def test_prelude_that_misses_a_part_says_what_to_do(tuisim: Command, tmp_path: Path) -> None:
+def test_prelude_that_misses_a_part_says_what_to_do(here: Command, tmp_path: Path) -> None:
     (tmp_path / "prog.py").write_text("say('hello')\n")
-    done = tuisim("run", "prog.py", "-r", "Explorer")
+    done = here("run", "prog.py", "-r", "Explorer")
     assert done.returncode == 1
     assert "--preload imports" in done.stderr
 
 
-def test_list_of_robots_tells_their_ports(tuisim: Command) -> None:
-    assert "in1 bumper, in2 left, in3 infrared" in tuisim("robots").stdout
+def test_list_of_robots_tells_their_ports(here: Command) -> None:
+    assert "in1 bumper, in2 left, in3 infrared" in here("robots").stdout
 
 
 BAD = {

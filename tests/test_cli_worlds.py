@@ -43,30 +43,30 @@ RUNS: dict[str, tuple[list[object], dict[str, Any]]] = {
 
 @pytest.mark.parametrize(("words", "facts"), RUNS.values(), ids=RUNS)
 def test_command_line_wins_over_world_and_world_over_magic(
-    words: list[object], facts: dict[str, Any], folder: Path, tuisim: Command
+    words: list[object], facts: dict[str, Any], folder: Path, here: Command
 ) -> None:
-    done = tuisim("run", *words, "--json")
+    done = here("run", *words, "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout).items() >= facts.items()
 
 
-def test_several_programs_run_in_one_world(folder: Path, tuisim: Command) -> None:
-    done = tuisim("run", "lab.toml", "other.py", "sub/where.py", "--json")
+def test_several_programs_run_in_one_world(folder: Path, here: Command) -> None:
+    done = here("run", "lab.toml", "other.py", "sub/where.py", "--json")
     assert [json.loads(line)["seed"] for line in done.stdout.splitlines()] == [5, 5]
 
 
-def test_a_printed_robot_and_printed_obstacles_are_files(folder: Path, tuisim: Command) -> None:
-    (folder / "mine.toml").write_text(tuisim("robots", "Small_Robot").stdout)
-    (folder / "boxes.toml").write_text(tuisim("obstacles", "Wall").stdout)
-    assert tuisim("robots", "mine.toml").stdout == (folder / "mine.toml").read_text()
-    done = tuisim("run", "other.py", "-r", "mine.toml", "-o", "boxes.toml", "--json")
+def test_a_printed_robot_and_printed_obstacles_are_files(folder: Path, here: Command) -> None:
+    (folder / "mine.toml").write_text(here("robots", "Small_Robot").stdout)
+    (folder / "boxes.toml").write_text(here("obstacles", "Wall").stdout)
+    assert here("robots", "mine.toml").stdout == (folder / "mine.toml").read_text()
+    done = here("run", "other.py", "-r", "mine.toml", "-o", "boxes.toml", "--json")
     assert json.loads(done.stdout)["robot"] == "Small_Robot"
 
 
-def test_files_of_a_magic_line_are_looked_for_beside_the_program(folder: Path, tuisim: Command) -> None:
+def test_files_of_a_magic_line_are_looked_for_beside_the_program(folder: Path, here: Command) -> None:
     (folder / "sub" / "eyes.toml").write_text("[color_sensors.left]\ndiameter_mm = 8\n")
     (folder / "sub" / "look.py").write_text("# %%sim_magic_preloaded -r eyes.toml\nprint(colorLeft.rgb)\n")
-    done = tuisim("run", "sub/look.py", "--json")
+    done = here("run", "sub/look.py", "--json")
     assert json.loads(done.stdout)["robot"] == "eyes"
 
 
@@ -80,29 +80,29 @@ def test_files_of_a_magic_line_are_looked_for_beside_the_program(folder: Path, t
     ],
     ids=["no program", "missing program", "misspelt program", "program's type"],
 )
-def test_a_world_without_a_program_to_run(text: str, said: str, folder: Path, tuisim: Command) -> None:
+def test_a_world_without_a_program_to_run(text: str, said: str, folder: Path, here: Command) -> None:
     (folder / "lab.toml").write_text(text)
-    done = tuisim("run", "lab.toml")
+    done = here("run", "lab.toml")
     assert done.stderr.startswith(f"tuisim: {said}")
     assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
 
 
 @pytest.mark.parametrize("length", [0, 60, 3000], ids=["empty", "hardly begun", "truncated"])
 def test_nothing_is_run_if_a_later_world_has_a_damaged_picture(
-    length: int, folder: Path, home: Path, root: Path, tuisim: Command
+    length: int, folder: Path, home: Path, root: Path, here: Command
 ) -> None:
     (folder / "mat.png").write_bytes((root / "backgrounds" / "Square.png").read_bytes()[:length])
     (folder / "bad.py").write_text("# %%sim_magic -b mat.png\n")
-    done = tuisim("run", "other.py", "bad.py")
+    done = here("run", "other.py", "bad.py")
     assert done.stderr.startswith("tuisim: ")
     assert "mat.png: is " in done.stderr
     assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
     assert not list(home.glob("runs/*"))
 
 
-def test_profiles_of_ones_own_stand_beside_the_others(folder: Path, tuisim: Command) -> None:
+def test_profiles_of_ones_own_stand_beside_the_others(folder: Path, here: Command) -> None:
     (folder / "slow.toml").write_text("color_read_ms = 25\n")
-    lines = tuisim("profiles", "ev3", "slow.toml").stdout.splitlines()
+    lines = here("profiles", "ev3", "slow.toml").stdout.splitlines()
     assert [line.split()[:5] for line in lines if line.startswith("color_read")] == [
         ["color_read", "10", "ms", "25", "ms"]
     ]

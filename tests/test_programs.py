@@ -44,8 +44,8 @@ def test_example_introduces_itself(name: str) -> None:
 
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_example_finishes(name: str, profile: str, tuisim: Command) -> None:
-    done = tuisim("run", name, "--json", "--profile", profile, "--timeout", 100)
+def test_example_finishes(name: str, profile: str, here: Command) -> None:
+    done = here("run", name, "--json", "--profile", profile, "--timeout", 100)
     facts: dict[str, Any] = json.loads(done.stdout)
     assert (done.returncode, facts["state"], facts["profile"]) == (0, "finished", profile)
     assert facts.items() >= EXAMPLES[name].items()
@@ -54,15 +54,15 @@ def test_example_finishes(name: str, profile: str, tuisim: Command) -> None:
 @pytest.mark.parametrize(
     "words", [[], ["-N", 20, "-M", 50], ["-N", 20, "-M", 50, "--seed", 3]], ids=["calm", "noise", "seed"]
 )
-def test_line_follower_arrives_at_the_red_bar(words: list[object], tuisim: Command) -> None:
-    done = tuisim("run", "follow_line", "--json", "--timeout", 100, *words)
+def test_line_follower_arrives_at_the_red_bar(words: list[object], here: Command) -> None:
+    done = here("run", "follow_line", "--json", "--timeout", 100, *words)
     facts = json.loads(done.stdout)
     assert facts["x_mm"] == pytest.approx(1855, abs=10)
     assert facts["y_mm"] == pytest.approx(582, abs=5)
 
 
-def test_square_comes_back_to_where_it_began(tuisim: Command) -> None:
-    facts = json.loads(tuisim("run", "square", "--json").stdout)
+def test_square_comes_back_to_where_it_began(here: Command) -> None:
+    facts = json.loads(here("run", "square", "--json").stdout)
     assert facts["x_mm"] == pytest.approx(100, abs=3)
     assert facts["y_mm"] == pytest.approx(800, abs=3)
     assert facts["heading_deg"] == pytest.approx(-360, abs=1)
@@ -82,8 +82,8 @@ def test_square_comes_back_to_where_it_began(tuisim: Command) -> None:
     ],
     ids=lambda value: str(value),
 )
-def test_colour_is_named_and_said(x_mm: int, name: str, code: int, tuisim: Command) -> None:
-    done = tuisim("run", "name_colour", "-x", x_mm)
+def test_colour_is_named_and_said(x_mm: int, name: str, code: int, here: Command) -> None:
+    done = here("run", "name_colour", "-x", x_mm)
     assert done.stdout == f"This is code {code}\nI see {name}\n"
     assert f"says: I see {name}\n" in done.stderr
 
@@ -91,9 +91,9 @@ def test_colour_is_named_and_said(x_mm: int, name: str, code: int, tuisim: Comma
 @pytest.mark.parametrize(
     ("x_mm", "value"), [(125, 255), (325, 220), (725, 211), (1125, 128), (1525, 0)], ids=lambda value: str(value)
 )
-def test_all_properties_of_a_grey(x_mm: int, value: int, tuisim: Command) -> None:
+def test_all_properties_of_a_grey(x_mm: int, value: int, here: Command) -> None:
     code, name = (6, "White") if value else (1, "Black")
-    assert tuisim("run", "read_once", "-x", x_mm).stdout.splitlines() == [
+    assert here("run", "read_once", "-x", x_mm).stdout.splitlines() == [
         f"reflected_light_intensity: {value}",
         f"reflected_light_intensity_pc: {value / 255 * 100}",
         f"full_reflected_light_intensity: {value * 3 / 765 * 100}",
@@ -103,16 +103,16 @@ def test_all_properties_of_a_grey(x_mm: int, value: int, tuisim: Command) -> Non
     ]
 
 
-def test_log_of_the_greys_has_the_plateaus_in_driving_order(tuisim: Command) -> None:
-    printed = tuisim("run", "log_greys").stdout.splitlines()
+def test_log_of_the_greys_has_the_plateaus_in_driving_order(here: Command) -> None:
+    printed = here("run", "log_greys").stdout.splitlines()
     values = [float(line.removeprefix("Colour: ")) for line in printed]
     bands = [value for value, after in zip(values, [*values[1:], None], strict=True) if value == after or after is None]
     plateaus = [value for value, before in zip(bands, [None, *bands], strict=False) if value != before]
     assert plateaus == [100, 86.27450980392157, 100, 82.74509803921568, 100, 50.19607843137255, 100, 0]
 
 
-def test_display_shows_the_light_as_a_bar(tuisim: Command) -> None:
-    run = load_run(json.loads(tuisim("run", "draw_light", "--json").stdout)["id"])
+def test_display_shows_the_light_as_a_bar(here: Command) -> None:
+    run = load_run(json.loads(here("run", "draw_light", "--json").stdout)["id"])
     pictures = [face_after(Face(), [row]).picture for row in run.output.all_rows() if row.stream == DISPLAY]
     # One for each light on the mat, and those half way across an edge.
     assert len(pictures) > 5

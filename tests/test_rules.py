@@ -151,6 +151,7 @@ def test_ruff_finds_nothing() -> None:
     assert tool("ruff", "check", "--no-cache", ".") == ""
 
 
+@pytest.mark.slow
 def test_types_are_strict() -> None:
     assert tool("mypy") == ""
 

@@ -29,8 +29,8 @@ def write(path: Path, cells: list[tuple[str, str]]) -> Path:
 
 
 @pytest.mark.parametrize("command", [("run",), ()], ids=["run", "open"])
-def test_a_notebook_lists_its_programs(command: tuple[str, ...], tuisim: Command, tmp_path: Path) -> None:
-    done = tuisim(*command, write(tmp_path / "lesson.ipynb", LESSON))
+def test_a_notebook_lists_its_programs(command: tuple[str, ...], here: Command, tmp_path: Path) -> None:
+    done = here(*command, write(tmp_path / "lesson.ipynb", LESSON))
     rows = [line.split() for line in done.stdout.splitlines()[1:4]]
     assert rows == [
         ["1", "Hello", "preloaded"],
@@ -40,13 +40,13 @@ def test_a_notebook_lists_its_programs(command: tuple[str, ...], tuisim: Command
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_a_cell_runs_in_the_world_that_cells_before_it_set(tuisim: Command, tmp_path: Path) -> None:
-    done = tuisim("run", f"{write(tmp_path / 'lesson.ipynb', LESSON)}#2")
+def test_a_cell_runs_in_the_world_that_cells_before_it_set(here: Command, tmp_path: Path) -> None:
+    done = here("run", f"{write(tmp_path / 'lesson.ipynb', LESSON)}#2")
     assert (done.returncode, done.stdout) == (0, "Colour: 86.27450980392157\n")
 
 
-def test_all_cells_make_one_table(tuisim: Command, tmp_path: Path) -> None:
-    done = tuisim("run", write(tmp_path / "lesson.ipynb", LESSON), "--all")
+def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
+    done = here("run", write(tmp_path / "lesson.ipynb", LESSON), "--all")
     assert done.returncode == 1
     table = done.stdout.splitlines()[-3:]
     assert [line.split()[:3] for line in table] == [
@@ -57,9 +57,9 @@ def test_all_cells_make_one_table(tuisim: Command, tmp_path: Path) -> None:
     assert "line 2" in done.stderr
 
 
-def test_twenty_cells_are_twenty_rows(tuisim: Command, tmp_path: Path) -> None:
+def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
     cells = [("code", f"%%sim_magic_preloaded -x {100 * at}\nprint('Number: {at}')\n") for at in range(20)]
-    done = tuisim("run", write(tmp_path / "twenty.ipynb", cells), "--all")
+    done = here("run", write(tmp_path / "twenty.ipynb", cells), "--all")
     table = done.stdout.splitlines()[-20:]
     assert done.returncode == 0
     assert [line.split()[:3] for line in table] == [[f"twenty.ipynb#{at}", "finished", "1"] for at in range(1, 21)]
@@ -78,14 +78,14 @@ def test_twenty_cells_are_twenty_rows(tuisim: Command, tmp_path: Path) -> None:
     ],
 )
 def test_what_is_wrong_is_told(
-    content: str | list[tuple[str, str]] | None, cell: str, told: str, tuisim: Command, tmp_path: Path
+    content: str | list[tuple[str, str]] | None, cell: str, told: str, here: Command, tmp_path: Path
 ) -> None:
     path = tmp_path / "bad.ipynb"
     if isinstance(content, str):
         path.write_text(content)
     elif content is not None:
         write(path, content)
-    done = tuisim("run", f"{path}{cell}")
+    done = here("run", f"{path}{cell}")
     assert (done.returncode, done.stdout) == (2, "")
     assert told in done.stderr
     assert done.stderr.count("\n") == 1
