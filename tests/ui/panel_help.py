@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from textual.app import App, ComposeResult
+from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.core.field import Field
@@ -16,6 +18,9 @@ from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.state import Instant
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.snapshot import RUNNING, Snapshot
+
+P = TypeVar("P", bound=Widget)
+M = TypeVar("M", bound=Message)
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
 
@@ -32,7 +37,7 @@ def small_field() -> Field:
     return Field(400, 300, memoryview(pixels.tobytes()), {})
 
 
-def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: object) -> Snapshot:
+def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: Any) -> Snapshot:
     """A moment of a run, with some fields changed."""
     now = Snapshot(
         state=RUNNING,
@@ -50,30 +55,34 @@ def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: object) -> Snapshot
         gyro_rate_dps=12,
         pen_down=True,
     )
-    return replace(now, **changes)  # type: ignore[arg-type]
+    return replace(now, **changes)
 
 
-class PanelApp(App[None]):
+class PanelApp(App[None], Generic[P]):
     """One panel that fills the screen."""
 
     CSS = "Screen > * { width: 100%; height: 100%; }"
 
-    def __init__(self, panel: Widget) -> None:
+    def __init__(self, panel: P) -> None:
         super().__init__()
         self.panel = panel
-        self.messages: list[object] = []
+        self.messages: list[Message] = []
 
     def compose(self) -> ComposeResult:
         """The panel alone."""
         yield self.panel
 
-    def on_world_pose_dragged(self, message: object) -> None:
+    def on_world_pose_dragged(self, message: Message) -> None:
         """Keep the message."""
         self.messages.append(message)
 
-    def on_chart_cursor_moved(self, message: object) -> None:
+    def on_chart_cursor_moved(self, message: Message) -> None:
         """Keep the message."""
         self.messages.append(message)
+
+    def heard(self, kind: type[M]) -> list[M]:
+        """The messages of one kind, in their order."""
+        return [message for message in self.messages if isinstance(message, kind)]
 
 
 def screen_text(app: App[None]) -> list[str]:

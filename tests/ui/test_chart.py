@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
+from textual.pilot import Pilot
 
 from tests.ui.panel_help import PanelApp, moment, screen_text
 from tuisim.ui.panels.chart import Chart
@@ -17,13 +16,13 @@ def fill(chart: Chart) -> None:
         chart.append("gyro °", [at / 10], [float(at)])
 
 
-def rows(app: PanelApp) -> list[str]:
+def rows(app: PanelApp[Chart]) -> list[str]:
     app.panel._draw_now()
     return screen_text(app)
 
 
-async def opened(pilot: Any) -> None:
-    pilot.app.panel.focus()
+async def opened(app: PanelApp[Chart], pilot: Pilot[None]) -> None:
+    app.panel.focus()
     await pilot.pause()
 
 
@@ -55,7 +54,7 @@ async def test_keys_tick_traces() -> None:
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
         fill(app.panel)
-        await opened(pilot)
+        await opened(app, pilot)
         seen = []
         for key in ("down", "space", "1", "up", "space", "2"):
             await pilot.press(key)
@@ -85,17 +84,18 @@ async def test_the_cursor_walks_and_goes() -> None:
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
         fill(app.panel)
-        await opened(pilot)
+        await opened(app, pilot)
         await pilot.press("left", "left", "shift+left")
         last = rows(app)[-1]
         await pilot.press("escape")
         await pilot.pause()
 
-    times = [message.time_s for message in app.messages]
+    moves = app.heard(Chart.CursorMoved)
+    times = [message.time_s for message in moves if message.time_s is not None]
     # The first step goes one column back from the newest point, which is at 4.9 s.
     assert 4.7 < times[0] < 4.9
     assert times[0] > times[1] > times[2]
-    assert times[-1] is None
+    assert moves[-1].time_s is None
     assert last.split()[:3] == [f"{times[2]:.2f}", "s", "Colour"]
 
 
@@ -109,7 +109,8 @@ async def test_the_mouse_puts_the_cursor() -> None:
         await pilot.mouse_up(app.panel, offset=(50, 5))
         await pilot.pause()
 
-    first, second = (message.time_s for message in app.messages)
+    first, second = (message.time_s for message in app.heard(Chart.CursorMoved))
+    assert first is not None and second is not None
     assert 2 < first < second < 3.5
 
 
@@ -117,7 +118,7 @@ async def test_freezing_keeps_the_window() -> None:
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
         fill(app.panel)
-        await opened(pilot)
+        await opened(app, pilot)
         rows(app)
         await pilot.press("f")
         app.panel.append("Colour", [100.0], [50.0])
@@ -135,7 +136,7 @@ async def test_clearing_keeps_the_ticks() -> None:
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
         fill(app.panel)
-        await opened(pilot)
+        await opened(app, pilot)
         await pilot.press("2", "delete")
         empty = rows(app)
         app.panel.append("gyro °", [0.0, 1.0], [1.0, 2.0])
@@ -148,7 +149,7 @@ async def test_it_is_not_drawn_more_often_than_can_be_seen(monkeypatch: pytest.M
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
         await pilot.pause()
-        drawn = []
+        drawn: list[object] = []
         monkeypatch.setattr(ChartPainter, "paint", lambda *args: drawn.append(args))
         app.panel._throttle._last_s = float("inf")
 

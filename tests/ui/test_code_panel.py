@@ -14,16 +14,20 @@ from tuisim.ui.panels.code import Code
 TEXT = "print('A: 1')\nfor n in range(3):\n    print('B: ' + str(n))\n"
 
 
-class CodeApp(PanelApp):
+class CodeApp(PanelApp[Code]):
     """The code panel alone."""
+
+    def __init__(self) -> None:
+        super().__init__(Code())
+        self.wishes: list[int | str] = []
 
     def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
         """Keep the line."""
-        self.messages.append(message.line)
+        self.wishes.append(message.line)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         """Keep what is wanted."""
-        self.messages.append(message.what)
+        self.wishes.append(message.what)
 
 
 async def alone(pilot: Pilot[Any], text: str = TEXT) -> tuple[Code, CodeArea]:
@@ -60,14 +64,14 @@ Keys = list[str]
     ],
 )  # fmt: skip
 async def test_keys_change_the_text(keys: Keys, after: str) -> None:
-    async with CodeApp(Code()).run_test(size=(60, 12)) as pilot:
+    async with CodeApp().run_test(size=(60, 12)) as pilot:
         _, area = await alone(pilot)
         await pilot.press(*keys)
         assert area.program_text == after
 
 
 async def test_the_gutter_shows_marks_and_tells_of_clicks() -> None:
-    app = CodeApp(Code())
+    app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         code, area = await alone(pilot)
         code.set_marks({1: "●", 2: "◆"})
@@ -83,12 +87,12 @@ async def test_the_gutter_shows_marks_and_tells_of_clicks() -> None:
         await pilot.click(area, offset=(2, 1))
         await pilot.click(area, offset=(2, 9))
         await pilot.click(area, offset=(9, 2))
-        assert app.messages == [2]
+        assert app.wishes == [2]
         assert code.cursor_line == 3
 
 
 async def test_a_line_is_lit_only_while_it_is_the_one_that_runs() -> None:
-    app = CodeApp(Code())
+    app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         code, area = await alone(pilot)
         code.set_running(TEXT)
@@ -104,7 +108,7 @@ async def test_a_line_is_lit_only_while_it_is_the_one_that_runs() -> None:
 
 
 async def test_finding_goes_round_and_says_where_it_is() -> None:
-    app = CodeApp(Code())
+    app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         code, area = await alone(pilot)
         await pilot.press("ctrl+f", *"print")
@@ -138,17 +142,17 @@ async def test_finding_goes_round_and_says_where_it_is() -> None:
     ids=["save", "run", "while finding", "while typing", "not typing"],
 )
 async def test_keys_ask_the_app(keys: Keys, wanted: list[str]) -> None:
-    app = CodeApp(Code())
+    app = CodeApp()
     async with app.run_test(size=(60, 12)) as pilot:
         await alone(pilot)
         await pilot.press(*keys)
         await pilot.pause()
-        assert app.messages == wanted
+        assert app.wishes == wanted
 
 
 async def test_a_reload_keeps_cursor_and_scroll_and_can_be_undone() -> None:
     lines = [f"x{n} = {n}" for n in range(200)]
-    async with CodeApp(Code()).run_test(size=(60, 12)) as pilot:
+    async with CodeApp().run_test(size=(60, 12)) as pilot:
         code, area = await alone(pilot, "\n".join(lines))
         await pilot.press(*["pagedown"] * 5)
         await pilot.pause()
@@ -162,6 +166,6 @@ async def test_a_reload_keeps_cursor_and_scroll_and_can_be_undone() -> None:
 
 @pytest.mark.parametrize("text", ["", "\n", "a\n\n", "x = '\x0c\u2028\x85'\n", "\x1b[31m", "漢字 = 1\n", "\ta\n"])
 async def test_no_text_is_changed_by_being_shown(text: str) -> None:
-    async with CodeApp(Code()).run_test(size=(40, 8)) as pilot:
+    async with CodeApp().run_test(size=(40, 8)) as pilot:
         _, area = await alone(pilot, text)
         assert area.program_text == text

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 from textual import events
+from textual.geometry import Region
 
 from tests.ui.panel_help import PanelApp, moment, white_mat
 from tuisim.core.geometry import Pose
@@ -60,7 +60,7 @@ async def test_a_moment_like_the_last_one_costs_nothing(monkeypatch: pytest.Monk
     async with app.run_test(size=(40, 12)):
         app.panel.set_mat(white_mat())
         app.panel.show(moment())
-        painted = []
+        painted: list[object] = []
         monkeypatch.setattr(view(app.panel), "set_picture", painted.append)
 
         app.panel.show(moment(time_s=9.0))
@@ -74,7 +74,7 @@ async def test_only_cells_about_the_robot_are_repainted(monkeypatch: pytest.Monk
     async with app.run_test(size=(76, 27)):
         app.panel.set_mat(white_mat())
         app.panel.show(moment())
-        regions: list[Any] = []
+        regions: list[Region] = []
         monkeypatch.setattr(view(app.panel), "refresh", lambda *changed, **_: regions.extend(changed))
 
         app.panel.show(moment(Pose(1010.0, 500.0, 0.0)))
@@ -136,7 +136,7 @@ async def test_zoom_goes_round_and_says_so() -> None:
     assert seen == [(2, "World 2×"), (4, "World 4×"), (1, "World")]
 
 
-async def dragged(shift: bool, by: tuple[int, int]) -> list[Any]:
+async def dragged(shift: bool, by: tuple[int, int]) -> list[World.PoseDragged]:
     """Drag the robot by some cells from a point ahead of its middle."""
     app = PanelApp(World())
     async with app.run_test(size=(120, 30)) as pilot:
@@ -149,7 +149,7 @@ async def dragged(shift: bool, by: tuple[int, int]) -> list[Any]:
         await pilot.hover(view(app.panel), offset=end)
         await pilot.mouse_up(view(app.panel), offset=end, shift=shift)
         await pilot.pause()
-        return app.messages
+        return app.heard(World.PoseDragged)
 
 
 async def test_dragging_moves_the_robot() -> None:
@@ -206,8 +206,9 @@ async def test_the_wheel_turns_the_robot(kind: type[events.MouseEvent], turn: fl
             target.post_message(kind(target, 5, 5, 0, 0, 0, False, False, False))
         await pilot.pause()
 
-    assert [message.pose for message in app.messages] == [
+    messages = app.heard(World.PoseDragged)
+    assert [message.pose for message in messages] == [
         replace(POSE, heading_deg=turn),
         replace(POSE, heading_deg=2 * turn),
     ]
-    assert all(message.done for message in app.messages)
+    assert all(message.done for message in messages)

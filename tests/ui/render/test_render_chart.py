@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState
+from tuisim.ui.render.plot import TextRun, canvas
 from tuisim.ui.render.traces import Traces
 
 
@@ -85,11 +87,13 @@ def test_two_scales() -> None:
 
 
 def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.MonkeyPatch) -> None:
-    calls = []
-    from tuisim.ui.render import chart
+    calls: list[object] = []
 
-    real = chart.canvas
-    monkeypatch.setattr(chart, "canvas", lambda *args: (calls.append(1), real(*args))[1])
+    def counted(*words: Any) -> list[list[TextRun]]:
+        calls.append(words)
+        return canvas(*words)
+
+    monkeypatch.setattr("tuisim.ui.render.chart.canvas", counted)
     painter, made, state = ChartPainter(), traces("Colour"), ChartState(cursor_s=1.0)
 
     painter.paint(made, state, 80, 16)

@@ -17,7 +17,7 @@ def mat(ground: int = 255) -> Pixels:
 
 def middle_row(pixels: Pixels, width: int = 76) -> list[int]:
     picture = shrink(pixels, whole_field(width, 54), OUTSIDE)
-    return picture[27, :, 0].tolist()
+    return [int(value) for value in picture[27, :, 0]]
 
 
 def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
