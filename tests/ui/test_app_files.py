@@ -125,22 +125,19 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
         assert not any("changed on disk" in notice for notice in notices(app))
 
 
-@pytest.mark.parametrize(
-    ("typed", "said"),
-    [
-        ("lab.txt", "must end in .toml"),
-        ("no/such/folder/lab.toml", "cannot be written: No such file or directory"),
-        (".", "is a folder, not a file"),
-        ("", "Type the name of a file that ends in .toml"),
-    ],
-)
-async def test_what_cannot_be_written_is_told(typed: str, said: str, folder: Path) -> None:
+async def test_what_cannot_be_written_is_told(folder: Path) -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("ctrl+s")
-        app.screen.query_one(Input).value = typed
-        await pilot.press("enter")
-        await until(pilot, lambda: said in screen_text(app))
+        for typed, said in (
+            ("lab.txt", "must end in .toml"),
+            ("no/such/folder/lab.toml", "cannot be written: No such file or directory"),
+            (".", "is a folder, not a file"),
+            ("", "Type the name of a file that ends in .toml"),
+        ):
+            app.screen.query_one(Input).value = typed
+            await pilot.press("enter")
+            await until(pilot, lambda said=said: said in screen_text(app))
         assert sorted(path.name for path in folder.iterdir()) == ["lab.toml", "mine.py", "mine.toml"]
 
 

@@ -12,7 +12,7 @@ from tuisim.core.geometry import Pose
 from tuisim.ui.actions import ACTIONS, Action, Situation
 from tuisim.ui.app import Lab
 from tuisim.ui.footer import fitting
-from tuisim.ui.panels import LARGE, PANELS, PanelInfo
+from tuisim.ui.panels import LARGE, PANELS
 from tuisim.ui.panels.positioning import parse_field
 from tuisim.ui.screens.help import HelpScreen
 from tuisim.ui.snapshot import IDLE, PAUSED, RUNNING
@@ -31,20 +31,17 @@ async def test_first_picture(size: tuple[int, int]) -> None:
         assert text.count("\n") == size[1] - 1
 
 
-@pytest.mark.parametrize("panel", PANELS.values(), ids=list(PANELS))
-async def test_a_panel_key_shows_and_hides_it(panel: PanelInfo) -> None:
+async def test_every_panels_key_shows_and_hides_it() -> None:
     async with Lab(settings(LOGS)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
-        at_first = LARGE in panel.sizes
-        assert app.desk.shown(panel.id) is at_first
-        await pilot.press(panel.key)
-        assert app.desk.shown(panel.id) is not at_first
-        await pilot.pause()
-        assert (f"─ {panel.title}" in screen_text(app)) is not at_first
-        await pilot.press(panel.key)
-        assert app.desk.shown(panel.id) is at_first
-        await pilot.pause()
-        assert (f"─ {panel.title}" in screen_text(app)) is at_first
+        for panel in PANELS.values():
+            at_first = LARGE in panel.sizes
+            assert app.desk.shown(panel.id) is at_first, panel.id
+            for shown in (not at_first, at_first):
+                await pilot.press(panel.key)
+                assert app.desk.shown(panel.id) is shown, panel.id
+                await pilot.pause()
+                assert (f"─ {panel.title}" in screen_text(app)) is shown, panel.id
 
 
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
@@ -82,42 +79,37 @@ async def test_switched_off_stays_off_in_every_size() -> None:
         assert not app.desk.shown("world")
 
 
-@pytest.mark.parametrize(
-    ("key", "reason"),
-    [
-        ("R", "No program yet: o opens one"),
-        ("S", "Nothing is running: R runs the program"),
-        ("space", "Nothing is running: R runs the program"),
-        ("full_stop", "Nothing is running: R runs the program"),
-        ("e", "No log yet: R runs the program"),
-    ],
-)
-async def test_a_key_that_does_nothing_says_why(key: str, reason: str) -> None:
+async def test_a_key_that_does_nothing_says_why() -> None:
     async with Lab(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await pilot.press(key)
-        assert notices(app) == [reason]
+        for key, reason in (
+            ("R", "No program yet: o opens one"),
+            ("S", "Nothing is running: R runs the program"),
+            ("space", "Nothing is running: R runs the program"),
+            ("full_stop", "Nothing is running: R runs the program"),
+            ("e", "No log yet: R runs the program"),
+        ):
+            app.clear_notifications()
+            await pilot.press(key)
+            assert notices(app) == [reason], key
 
 
-@pytest.mark.parametrize(
-    ("key", "pose"),
-    [
-        ("left", Pose(140, 500, 0)),
-        ("up", Pose(150, 510, 0)),
-        ("shift+right", Pose(151, 500, 0)),
-        ("shift+down", Pose(150, 499, 0)),
-        ("ctrl+left", Pose(150, 500, 5)),
-        ("ctrl+right", Pose(150, 500, -5)),
-    ],
-)
-async def test_nudge(key: str, pose: Pose) -> None:
+async def test_nudge() -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await pilot.press(key)
-        assert app.bridge.pose == pose
-        assert app.bridge.snapshot().gyro_deg == 0
-        await pilot.press("m")
-        assert app.bridge.pose == Pose(150, 500, 0)
+        for key, pose in (
+            ("left", Pose(140, 500, 0)),
+            ("up", Pose(150, 510, 0)),
+            ("shift+right", Pose(151, 500, 0)),
+            ("shift+down", Pose(150, 499, 0)),
+            ("ctrl+left", Pose(150, 500, 5)),
+            ("ctrl+right", Pose(150, 500, -5)),
+        ):
+            await pilot.press(key)
+            assert app.bridge.pose == pose, key
+            assert app.bridge.snapshot().gyro_deg == 0, key
+            await pilot.press("m")
+            assert app.bridge.pose == Pose(150, 500, 0), key
 
 
 async def test_readings_follow_the_robot_at_rest() -> None:
@@ -165,26 +157,25 @@ async def test_help_lists_every_key() -> None:
         assert not isinstance(app.screen, HelpScreen)
 
 
-@pytest.mark.parametrize(
-    ("field", "typed", "message"),
-    [
-        ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
-        ("y", "1e9", "Y: a number from -10000 to 10000, not '1e9'"),
-        ("angle", "", "Angle: a number from -36000 to 36000, not 'nothing'"),
-        ("x", "nan", "X: a number from -10000 to 10000, not 'nan'"),
-    ],
-)
-async def test_bad_position_is_refused_with_a_reason(field: str, typed: str, message: str) -> None:
+async def test_bad_position_is_refused_with_a_reason() -> None:
     async with Lab(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
-        entry = app.query_one(f"#{field}", Input)
-        entry.focus()
-        entry.value = typed
-        await pilot.press("enter")
-        await pilot.pause()
-        assert str(app.query_one("Positioning #message", Static).render()) == message
-        assert app.bridge.pose == Pose(150, 500, 0)
+        for field, typed, message in (
+            ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
+            ("x", "nan", "X: a number from -10000 to 10000, not 'nan'"),
+            ("x", "150", "Enter places the robot"),
+            ("y", "1e9", "Y: a number from -10000 to 10000, not '1e9'"),
+            ("y", "500", "Enter places the robot"),
+            ("angle", "", "Angle: a number from -36000 to 36000, not 'nothing'"),
+        ):
+            entry = app.query_one(f"#{field}", Input)
+            entry.focus()
+            entry.value = typed
+            await pilot.press("enter")
+            await pilot.pause()
+            assert str(app.query_one("Positioning #message", Static).render()) == message
+            assert app.bridge.pose == Pose(150, 500, 0)
 
 
 async def test_good_position_is_applied() -> None:
