@@ -5,12 +5,18 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from tests.running import Done, Run, Start, over
 from tuisim.cli import run_command
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import PROFILES
+from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.host import Program, RunHandle, RunOptions, start_run
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -77,3 +83,46 @@ def tuisim(tmp_path: Path) -> Command:
         )
 
     return run
+
+
+@pytest.fixture
+def start() -> Iterator[Start]:
+    """`start(text, …)`: start a program; whatever still runs at the end of the test is killed."""
+    handles: list[RunHandle] = []
+
+    def begin(
+        text: str,
+        *,
+        profile: str = "robolab",
+        pose: tuple[float, float, float] = (150.0, 500.0, 0.0),
+        noise: tuple[int, int] = (0, 0),
+        seed: int = 0,
+        prelude: str = "preloaded",
+        background: str = "Grey_bands",
+        pen: PenSpec | None = None,
+        pen_marks: bool = False,
+        solid: bool = False,
+        **options: Any,
+    ) -> RunHandle:
+        world = WorldSpec(
+            background=background, start=Pose(*pose), noise=NoiseSpec(*noise), pen_marks=pen_marks, solid=solid
+        )
+        spec = RunSpec(RobotSpec(pen=pen or PenSpec()), world, PROFILES[profile], seed)
+        options.setdefault("time_limit_s", 20.0)
+        handle = start_run(Program("program.py", text, prelude), spec, RunOptions(**options))
+        handles.append(handle)
+        return handle
+
+    yield begin
+    for handle in handles:
+        handle.close()
+
+
+@pytest.fixture
+def run(start: Start) -> Run:
+    """`run(text, …)`: run a program to its end."""
+
+    def finish(text: str, **how: Any) -> Done:
+        return over(start(text, **how))
+
+    return finish

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.conftest import run, start  # noqa: F401
-from tests.runtime.test_steering import until
+from tests.running import Start, over, until_tick
 from tuisim.cli import run_command
 from tuisim.datalog.compact import PACKED_SUFFIX
 from tuisim.datalog.records import TELEMETRY_FILE
@@ -38,9 +37,9 @@ def settle() -> None:
             thread.join()
 
 
-def test_a_long_run_is_packed_when_it_is_over(start: object) -> None:  # noqa: F811
-    handle = start(LONG, time_limit_s=100.0)  # type: ignore[operator]
-    assert handle.wait(30.0) is not None
+def test_a_long_run_is_packed_when_it_is_over(start: Start) -> None:
+    handle = start(LONG, time_limit_s=100.0)
+    over(handle)
     settle()
     assert packed(handle.folder)
     assert handle.telemetry.count == 6102
@@ -50,21 +49,21 @@ def test_a_long_run_is_packed_when_it_is_over(start: object) -> None:  # noqa: F
     assert run_command(["runs", "rerun", handle.run_id]) == 0
 
 
-def test_short_runs_and_scratch_ones_stay_as_they_are(start: object, tmp_path: Path) -> None:  # noqa: F811
-    short = start(SHORT)  # type: ignore[operator]
+def test_short_runs_and_scratch_ones_stay_as_they_are(start: Start, tmp_path: Path) -> None:
+    short = start(SHORT)
     options = RunOptions(time_limit_s=100.0)
     scratch = start_run(replace(short.program, text=LONG), short.spec, options, RunStore(tmp_path))
     for handle in (short, scratch):
-        assert handle.wait(30.0) is not None
+        over(handle)
     settle()
     assert scratch.telemetry.count == 6102
     assert not packed(short.folder) and not packed(scratch.folder)
 
 
-def test_command(start: object, capsys: pytest.CaptureFixture[str]) -> None:  # noqa: F811
-    handles = [start(SHORT) for _ in range(2)]  # type: ignore[operator]
+def test_command(start: Start, capsys: pytest.CaptureFixture[str]) -> None:
+    handles = [start(SHORT) for _ in range(2)]
     for handle in handles:
-        handle.wait(30.0)
+        over(handle)
     one, two = (handle.run_id for handle in handles)
     assert run_command(["runs", "compact", one]) == 0
     assert [packed(handle.folder) for handle in handles] == [True, False]
@@ -78,15 +77,15 @@ def test_command(start: object, capsys: pytest.CaptureFixture[str]) -> None:  # 
     assert told["ticks"] == 101 and told["bytes_after"] < told["bytes_before"]
     assert run_command(["runs", "compact"]) == 2
     (handles[0].folder / (TELEMETRY_FILE + PACKED_SUFFIX)).unlink()
-    third = start(SHORT)  # type: ignore[operator]
-    third.wait(30.0)
+    third = start(SHORT)
+    over(third)
     assert run_command(["runs", "compact", "--all"]) == 0
     assert packed(third.folder)
 
 
-def test_not_while_it_runs_but_after_it_was_killed(start: object) -> None:  # noqa: F811
-    handle = start("while True:\n    tank_drive.on_for_seconds(20, 30, 1)\n", live=True)  # type: ignore[operator]
-    until(handle, lambda: handle.telemetry.count > 10)
+def test_not_while_it_runs_but_after_it_was_killed(start: Start) -> None:
+    handle = start("while True:\n    tank_drive.on_for_seconds(20, 30, 1)\n", live=True)
+    until_tick(handle, 10)
     stored = RunStore().load_run(handle.run_id)
     with pytest.raises(LogError, match="still running"):
         compact_run(stored)

@@ -14,7 +14,7 @@ from tuisim.datalog.records import DISPLAY
 from tuisim.datalog.store import load_run
 from tuisim.programfile import read_program
 
-EXAMPLES = {
+EXAMPLES: dict[str, dict[str, object]] = {
     "bumper.py": {"background": "Empty_Map", "lines": 2, "samples": 2},
     "draw_light.py": {"background": "Grey_bands", "y_mm": 500.0, "lines": 0},
     "follow_line.py": {"lines": 1, "samples": 0},

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.conftest import run, start  # noqa: F401
-from tests.runtime.test_steering import until
+from tests.running import Start, over, until_tick
 from tuisim.cli import run_command
 from tuisim.datalog.diff import diff_runs
 from tuisim.datalog.store import RunStore
@@ -65,13 +64,13 @@ def _action(chance: random.Random) -> Message:
     )
 
 
-def _check(number: int, start: object, scratch: Path) -> None:  # noqa: F811
+def _check(number: int, start: Start, scratch: Path) -> None:
     chance = random.Random(number)
     way = WAYS[number % len(WAYS)]
     text = PROGRAMS[number % len(PROGRAMS)].format(turns=chance.randint(20, 40), speed=chance.randint(20, 60))
     live = way in ("live", "stopped")
     answers = () if live else ("Ada",) * 2
-    handle = start(  # type: ignore[operator]
+    handle = start(
         text,
         seed=number,
         noise=(chance.randint(0, 40), chance.randint(0, 100)),
@@ -84,41 +83,41 @@ def _check(number: int, start: object, scratch: Path) -> None:  # noqa: F811
     )
     if live:
         for at in range(3):
-            until(handle, lambda tick=5 + 6 * at: handle.telemetry.count > tick or handle.ended is not None)  # type: ignore[misc]
+            until_tick(handle, 5 + 6 * at)
             handle.send(_action(chance))
             handle.send(Answer(f"name {at}"))
     if way == "stopped":
-        until(handle, lambda: handle.telemetry.count > 25 or handle.ended is not None)
+        until_tick(handle, 25)
         handle.stop()
     elif live:
         for _ in range(4):
             handle.send(Answer("more"))
-    assert handle.wait(30.0) is not None
+    over(handle)
     stored = RunStore().load_run(handle.run_id)
     store = RunStore(scratch)
     again = rerun(stored, store)
-    assert again.wait(30.0) is not None
+    over(again)
     found = same(stored, store.load_run(again.run_id))
     assert found.same, (way, text, found)
 
 
 @pytest.mark.parametrize("number", range(10))
-def test_runs_again(number: int, start: object, tmp_path: Path) -> None:  # noqa: F811
+def test_runs_again(number: int, start: Start, tmp_path: Path) -> None:
     _check(number, start, tmp_path)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(10, 50))
-def test_many_runs_again(number: int, start: object, tmp_path: Path) -> None:  # noqa: F811
+def test_many_runs_again(number: int, start: Start, tmp_path: Path) -> None:
     _check(number, start, tmp_path)
 
 
-def test_a_difference_is_found(start: object) -> None:  # noqa: F811
+def test_a_difference_is_found(start: Start) -> None:
     text = LOOP.format(turns=20, speed=40)
     ids = []
     for seed in (1, 2):
-        handle = start(text, seed=seed, noise=(0, 50))  # type: ignore[operator]
-        handle.wait(30.0)
+        handle = start(text, seed=seed, noise=(0, 50))
+        over(handle)
         ids.append(handle.run_id)
     one, two = (RunStore().load_run(run_id) for run_id in ids)
     found = diff_runs(one, two)
@@ -156,19 +155,19 @@ finally:
 
 
 @pytest.mark.parametrize("live", [True, False], ids=["live", "headless"])
-def test_a_stop_is_given_again_at_its_tick(start: object, tmp_path: Path, live: bool) -> None:  # noqa: F811
+def test_a_stop_is_given_again_at_its_tick(start: Start, tmp_path: Path, live: bool) -> None:
     text = CLEANS_UP if live else CLEANS_UP.replace("time.sleep(0.05)", "time.sleep(1e6)")
-    handle = start(text, noise=(10, 20), live=live, time_limit_s=0.0)  # type: ignore[operator]
-    until(handle, lambda: handle.telemetry.count > 20)
+    handle = start(text, noise=(10, 20), live=live, time_limit_s=0.0)
+    until_tick(handle, 20)
     handle.stop()
-    assert handle.wait(30.0) is not None and handle.ended.end == "stopped"
+    assert over(handle).ended.end == "stopped"
     stored = RunStore().load_run(handle.run_id)
     assert any(row.text.startswith("Far:") for row in stored.output.rows())
     stopped_at = json.loads((handle.folder / STOP_FILE).read_text())["tick"]
     assert stored.telemetry.count > stopped_at + 30
     store = RunStore(tmp_path)
     again = rerun(stored, store)
-    assert again.wait(30.0) is not None and again.ended is not None and again.ended.end == "stopped"
+    assert over(again).ended.end == "stopped"
     second = store.load_run(again.run_id)
     assert second.telemetry.array().tobytes() == stored.telemetry.array().tobytes()
     assert second.output.all_rows() == stored.output.all_rows()
@@ -178,15 +177,15 @@ def test_a_stop_is_given_again_at_its_tick(start: object, tmp_path: Path, live: 
         rerun(stored, store)
 
 
-def test_a_killed_run_is_compared_up_to_its_last_record(start: object, tmp_path: Path) -> None:  # noqa: F811
-    handle = start(CLEANS_UP, live=True)  # type: ignore[operator]
-    until(handle, lambda: handle.telemetry.count > 20)
+def test_a_killed_run_is_compared_up_to_its_last_record(start: Start, tmp_path: Path) -> None:
+    handle = start(CLEANS_UP, live=True)
+    until_tick(handle, 20)
     os.kill(handle._process.pid, signal.SIGKILL)
-    assert handle.wait(30.0) is not None and handle.ended.end == "crashed"
+    assert over(handle).ended.end == "crashed"
     stored = RunStore().load_run(handle.run_id)
     store = RunStore(tmp_path)
     again = rerun(stored, store)
-    again.wait(30.0)
+    over(again)
     second = store.load_run(again.run_id)
     assert second.telemetry.count > 20
     assert same(stored, second).same

@@ -45,7 +45,7 @@ def functions(tree: ast.AST) -> Iterator[Function]:
 def body_lines(function: Function) -> int:
     """Lines of the body, its docstring left out."""
     body = function.body[1:] if ast.get_docstring(function) is not None else function.body
-    return body[-1].end_lineno - body[0].lineno + 1 if body else 0  # type: ignore[operator]
+    return (body[-1].end_lineno or 0) - body[0].lineno + 1 if body else 0
 
 
 @pytest.mark.parametrize("path", CODE, ids=name_of)

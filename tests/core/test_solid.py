@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
@@ -174,15 +175,15 @@ QUIET = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_to
 
 @settings(max_examples=150, deadline=None, suppress_health_check=QUIET)
 @given(**CASE)
-def test_outline_never_enters_anything(**case: object) -> None:
-    check_case(**case)  # type: ignore[arg-type]
+def test_outline_never_enters_anything(**case: Any) -> None:
+    check_case(**case)
 
 
 @pytest.mark.slow
 @settings(max_examples=10_000, deadline=None, suppress_health_check=QUIET)
 @given(**CASE)
-def test_outline_never_enters_anything_in_ten_thousand_cases(**case: object) -> None:
-    check_case(**case)  # type: ignore[arg-type]
+def test_outline_never_enters_anything_in_ten_thousand_cases(**case: Any) -> None:
+    check_case(**case)
 
 
 def test_noise_does_not_push_through_a_wall() -> None:

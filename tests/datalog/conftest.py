@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from run_recorder import PROGRAM, Recorder
 
+from tests.datalog.run_recorder import PROGRAM, Recorder
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
@@ -43,11 +44,10 @@ def noisy_spec(spec: RunSpec) -> RunSpec:
 def record(store: RunStore) -> Callable[..., Recorder]:
     """Start a run that is written by hand."""
 
-    def start(spec: RunSpec, **options: object) -> Recorder:
-        run = store.new_run(PROGRAM, spec, **options)  # type: ignore[arg-type]
+    def start(spec: RunSpec, **options: Any) -> Recorder:
+        run = store.new_run(PROGRAM, spec, **options)
         telemetry = TelemetryWriter(run.folder)
-        # A map is as good a buffer as a memory view, which type checkers do not know.
-        simulation = Simulation(spec, telemetry)  # type: ignore[arg-type]
+        simulation = Simulation(spec, telemetry)
         return Recorder(store, run, spec, telemetry, OutputWriter(run.folder), simulation)
 
     return start

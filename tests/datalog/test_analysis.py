@@ -13,7 +13,16 @@ from tuisim.core.spec import RobotSpec
 from tuisim.datalog.analysis.crossings import crossings
 from tuisim.datalog.analysis.expressions import FUNCTIONS, evaluate
 from tuisim.datalog.analysis.reckoning import dead_reckoning, distance_mm, error_mm
-from tuisim.datalog.analysis.signals import HOLD, LINEAR, derivative, integral, moving_average, resample, value_at
+from tuisim.datalog.analysis.signals import (
+    HOLD,
+    LINEAR,
+    Between,
+    derivative,
+    integral,
+    moving_average,
+    resample,
+    value_at,
+)
 from tuisim.datalog.analysis.statistics import summary_of
 from tuisim.errors import LogError
 
@@ -56,8 +65,8 @@ class TestSignals:
     @pytest.mark.parametrize(
         ("between", "expected"), [(LINEAR, [0, 1.5, 6.5]), (HOLD, [0, 1, 5])], ids=["linear", "hold"]
     )
-    def test_integral(self, between: object, expected: list[float]) -> None:
-        assert_allclose(integral(column(0, 1, 3), column(1, 2, 3), between), expected)  # type: ignore[arg-type]
+    def test_integral(self, between: Between, expected: list[float]) -> None:
+        assert_allclose(integral(column(0, 1, 3), column(1, 2, 3), between), expected)
 
     def test_moving_average_shrinks_at_the_ends(self) -> None:
         assert_allclose(moving_average(column(1, 2, 6, NAN, 2), 3), [1.5, 3, 4, 4, 2])

@@ -11,8 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from run_recorder import PROGRAM, Recorder
 
+from tests.datalog.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.catalogue import CATALOGUE_FILE
 from tuisim.datalog.runfile import RunEnd

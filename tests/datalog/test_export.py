@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from run_recorder import Recorder
 
 import tuisim
+from tests.datalog.run_recorder import Recorder
 from tuisim.core.field import Field
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.export import (

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from run_recorder import Recorder
 
+from tests.datalog.run_recorder import Recorder
 from tuisim.assets import background
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose

@@ -29,7 +29,8 @@ def test_greys_have_names() -> None:
         "pale grey",
         "white",
     }
-    assert nearest_grey(86.0).name == "pale grey"  # type: ignore[union-attr]
+    grey = nearest_grey(86.0)
+    assert grey is not None and grey.name == "pale grey"
     assert nearest_grey(9.0) is None
 
 

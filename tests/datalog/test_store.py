@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from run_recorder import PROGRAM, Recorder
 
+from tests.datalog.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.datalog.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.datalog.lock import hold, is_held

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
+from tests.running import Start
 from tests.runtime.awkward import ENDLESS, ENDS, PROGRAMS, QUICK
-from tests.runtime.conftest import Start
 from tests.runtime.debugging import Driver
 from tuisim.host import STUCK_AFTER_S
 from tuisim.protocol import STEPS, Ended, Paused, StepLine

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.runtime.conftest import Done, Start
+from tests.running import Done, Run, Start
 from tests.runtime.debugging import Driver
 from tuisim.protocol import (
     AFTER_TICK,
@@ -219,7 +219,7 @@ def test_a_break_in_any_thread_holds_all(debug: Callable[..., Driver]) -> None:
     assert {(step.thread, step.line) for step in lines} <= {("B", line) for line in (3, 4, 5)}
 
 
-def test_stepping_breaks_and_looking_change_nothing(debug: Callable[..., Driver], run: Callable[..., Done]) -> None:
+def test_stepping_breaks_and_looking_change_nothing(debug: Callable[..., Driver], run: Run) -> None:
     plain = run(THREADS, noise=(20, 30), seed=4)
     driver = debug(THREADS, hold_at=FIRST_LINE, breaks=("14", "sample main"), noise=(20, 30), seed=4)
     event: Paused | Ended = driver.paused()

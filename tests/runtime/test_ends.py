@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.runtime.conftest import Done
+from tests.running import Run
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.host import Program, RunOptions, start_run
-
-Run = Callable[..., Done]
 
 ENDS = {
     "nothing to do": ("pass", "finished", 0),

@@ -8,14 +8,11 @@ second each second (weight medium), a wheel of 56 mm rolls pi * 56 mm a turn, an
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import pytest
 
-from tests.runtime.conftest import Done
-
-Run = Callable[..., Done]
+from tests.running import Run
 
 TURN_MM = math.pi * 56
 MM_PER_DEG = TURN_MM / 360

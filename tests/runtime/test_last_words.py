@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.conftest import Start
+from tests.running import Start
 from tuisim.host import RunHandle
 from tuisim.protocol import Message
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from typing import Any
 
 import pytest
 
-from tests.runtime.conftest import Done, Start
-from tests.runtime.test_steering import until
+from tests.running import Run, Start, over, until_tick
 from tuisim.protocol import (
     Answer,
     Message,
@@ -19,8 +18,6 @@ from tuisim.protocol import (
     SetPose,
     SetSpeed,
 )
-
-Run = Callable[..., Done]
 
 LOGGER = """
 import time
@@ -59,7 +56,8 @@ def test_actions_come_at_their_ticks(run: Run) -> None:
     )
     places = done.run.telemetry.array()["x_mm"]
     assert (places[9], places[10], places[49], places[50]) == (150.0, 700.0, 700.0, 300.0)
-    assert done.run.telemetry.last().actions == 3  # type: ignore[union-attr]
+    last = done.run.telemetry.last()
+    assert last is not None and last.actions == 3
 
 
 def test_a_button_is_held_between_its_actions(run: Run) -> None:
@@ -87,13 +85,14 @@ SCRIPTS: dict[str, tuple[str, tuple[Message, ...]]] = {
 def test_what_a_user_did_can_be_done_again(start: Start, run: Run, text: str, actions: tuple[Message, ...]) -> None:
     live = start(text, live=True, speed=4.0, asks_user=True, noise=(5, 5))
     for number, action in enumerate(actions, 1):
-        until(live, lambda at=8 * number: live.telemetry.count > at)  # type: ignore[misc]
+        until_tick(live, 8 * number)
         live.send(action)
-    live.wait(30.0)
+    first = over(live)
     rows = (live.folder / "actions.jsonl").read_text().splitlines()
     script = tuple(ScriptedAction.from_plain(row) for row in map(json.loads, rows))
     assert [row.action for row in script] == list(actions)
-    for options in ({}, {"live": True, "speed": 0.0}):
+    ways: tuple[dict[str, Any], ...] = ({}, {"live": True, "speed": 0.0})
+    for options in ways:
         again = run(text, asks_user=True, noise=(5, 5), actions=script, **options)
-        assert again.recording == Done(live, live.ended).recording  # type: ignore[arg-type]
+        assert again.recording == first.recording
         assert (again.run.folder / "actions.jsonl").read_text().splitlines() == rows

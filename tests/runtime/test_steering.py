@@ -7,30 +7,17 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.runtime.conftest import Done, Start
-from tuisim.datalog.records import TICK_RECORD
+from tests.running import Run, Start, until
+from tuisim.core.state import TICK_RECORD
 from tuisim.decoding import decode_event
 from tuisim.errors import HostError
-from tuisim.host import RunHandle
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, StepTicks
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def until(run: RunHandle, ready: Callable[[], bool], seen: list[Message] | None = None) -> None:
-    """Pump until something holds."""
-    give_up = time.monotonic() + 20
-    while not ready():
-        assert time.monotonic() < give_up, "it never came"
-        run.wait_for_event(0.01)
-        events = run.pump()
-        if seen is not None:
-            seen += events
 
 
 HARD_TO_STOP = {
@@ -197,7 +184,7 @@ def test_rubbish_from_the_child_is_a_host_error(line: bytes) -> None:
         decode_event(line)
 
 
-def test_runs_of_the_same_program_are_told_apart(run: Callable[..., Done]) -> None:
+def test_runs_of_the_same_program_are_told_apart(run: Run) -> None:
     first, second = run("print('A: 1')"), run("print('A: 1')")
     assert first.run.run_id != second.run.run_id
     assert first.run.number + 1 == second.run.number

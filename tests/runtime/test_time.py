@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
-from tests.runtime.conftest import Done
-
-Run = Callable[..., Done]
+from tests.running import Run
 
 PROGRAMS = {
     "sleep": ("import time\ntime.sleep(1.5)\nprint(round(time.monotonic(), 3))", ["1.5"]),

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from tests.runtime.conftest import Done
-
-Run = Callable[..., Done]
+from tests.running import Run
 
 STOPPED_BY_A_THREAD = """\
 import threading, time

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import pytest
 
+from tests.running import Done, over
 from tuisim.commands.press import parse_press, press_actions
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import REMOTE_CHANNELS, REMOTE_CODES, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import GyroSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
 from tuisim.host import Program, RunHandle, RunOptions, start_run
-from tuisim.protocol import Ended
 
 START = Pose(500.0, 571.5, 0.0)
 SQUARE = RobotSpec(wheel_spacing_mm=168.0)
@@ -85,36 +85,6 @@ WORLDS = {
 }
 
 
-@dataclass(frozen=True)
-class Done:
-    """A run that is over."""
-
-    run: RunHandle
-    ended: Ended
-
-    @property
-    def lines(self) -> list[str]:
-        """What was printed."""
-        return [row.text for row in self.run.output.all_rows() if row.stream == 1]
-
-    @property
-    def errors(self) -> list[str]:
-        """Lines of error text."""
-        return [row.text for row in self.run.output.all_rows() if row.stream == 2]
-
-    @property
-    def pose(self) -> tuple[float, float, float]:
-        """Where the robot came to stand: x and y in mm, heading in degrees."""
-        last = self.run.telemetry.last()
-        assert last is not None
-        return last.x_mm, last.y_mm, last.heading_deg
-
-    @property
-    def recording(self) -> tuple[bytes, ...]:
-        """Everything the run recorded."""
-        return tuple((self.run.folder / name).read_bytes() for name in ("telemetry.bin", "output.bin"))
-
-
 RunOn = Callable[..., Done]
 
 
@@ -139,9 +109,7 @@ def run_on() -> Iterator[RunOn]:
         actions = press_actions([parse_press(press) for press in presses], spec.profile.tick_hz)
         options = RunOptions(live=live, speed=speed, time_limit_s=time_limit_s, actions=actions)
         handles.append(start_run(Program("program.py", text, "none"), spec, options))
-        ended = handles[-1].wait(60.0)
-        assert ended is not None
-        return Done(handles[-1], ended)
+        return over(handles[-1])
 
     yield finish
     for handle in handles:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tests.shim.conftest import Done, RunOn
+from tests.running import Done
+from tests.shim.conftest import RunOn
 from tuisim.datalog.face import Face, face_after
 from tuisim.datalog.records import LED, OutputRow
 

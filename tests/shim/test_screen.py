@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.shim.conftest import Done, RunOn
+from tests.running import Done
+from tests.shim.conftest import RunOn
 from tests.shim.table_console import SCREENS
 from tuisim.datalog.face import BLANK, DISPLAY_WIDTH, ROW_BYTES, Face, face_after
 from tuisim.datalog.records import CONSOLE, DISPLAY, OutputRow

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hashlib import md5
 
-from tests.shim.conftest import Done, RunOn
+from tests.running import Done
+from tests.shim.conftest import RunOn
 
 PROGRAM = """\
 import threading, time

@@ -10,6 +10,7 @@ from textual.widgets import Input, OptionList, Static
 
 from tests.ui.app_help import notices, ready, settings, until
 from tuisim.breaks import parse_breaks
+from tuisim.protocol import Looked
 from tuisim.ui.app import Lab
 from tuisim.ui.breakstore import Kept, following, keep, load_kept
 
@@ -43,9 +44,19 @@ def line(app: Lab) -> int:
     return app.debugging.standing.paused.line
 
 
-def values(app: Lab) -> dict[str, str]:
+def looked(app: Lab) -> Looked:
     assert app.debugging.standing is not None
-    return {one.name: one.value for one in app.debugging.standing.looked.variables}
+    return app.debugging.standing.looked
+
+
+def values(app: Lab) -> dict[str, str]:
+    return {one.name: one.value for one in looked(app).variables}
+
+
+def cursor_to(app: Lab, line: int) -> None:
+    """Put the cursor of the code panel on a line, counted from 1."""
+    assert app.desk.code is not None
+    app.desk.code._area.move_cursor((line - 1, 0))
 
 
 async def stands(pilot: Pilot[Any], app: Lab, at: int) -> None:
@@ -56,10 +67,15 @@ async def stands(pilot: Pilot[Any], app: Lab, at: int) -> None:
 async def press(pilot: Pilot[Any], app: Lab, key: str, *lines: int) -> None:
     """Press a key again and again; it leads to these lines."""
     for at in lines:
-        before = app.debugging.standing
-        await pilot.press(key)
-        await until(pilot, lambda before=before: app.debugging.standing not in (None, before))  # type: ignore[misc]
+        await pressed(pilot, app, key)
         await stands(pilot, app, at)
+
+
+async def pressed(pilot: Pilot[Any], app: Lab, key: str) -> None:
+    """Press a key that lets the program stand anew."""
+    before = app.debugging.standing
+    await pilot.press(key)
+    await until(pilot, lambda: app.debugging.standing not in (None, before))
 
 
 def drawn(app: Lab) -> str:
@@ -104,11 +120,11 @@ async def test_into_and_out_of_calls(home: object) -> None:
         await ready(pilot)
         await press(pilot, app, "n", 1, 2, 7, 11)
         await press(pilot, app, "s", 3, 4, 8)
-        looked = app.debugging.standing.looked  # type: ignore[union-attr]
-        assert [frame.function for frame in looked.stack] == ["inner", "outer", "<module>"]
+        assert [frame.function for frame in looked(app).stack] == ["inner", "outer", "<module>"]
         assert values(app) == {"m": "2"}
         await pilot.press("tab")
-        app.desk.debug.focus()  # type: ignore[union-attr]
+        assert app.desk.debug is not None
+        app.desk.debug.focus()
         await pilot.press("right")
         await until(pilot, lambda: values(app) == {"n": "1", "local": "2"})
         await pilot.press("u")
@@ -118,7 +134,7 @@ async def test_into_and_out_of_calls(home: object) -> None:
 async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> None:
     async with Lab(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.desk.code._area.move_cursor((4, 0))  # type: ignore[union-attr]
+        cursor_to(app, 5)
         await pilot.press("t")
         assert [one.text for one in app.debugging.breaks] == ["5"]
         await pilot.press("R")
@@ -157,8 +173,7 @@ async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: ob
         await pilot.press("enter", "escape", "R")
         await stands(pilot, app, 4)
         assert values(app) == {"total": "3", "i": "3"}
-        watched = app.debugging.standing.looked.watches  # type: ignore[union-attr]
-        assert [(watch.text, watch.value) for watch in watched] == [("total * 2", "6")]
+        assert [(watch.text, watch.value) for watch in looked(app).watches] == [("total * 2", "6")]
 
 
 async def test_the_variables_of_any_former_instant(home: object) -> None:
@@ -186,7 +201,7 @@ async def test_run_to_the_cursor_starts_the_program(home: object) -> None:
     app = Lab(settings(COUNTS))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
-        app.desk.code._area.move_cursor((5, 0))  # type: ignore[union-attr]
+        cursor_to(app, 6)
         await pilot.press("L")
         await stands(pilot, app, 6)
         await pilot.press("S")

@@ -31,13 +31,14 @@ def held_at(text: str) -> tuple[int, str, str]:
 
 def press_and_wait(terminal: Terminal, key: str, times: int) -> list[tuple[int, str, str]]:
     """Press a key so many times, each time the program stands elsewhere; return where it stood."""
-    seen = []
-    for _ in range(times):
-        before = held_at(terminal.screen())
-        terminal.keys(key)
-        text = terminal.until(lambda text, before=before: held_at(text)[0] not in (0, before[0]) and " …" not in text)
-        seen.append(held_at(text))
-    return seen
+    return [held_after(terminal, key) for _ in range(times)]
+
+
+def held_after(terminal: Terminal, key: str) -> tuple[int, str, str]:
+    """Press a key and wait until the program stands at another line."""
+    before = held_at(terminal.screen())[0]
+    terminal.keys(key)
+    return held_at(terminal.until(lambda text: held_at(text)[0] not in (0, before) and " …" not in text))
 
 
 def hold_at_line_15(terminal: Terminal) -> None:

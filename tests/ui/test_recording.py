@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -66,8 +68,8 @@ def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:
     assert len(index_of(tmp_path, rows).marks) < 4000
 
 
-def stored(text: str, **choices: object) -> StoredRun:
-    spec = build_run_spec(Settings(**{"background": "Grey_bands", **choices}))  # type: ignore[arg-type]
+def stored(text: str, **choices: Any) -> StoredRun:
+    spec = build_run_spec(replace(Settings(background="Grey_bands"), **choices))
     run = start_run(program(text), spec, RunOptions())
     assert run.wait(60)
     return RunStore().load_run(run.run_id)

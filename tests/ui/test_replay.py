@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from textual.widgets import Input, OptionList
@@ -25,9 +27,9 @@ from tuisim.ui.snapshot import ENDED
 pytestmark = pytest.mark.usefixtures("home")
 
 
-def stored(text: str = LOGS, **choices: object) -> str:
+def stored(text: str = LOGS, **choices: Any) -> str:
     """Carry a program out and return the run's id."""
-    spec = build_run_spec(Settings(**{"background": "Grey_bands", "seed": 5, **choices}))  # type: ignore[arg-type]
+    spec = build_run_spec(replace(Settings(background="Grey_bands", seed=5), **choices))
     options = RunOptions(actions=(ScriptedAction(100, SetNoise(20, 0)), ScriptedAction(200, SetNoise(0, 0))))
     run = start_run(program(text), spec, options)
     assert run.wait(60)
@@ -139,9 +141,9 @@ def test_the_command_refuses(tuisim: Command, words: list[str], said: str) -> No
     assert len(done.stderr.splitlines()) == 1
 
 
-def info(number: int, **facts: object) -> RunInfo:
-    base = {"program": "line.py", "background": "Loop", "profile": "robolab", "seed": 0, "end": "finished"}
-    return RunInfo(number, f"id{number}", "2026-01-02T03:04:05+00:00", **{**base, **facts})  # type: ignore[arg-type]
+def info(number: int, **facts: Any) -> RunInfo:
+    base = RunInfo(number, f"id{number}", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, "finished")
+    return replace(base, **facts)
 
 
 @pytest.mark.parametrize(

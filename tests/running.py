@@ -1,0 +1,72 @@
+"""What tests of real runs in real child processes share: a run that is over, and waiting for one that is not."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tuisim.host import RunHandle
+from tuisim.protocol import Ended, Message
+
+PATIENCE_S = 20.0
+
+
+@dataclass(frozen=True)
+class Done:
+    """A run that is over."""
+
+    run: RunHandle
+    ended: Ended
+
+    @property
+    def lines(self) -> list[str]:
+        """What was printed, without error text."""
+        return [row.text for row in self.run.output.all_rows() if row.stream == 1]
+
+    @property
+    def errors(self) -> list[str]:
+        """Lines of error text."""
+        return [row.text for row in self.run.output.all_rows() if row.stream == 2]
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Where the robot came to stand: x and y in mm, heading in degrees."""
+        last = self.run.telemetry.last()
+        assert last is not None
+        return last.x_mm, last.y_mm, last.heading_deg
+
+    @property
+    def recording(self) -> tuple[bytes, ...]:
+        """Everything the run recorded."""
+        return tuple((self.run.folder / name).read_bytes() for name in ("telemetry.bin", "output.bin"))
+
+
+Start = Callable[..., RunHandle]
+"""The fixture `start`."""
+
+Run = Callable[..., Done]
+"""The fixture `run`."""
+
+
+def over(handle: RunHandle, patience_s: float = 60.0) -> Done:
+    """Wait for the end of a run."""
+    ended = handle.wait(patience_s)
+    assert ended is not None
+    return Done(handle, ended)
+
+
+def until(run: RunHandle, ready: Callable[[], bool], seen: list[Message] | None = None) -> None:
+    """Pump until something holds."""
+    give_up = time.monotonic() + PATIENCE_S
+    while not ready():
+        assert time.monotonic() < give_up, "it never came"
+        run.wait_for_event(0.01)
+        events = run.pump()
+        if seen is not None:
+            seen += events
+
+
+def until_tick(run: RunHandle, tick: int) -> None:
+    """Pump until a tick is recorded, or the run is over."""
+    until(run, lambda: run.telemetry.count > tick or run.ended is not None)
