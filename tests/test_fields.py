@@ -148,12 +148,12 @@ def test_a_mat_with_many_diameters_is_kept_whole(home: Path, tmp_path: Path, mon
 def test_parts_of_killed_processes_are_cleared(home: Path, tmp_path: Path) -> None:
     folder = home / "cache" / "fields"
     folder.mkdir(parents=True)
-    old, new = folder / "old.part", folder / "new.part"
+    old, new = folder / ".sums.old.tmp", folder / ".sums.new.tmp"
     for part in (old, new):
         part.write_bytes(b"half")
     os.utime(old, (0, 0))
     fields.prepare(picture(tmp_path), ())
-    assert cached(home, "*.part") == [new]
+    assert cached(home, "*.tmp") == [new]
 
 
 def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None:

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import mmap
 import os
-import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tuisim.atomic import PART_SUFFIX, replacing, sweep
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import BackgroundError
@@ -33,8 +33,6 @@ MAX_DIAMETER_PX = 128
 
 _LAYOUT = 1
 """Part of the file names: another layout or another way to decode needs another number."""
-_PART = ".part"
-_STALE_PART_S = 3600.0
 _BLOCK_ROWS = 64
 """Rows summed at a time, so that they stay in the processor's cache."""
 
@@ -180,16 +178,8 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 def _store(path: Path, array: NDArray[Any]) -> None:
     """Write an array's bytes; another process sees the whole file or none."""
-    import tempfile
-
-    handle, part = tempfile.mkstemp(suffix=_PART, dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(array.data)
-        Path(part).replace(path)
-    finally:
-        with suppress(FileNotFoundError):
-            Path(part).unlink()
+    with replacing(path, lasting=False) as stream:
+        stream.write(array.data)
 
 
 def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
@@ -201,11 +191,10 @@ def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
 
 def _trim(folder: Path, keep: set[Path]) -> None:
     """Remove the least recently used files beyond MAX_CACHED_FILES, and what killed processes left."""
-    files = sorted(_by_age(folder))
-    stale = [path for used, path in files if path.suffix == _PART and used < time.time() - _STALE_PART_S]
-    cached = [path for _, path in files if path.suffix != _PART]
+    sweep(folder)
+    cached = [path for _, path in sorted(_by_age(folder)) if path.suffix != PART_SUFFIX]
     surplus = max(0, len(cached) - MAX_CACHED_FILES)
-    for path in stale + [path for path in cached if path not in keep][:surplus]:
+    for path in [path for path in cached if path not in keep][:surplus]:
         path.unlink(missing_ok=True)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tuisim.config.presets import OBSTACLES
 from tuisim.config.reading import Section, means_file, read_file, shown
-from tuisim.config.writing import toml_lines, write_whole
+from tuisim.config.writing import toml_lines, write_toml
 from tuisim.core.spec import Obstacle
 from tuisim.errors import ObstacleError
 from tuisim.switches import nearest
@@ -84,7 +84,7 @@ def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
     """
     if len(obstacles) > MAX_OBSTACLES:
         raise ObstacleError(f"cannot hold {len(obstacles)} obstacles", f"at most {MAX_OBSTACLES}", file=str(path))
-    write_whole(Path(path), obstacle_file(obstacles), ObstacleError)
+    write_toml(Path(path), obstacle_file(obstacles), ObstacleError)
 
 
 def obstacle_file(obstacles: Sequence[Obstacle]) -> list[str]:

@@ -17,7 +17,7 @@ from tuisim.config.robot_table import (
     PORT_KEYS,
     robot_from_table,
 )
-from tuisim.config.writing import Scalar, toml_key, toml_lines, write_whole
+from tuisim.config.writing import Scalar, toml_key, toml_lines, write_toml
 from tuisim.core.spec import ROBOT_WEIGHTS, RobotSpec
 from tuisim.errors import RobotError
 from tuisim.switches import RobotChoice, nearest
@@ -86,7 +86,7 @@ def save_robot(spec: RobotSpec, path: Path | str) -> None:
     table = Section(parse_toml("\n".join(lines), str(path), RobotError), str(path), RobotError)
     if robot_from_table(table, name_of(path)).spec != spec:
         raise RobotError("the robot has something that no file can say", file=str(path))
-    write_whole(path, lines, RobotError)
+    write_toml(path, lines, RobotError)
 
 
 def robot_file(spec: RobotSpec) -> list[str]:

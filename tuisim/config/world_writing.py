@@ -17,7 +17,7 @@ from tuisim.config.reading import Section, parse_toml
 from tuisim.config.robots import robot_lines
 from tuisim.config.world_infrared import infrared_lines
 from tuisim.config.worlds import world_from_table
-from tuisim.config.writing import Scalar, toml_lines, write_whole
+from tuisim.config.writing import Scalar, toml_lines, write_toml
 from tuisim.core.profile import PROFILES, ProfileSpec
 from tuisim.core.spec import RobotSpec, RunSpec
 from tuisim.errors import ConfigError
@@ -95,7 +95,7 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None) -> N
     table = Section(parse_toml("\n".join(lines), str(path), ConfigError), str(path), ConfigError)
     if build_run_spec(settings_of(world_from_table(table, path).settings)) != spec:
         raise ConfigError("the world has something that no file can say", file=str(path))
-    write_whole(path, lines, ConfigError)
+    write_toml(path, lines, ConfigError)
 
 
 def world_lines(spec: RunSpec, folder: Path, program: str | None = None) -> list[str]:

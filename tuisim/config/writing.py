@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import secrets
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
+from tuisim.atomic import replacing
 from tuisim.errors import ConfigError
 
 Scalar = str | bool | int | float | list[str] | list[float]
@@ -45,8 +44,8 @@ def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = Mappi
     return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
 
 
-def write_whole(path: Path, lines: Iterable[str], error: type[ConfigError]) -> None:
-    """Write a file that is whole or not there: beside its place first, then renamed into it.
+def write_toml(path: Path, lines: Iterable[str], error: type[ConfigError]) -> None:
+    """Write a TOML file whole or not at all.
 
     Raises:
         ConfigError: of the class `error`: it cannot be written; what was there is as it was.
@@ -54,15 +53,8 @@ def write_whole(path: Path, lines: Iterable[str], error: type[ConfigError]) -> N
     try:
         if path.suffix != ".toml":
             raise error("must end in .toml", file=str(path))
-        beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
-        try:
-            with beside.open("xb") as stream:
-                stream.write(("\n".join(lines) + "\n").encode())
-                stream.flush()
-                os.fsync(stream.fileno())
-            beside.replace(path)
-        finally:
-            beside.unlink(missing_ok=True)
+        with replacing(path) as stream:
+            stream.write(("\n".join(lines) + "\n").encode())
     except (OSError, ValueError) as reason:
         message = f"cannot be written: {getattr(reason, 'strerror', None) or reason}"
         raise error(message, file=str(path)) from None

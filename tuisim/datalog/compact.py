@@ -7,17 +7,16 @@ length, its last record, and a checksum of its bytes.
 
 from __future__ import annotations
 
-import time
 import zlib
 from dataclasses import astuple, dataclass
 from pathlib import Path
 from struct import Struct
 from struct import error as StructError
 
+from tuisim.atomic import replacing, sweep
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import TICK_RECORD
 from tuisim.datalog import fold_rows, fold_ticks
-from tuisim.datalog.atomic import replacing
 from tuisim.datalog.fold_ticks import Gear
 from tuisim.datalog.records import (
     HEADER_BYTES,
@@ -39,8 +38,6 @@ _HEADER = Struct("<8sIIQQ4d64s")
 """Magic, version, checksum of the recording, its length as its own header told it, packed bytes, gear, last record."""
 _CHECK = Struct("<I")
 """Checksum of the header, right after it."""
-LEFT_OVER_S = 3600.0
-"""A file beside its place that has not changed for so long was left by a process that died."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,9 +123,7 @@ def compact(folder: Path, spec: RunSpec) -> None:
         path = folder / name
         try:
             _compact_file(path, Gear.of(spec))
-            for beside in folder.glob(f".{name}{PACKED_SUFFIX}.*.tmp"):
-                if time.time() - beside.stat().st_mtime > LEFT_OVER_S:
-                    beside.unlink(missing_ok=True)
+            sweep(folder, name + PACKED_SUFFIX)
         except OSError as error:
             raise LogError(f"cannot be packed: {error.strerror or error}", file=str(path)) from error
 

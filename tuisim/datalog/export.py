@@ -10,8 +10,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tuisim.atomic import replacing
 from tuisim.core.spec import to_plain
-from tuisim.datalog.atomic import replacing
 from tuisim.datalog.formats import EXPORTERS, METADATA_KEY, Metadata, companion_of
 from tuisim.datalog.frames import samples_frame, telemetry_frame
 from tuisim.datalog.runfile import StoredRun
@@ -100,9 +100,9 @@ def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> N
     try:
         # The text that belongs to the file is renamed just before it, when both are whole.
         with ExitStack() as files:
-            exporter.write(frame, metadata, files.enter_context(replacing(_behind_links(target))))
+            exporter.write(frame, metadata, files.enter_context(replacing(target)))
             if exporter.companion:
-                beside = files.enter_context(replacing(_behind_links(companion_of(target))))
+                beside = files.enter_context(replacing(companion_of(target)))
                 beside.write(json.dumps(metadata, indent=1, sort_keys=True).encode() + b"\n")
     except OSError as error:
         raise ExportError(f"cannot write {target}: {error.strerror or error}") from error
@@ -216,11 +216,6 @@ def _source(path: str | Path) -> Path:
 
 def _allowed() -> str:
     return ", ".join(EXPORTERS)
-
-
-def _behind_links(path: Path) -> Path:
-    """Where a link leads: the file is replaced, not the link."""
-    return Path(os.path.realpath(path))
 
 
 def _unit(column: str) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from tuisim.datalog.atomic import replacing
+from tuisim.atomic import replacing
 from tuisim.datalog.store import home_folder
 from tuisim.errors import LogError
 

@@ -11,8 +11,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
+from tuisim.atomic import replacing
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
-from tuisim.datalog.atomic import replacing
 from tuisim.datalog.lock import is_held
 from tuisim.datalog.views import OutputView, TelemetryView, TickRecord
 from tuisim.errors import LogError, TuisimError

@@ -7,8 +7,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from tuisim.atomic import replacing
 from tuisim.breaks import Break, break_line_of, moved, parse_break
-from tuisim.datalog.atomic import replacing
 from tuisim.errors import ConfigError
 
 FOLDER = "breaks"

@@ -71,7 +71,7 @@ def delete_pose(name: str) -> None:
 
 
 def _write(poses: Mapping[str, Pose]) -> None:
-    from tuisim.config.writing import toml_key, toml_lines, write_whole
+    from tuisim.config.writing import toml_key, toml_lines, write_toml
 
     path = poses_file()
     lines = [_HEAD, "", "[poses]"]
@@ -81,4 +81,4 @@ def _write(poses: Mapping[str, Pose]) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ConfigError(f"cannot be made: {error.strerror or error}", file=str(path.parent)) from None
-    write_whole(path, lines, ConfigError)
+    write_toml(path, lines, ConfigError)

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from tuisim.datalog.atomic import replacing
+from tuisim.atomic import replacing
 from tuisim.errors import ConfigError
 
 FOLDER = "drafts"

@@ -54,13 +54,12 @@ def write_text(path: Path, text: str, form: Form) -> None:
     Raises:
         ConfigError: it cannot be written, or not in its encoding.
     """
-    from tuisim.datalog.atomic import replacing
+    from tuisim.atomic import replacing
 
     data = (codecs.BOM_UTF8 if form.has_mark else b"") + _encoded(text, form, path)
-    target = Path(os.path.realpath(path))
     try:
-        mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
-        with replacing(target) as file:
+        mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else None
+        with replacing(path) as file:
             if mode is not None:
                 os.fchmod(file.fileno(), mode)
             file.write(data)

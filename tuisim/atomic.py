@@ -1,0 +1,56 @@
+"""Files that are whole or not there: written beside their place, then renamed into it."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO
+
+PART_SUFFIX = ".tmp"
+"""Ends the name of a file that is being written, `.NAME.random.tmp`; a killed process leaves it behind."""
+
+LEFT_OVER_S = 3600.0
+
+
+@contextmanager
+def replacing(path: Path, *, lasting: bool = True) -> Iterator[BinaryIO]:
+    """Open a new file that takes the place of `path` when the block ends well.
+
+    If the block raises, or a write fails, `path` is as it was and nothing is left beside it.
+    A link stays one: the file that it leads to is replaced.
+
+    Args:
+        path: The file; its folder must be there.
+        lasting: Whether it must outlive a power cut; False is quicker, for what can be made again.
+
+    Raises:
+        OSError: the folder or the file cannot be written.
+    """
+    target = Path(os.path.realpath(path))
+    # Not `tempfile`: its files are readable by the owner only, whatever the umask says.
+    beside = target.with_name(f".{target.name}.{secrets.token_hex(4)}{PART_SUFFIX}")
+    try:
+        with open(beside, "xb") as handle:
+            yield handle
+            handle.flush()
+            if lasting:
+                os.fsync(handle.fileno())
+        os.replace(beside, target)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def sweep(folder: Path, name: str = "*") -> None:
+    """Remove what killed processes left of files of this name; a `*` stands for any letters.
+
+    Younger than an hour it may be of a process that still writes.
+    """
+    for beside in folder.glob(f".{name}.*{PART_SUFFIX}"):
+        # Another process may sweep too.
+        with suppress(FileNotFoundError):
+            if time.time() - beside.stat().st_mtime > LEFT_OVER_S:
+                beside.unlink()
