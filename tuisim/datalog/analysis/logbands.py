@@ -12,7 +12,7 @@ from tuisim.datalog.analysis.bands import Plateau, plateaus
 from tuisim.datalog.analysis.levels import nearest_grey, without_clamping
 from tuisim.datalog.analysis.reckoning import distance_mm
 from tuisim.datalog.arrays import FloatArray
-from tuisim.datalog.opening.log import Log, Series, numbers_of
+from tuisim.datalog.opening.log import Log, Series
 
 NAN = float("nan")
 
@@ -132,7 +132,7 @@ def driven_mm(log: Log, series: Series) -> FloatArray | None:
     names = log.table.column_names
     if "x_mm" not in names or "y_mm" not in names or not len(series.rows):
         return None
-    x_mm, y_mm = (numbers_of(log.table.column(name))[series.rows] for name in ("x_mm", "y_mm"))
+    x_mm, y_mm = (log.numbers(name)[series.rows] for name in ("x_mm", "y_mm"))
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
         return None
     return distance_mm(x_mm, y_mm)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pyarrow as pa
@@ -13,7 +13,8 @@ import pyarrow.csv as pa_csv
 
 from tuisim.datalog.opening.lines import Block
 from tuisim.datalog.opening.notes import Notes
-from tuisim.datalog.opening.numbers import are_numbers, parsed_numbers
+from tuisim.datalog.opening.numbers import EMPTY_CELLS, are_numbers, parsed_numbers
+from tuisim.datalog.opening.texts import CODED, text_kind
 
 SEPARATORS = (",", ";", "\t", "|")
 _SNIFFED_LINES = 30
@@ -31,8 +32,8 @@ class CsvReader:
         self._names: list[str] = []
         self._separator = ","
         self._decimal_comma = False
-        self._kinds: dict[str, bool] = {}
-        """By column, whether it holds numbers; missing while all its cells were empty."""
+        self._kinds: dict[str, pa.DataType] = {}
+        """By column; missing while all its cells were empty."""
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it holds but the heading."""
@@ -40,8 +41,11 @@ class CsvReader:
             block = self._begin(block)
             if not self._names:
                 return None
-        cells = self._fast(block)
-        columns, rows = self._careful(block) if cells is None else (cells, None)
+        rows = None
+        # Most blocks hold what they should; cells are only looked at as texts where one of them does not.
+        columns = self._parsed(block, self._kinds) or self._parsed(block, {})
+        if columns is None:
+            columns, rows = self._careful(block)
         if not len(columns[0]):
             return None
         return pa.table(
@@ -79,8 +83,8 @@ class CsvReader:
 
     # Cells
 
-    def _fast(self, block: Block) -> list[pa.Array] | None:
-        """All cells by the library's parser, None if a row is not like the others."""
+    def _parsed(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
+        """All cells by the library's parser, None if a row is not like the others or a cell not of its kind."""
         if not block.text.strip():
             return [pa.array([], pa.string()) for _ in self._names]
         try:
@@ -89,7 +93,10 @@ class CsvReader:
                 pa_csv.ReadOptions(column_names=self._names, use_threads=False, block_size=len(block.text) + 1),
                 pa_csv.ParseOptions(delimiter=self._separator, newlines_in_values=False),
                 pa_csv.ConvertOptions(
-                    column_types=dict.fromkeys(self._names, pa.string()), strings_can_be_null=False, null_values=[]
+                    column_types={name: kinds.get(name, pa.string()) for name in self._names},
+                    strings_can_be_null=False,
+                    null_values=EMPTY_CELLS,
+                    decimal_point="," if self._decimal_comma else ".",
                 ),
             )
         except pa.ArrowInvalid:
@@ -127,12 +134,15 @@ class CsvReader:
 
     def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
         if name not in self._kinds:
-            kind = are_numbers(cells, self._decimal_comma)
-            if kind is None:
-                return pa.nulls(len(cells), pa.float64())
-            self._kinds[name] = kind
-        if not self._kinds[name]:
-            return cells.dictionary_encode() if len(cells) > 100 else cells
+            numeric = are_numbers(cells, self._decimal_comma)
+            if numeric is None:
+                return pa.nulls(len(cells))
+            self._kinds[name] = pa.float64() if numeric else text_kind(cells)
+        kind = self._kinds[name]
+        if cells.type == kind:
+            return cells
+        if kind == CODED:
+            return cells.dictionary_encode()
         numbers, wrong = parsed_numbers(cells, self._decimal_comma)
         if (count := _count(wrong)) > 0:
             at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]

@@ -115,7 +115,8 @@ class LineCutter:
         first = self._row
         self._row += text.count(b"\n")
         try:
-            text.decode("utf-8")
+            if not text.isascii():
+                text.decode("utf-8")
         except UnicodeDecodeError:
             self._notes.say("not UTF-8: read as Windows-1252")
             text = text.decode("cp1252", "replace").encode()

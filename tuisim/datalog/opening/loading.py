@@ -29,6 +29,8 @@ FIRST_BYTES = 1 << 18
 """Read and shown first."""
 _GZIP_MAGIC, _GZIP_BITS = b"\x1f\x8b", 31
 _SHOW_EVERY_S = 0.5
+_SHOW_SELDOM = 5.0
+"""Times as long as showing took, reading goes on before the next time."""
 _TABLES = (".csv", ".tsv")
 
 
@@ -87,14 +89,18 @@ def loading(source: str | Path, time: str | None = None, values: Sequence[str] =
     title = "standard input" if str(source) == STDIN else str(source)
     notes = Notes()
     parts: list[pa.Table] = []
-    shown_at = 0.0
+    show_at = 0.0
     for part, table in _parts(source, notes):
         if table is not None:
             parts.append(table)
         now = monotonic()
-        show = bool(parts) and now - shown_at > _SHOW_EVERY_S * (1 + len(parts) // 50)
-        yield Loaded(part, _log(title, parts, notes, time, values) if show else None)
-        shown_at = now if show else shown_at
+        if not parts or now < show_at:
+            yield Loaded(part, None)
+            continue
+        yield Loaded(part, _log(title, parts, notes, time, values))
+        # Looking at what there is so far may take no more than a fraction of the whole time.
+        took = monotonic() - now
+        show_at = now + took + max(_SHOW_EVERY_S, _SHOW_SELDOM * took)
     if not sum(part.num_rows for part in parts):
         said = "; ".join(notes.texts())
         raise LogError("no rows" + (f": {said}" if said else ""), "a log has a heading and a row a sample", file=title)
@@ -122,8 +128,12 @@ def _metadata_beside(path: Path) -> Mapping[str, Any]:
 
 
 def joined(parts: Sequence[pa.Table]) -> pa.Table:
-    """Return tables one below the other; a column that one does not have is empty there."""
-    return pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
+    """Return tables one below the other; a column that one does not have is empty there, one without type a number."""
+    table = pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
+    for at, kind in enumerate(table.schema.types):
+        if pa.types.is_null(kind):
+            table = table.set_column(at, table.column_names[at], table.column(at).cast(pa.float64()))
+    return table
 
 
 def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from tuisim.datalog.arrays import FloatArray, IntArray
 from tuisim.datalog.opening.layout import ROW, Layout
+from tuisim.datalog.opening.members import Member, members
 from tuisim.datalog.opening.moments import seconds_of
 from tuisim.errors import LogError
 
@@ -27,9 +27,25 @@ class Series:
     values: FloatArray
     """Shape (n,); not a number where a cell is empty."""
     rows: IntArray
-    """Row of the table that each sample stands in, from 0."""
+    """Row of the table that each sample stands in, from 0; rising."""
     run: int = 0
     """Number in the run column, 0 if there is none."""
+
+
+@dataclass(slots=True)
+class _Kept:
+    """What of a log has been made ready to be reckoned with: only what was asked for, and that only once."""
+
+    members: Mapping[str, Member] | None = None
+    series: dict[str, Series] = field(default_factory=dict)
+    numbers: dict[str, FloatArray] = field(default_factory=dict)
+    times_s: FloatArray | None = None
+    whole: tuple[IntArray, FloatArray] | None = None
+    """Rows and times of a series that has all rows."""
+
+
+def _has_rows(member: Member) -> bool:
+    return member.rows is None or len(member.rows) > 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +61,7 @@ class Log:
     """Rows or cells that could not be read."""
     metadata: Mapping[str, Any] = field(default_factory=dict)
     """What an export of ours says of its runs."""
-    _made: dict[str, Series] = field(default_factory=dict, repr=False, compare=False)
+    _kept: _Kept = field(default_factory=_Kept, repr=False, compare=False)
 
     @property
     def rows(self) -> int:
@@ -55,60 +71,48 @@ class Log:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the series, in the order in which they first appear; of several runs with `#` and its number."""
-        return tuple(name for name, _, _ in self._keys())
+        return tuple(self._members())
 
-    def _keys(self) -> list[tuple[str, str, int]]:
-        """Name, variable and run of each series."""
-        layout, table = self.layout, self.table
-        runs = pc.unique(table.column(layout.run)).to_pylist() if layout.run else [0]
-        several = len(runs) > 1
-        if not layout.variable:
-            variables = [(name, int(run or 0)) for run in runs for name in layout.values]
-        elif not several:
-            variables = [
-                (name, int(runs[0] or 0) if runs else 0)
-                for name in pc.unique(table.column(layout.variable)).to_pylist()
-            ]
-        else:
-            pairs = table.select([layout.variable, layout.run]).group_by([layout.variable, layout.run]).aggregate([])
-            found = zip(pairs.column(0).to_pylist(), pairs.column(1).to_pylist(), strict=True)
-            variables = [(name, int(run or 0)) for name, run in found]
-        return [(f"{name} #{run}" if several else str(name), str(name), run) for name, run in variables]
+    def _members(self) -> Mapping[str, Member]:
+        kept = self._kept
+        if kept.members is None:
+            found: dict[str, Member] = {}
+            for member in members(self.table, self.layout):
+                # What has no name or run is called like those that have such a name, but has no rows.
+                if member.name not in found or not _has_rows(found[member.name]):
+                    found[member.name] = member
+            kept.members = found
+        return kept.members
 
     def series(self, name: str) -> Series:
-        """Return a series.
+        """Return a series. Do not write to its arrays: they may be those of another one, or of the table.
 
         Raises:
             LogError: there is none of that name.
         """
-        if name not in self._made:
-            for key, variable, run in self._keys():
-                if key == name:
-                    self._made[name] = self._series(key, variable, run)
-                    break
-            else:
+        if name not in self._kept.series:
+            member = self._members().get(name)
+            if member is None:
                 raise LogError(f"no variable {name!r}", f"there are {', '.join(self.names) or 'none'}", file=self.title)
-        return self._made[name]
+            self._kept.series[name] = self._series(member)
+        return self._kept.series[name]
 
-    def _series(self, name: str, variable: str, run: int) -> Series:
-        layout, mask = self.layout, None
-        if layout.variable:
-            mask = pc.equal(self.table.column(layout.variable).cast(pa.string()), variable)
-        if layout.run and name != variable:
-            of_run = pc.equal(self.table.column(layout.run), run)
-            mask = of_run if mask is None else pc.and_(mask, of_run)
-        column = layout.values[0] if layout.variable else variable
-        values = numbers_of(self.table.column(column))
-        rows = np.arange(self.rows) if mask is None else np.flatnonzero(pc.fill_null(mask, False).to_numpy())
-        if len(rows) != self.rows:
-            values = values[rows]
-        return Series(name, self._times(rows), values, rows, run)
+    def _series(self, member: Member) -> Series:
+        layout, rows = self.layout, member.rows
+        values = self.numbers(layout.values[0] if layout.variable else member.variable)
+        if rows is not None:
+            return Series(member.name, self._times(rows), values[rows], rows, member.run)
+        kept = self._kept
+        if kept.whole is None:
+            kept.whole = np.arange(self.rows), self._times(None)
+        return Series(member.name, kept.whole[1], values, kept.whole[0], member.run)
 
-    def _times(self, rows: IntArray) -> FloatArray:
+    def _times(self, rows: IntArray | None) -> FloatArray:
         if self.layout.time == ROW:
-            return np.arange(len(rows), dtype=np.float64)
-        times = seconds_of(self.table.column(self.layout.time), self.layout.unit_s)
-        times = times if len(rows) == self.rows else times[rows]
+            return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
+        if self._kept.times_s is None:
+            self._kept.times_s = seconds_of(self.table.column(self.layout.time), self.layout.unit_s)
+        times = self._kept.times_s if rows is None else self._kept.times_s[rows]
         # A sample without a time of its own stands at the one before it.
         missing = ~np.isfinite(times)
         if missing.any():
@@ -116,9 +120,15 @@ class Log:
             times = np.nan_to_num(times[last])
         return times
 
+    def numbers(self, column: str) -> FloatArray:
+        """Return a column of numbers as floats, shape (n,); not a number where it is empty. Not to be written to."""
+        if column not in self._kept.numbers:
+            self._kept.numbers[column] = numbers_of(self.table.column(column))
+        return self._kept.numbers[column]
+
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another meaning of its columns."""
-        return replace(self, layout=layout, _made={})
+        return replace(self, layout=layout, _kept=_Kept())
 
 
 def numbers_of(column: pa.ChunkedArray) -> FloatArray:

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 _NUMBER = r"^[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?$|^[+-]?(?i:inf|infinity|nan)$"
-_EMPTY = ("", "NA", "N/A", "null", "None", "-")
+EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
 """Cells that say that there is no value."""
 
 
@@ -25,7 +25,7 @@ def parsed_numbers(cells: pa.Array, decimal_comma: bool) -> tuple[pa.Array, pa.A
     texts: Any = pc.utf8_trim_whitespace(cells)
     if decimal_comma:
         texts = pc.replace_substring(texts, ",", ".")
-    empty = pc.fill_null(pc.is_in(texts, value_set=pa.array(_EMPTY)), True)
+    empty = pc.fill_null(pc.is_in(texts, value_set=pa.array(EMPTY_CELLS)), True)
     texts = pc.if_else(empty, None, texts)
     wrong = pa.nulls(len(texts), pa.bool_())
     try:

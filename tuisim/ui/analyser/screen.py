@@ -22,7 +22,7 @@ from tuisim.ui.analyser.beside import Beside
 from tuisim.ui.analyser.chart import LogChart
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.pane import PaneView
-from tuisim.ui.analyser.subject import Subject, Wanted, opening
+from tuisim.ui.analyser.subject import Wanted, opening
 from tuisim.ui.cellview import LinesView
 
 _KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
@@ -111,7 +111,10 @@ class Analyser(ModalScreen[None]):
             for subject in opening(wanted):
                 if wanted is not self.wanted or not self.is_running:
                     return
-                self.app.call_from_thread(self._take, subject)
+                model = Model(subject)
+                # What the first chart needs of a long log is reckoned here, where no key waits for it.
+                model.traces.span_s()
+                self.app.call_from_thread(self._take, model)
         except TuisimError as error:
             self.app.call_from_thread(self._failed, wanted, error)
 
@@ -126,19 +129,15 @@ class Analyser(ModalScreen[None]):
             self.wanted = self.model.subject.wanted
             self.update()
 
-    def _take(self, subject: Subject) -> None:
+    def _take(self, model: Model) -> None:
+        subject, before = model.subject, self.model
         if subject.wanted is not self.wanted:
             return
-        before = self.model
         if subject.done:
             now_s = monotonic()
             self._reading, self._next_look_s = False, now_s + _PATIENCE * (now_s - self._began_s)
             self._stamp = subject.stamp()
-        try:
-            self.model = Model(subject)
-        except TuisimError as error:
-            self._failed(subject.wanted, error)
-            return
+        self.model = model
         if before is not None and before.subject.wanted is subject.wanted:
             self.model.take_over(before)
         else:

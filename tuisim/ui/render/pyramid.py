@@ -26,10 +26,10 @@ class Pyramid:
     """
 
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
-        good = (np.abs(values) < _MOST) & (np.abs(times_s) < _MOST)
         self._index: npt.NDArray[np.intp] | None = None
         """Which of the given points each one was, None if all are still where they were."""
-        if not good.all():
+        if not (_measurable(values) and _measurable(times_s)):
+            good = (np.abs(values) < _MOST) & (np.abs(times_s) < _MOST)
             self._index = np.flatnonzero(good)
             times_s, values = times_s[good], values[good]
         if len(times_s) > 1 and (times_s[1:] < times_s[:-1]).any():
@@ -38,6 +38,8 @@ class Pyramid:
             self._index = order if self._index is None else self._index[order]
         self.times_s, self.values = times_s, values
         self._levels: list[tuple[FloatArray, FloatArray]] = []
+        while len(self._levels[-1][0] if self._levels else values) > _BLOCK:
+            self._add_level()
 
     def points(self, x_limits: tuple[float, float], columns: int) -> tuple[FloatArray, FloatArray]:
         """Return points that look the same as all points do, times and values, a few thousand at most.
@@ -53,7 +55,7 @@ class Pyramid:
             level, size = level + 1, size * _BLOCK
         if level < 0:
             return self.times_s[first:last], self.values[first:last]
-        least, greatest = self._level(level)
+        least, greatest = self._levels[level]
         blocks = np.arange(first // size, (last - 1) // size + 1)
         starts, ends = blocks * size, np.minimum((blocks + 1) * size, len(self.times_s)) - 1
         low, high = least[blocks], greatest[blocks]
@@ -63,12 +65,10 @@ class Pyramid:
         values[0::2], values[1::2] = np.where(rising, low, high), np.where(rising, high, low)
         return times_s, values
 
-    def _level(self, number: int) -> tuple[FloatArray, FloatArray]:
-        while len(self._levels) <= number:
-            least, greatest = self._levels[-1] if self._levels else (self.values, self.values)
-            starts = np.arange(0, len(least), _BLOCK)
-            self._levels.append((np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts)))
-        return self._levels[number]
+    def _add_level(self) -> None:
+        least, greatest = self._levels[-1] if self._levels else (self.values, self.values)
+        starts = np.arange(0, len(least), _BLOCK)
+        self._levels.append((np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts)))
 
     def nearest(self, time_s: float) -> int:
         """Return which of the given points is nearest to a time; there must be a finite one."""
@@ -82,3 +82,9 @@ class Pyramid:
         first = int(np.searchsorted(self.times_s, start_s, "left"))
         last = int(np.searchsorted(self.times_s, stop_s, "right"))
         return self.times_s[first:last], self.values[first:last]
+
+
+def _measurable(numbers: FloatArray) -> bool:
+    """Whether all numbers are within measure; there is nothing to be copied to find out."""
+    # A single one that is not a number makes least and greatest none, and all comparisons false.
+    return not len(numbers) or bool(numbers.min() > -_MOST and numbers.max() < _MOST)
