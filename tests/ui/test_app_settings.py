@@ -45,6 +45,7 @@ async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
         assert "‹ Default_Robot ›" in screen_text(app)
         assert row(app, "wheel_spacing_mm").entry.value == "180"
         assert row(app, "left.port").entry.value == "in2"
+        assert [panel for panel in app.desk.panels if app.desk.panels[panel].has_class("-hears-keys")] == ["settings"]
         # Letters are still keys of the app.
         await pilot.press("Z")
         assert not app.desk.shown("settings")

@@ -176,6 +176,24 @@ class Desk(Container):
         """Lay out for the new size."""
         self.lay_out()
 
+    def on_descendant_focus(self, event: events.DescendantFocus) -> None:
+        """Mark the panel that hears the keys.
+
+        By a class, which changes only when the keys go to another panel: `:focus-within` would have Textual work out
+        the style of every field of a form at each step from one field to the next.
+        """
+        self._mark(event.widget)
+
+    def on_descendant_blur(self) -> None:
+        """Mark no panel once none hears the keys."""
+        if self.screen.focused is None:
+            self._mark(None)
+
+    def _mark(self, focused: Widget | None) -> None:
+        around = focused.ancestors_with_self if focused else []
+        for panel in self.panels.values():
+            panel.set_class(panel in around, "-hears-keys")
+
     def show(self, snapshot: Snapshot) -> None:
         """Let every panel on the screen show a moment."""
         for panel in self.on_screen():
