@@ -60,7 +60,7 @@ def test_short_runs_and_scratch_ones_stay_as_they_are(start: Start, tmp_path: Pa
     assert not packed(short.folder) and not packed(scratch.folder)
 
 
-def test_command(start: Start, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(home: Path, start: Start, capsys: pytest.CaptureFixture[str]) -> None:
     handles = [start(SHORT) for _ in range(2)]
     for handle in handles:
         over(handle)
