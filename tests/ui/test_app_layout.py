@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 
+import numpy as np
 import pytest
 
 from tuisim.ui.layout import Box, arrange, size_class
@@ -17,17 +18,12 @@ def defaults(width: int, height: int) -> list[str]:
     return [panel.id for panel in PANELS.values() if size in panel.sizes]
 
 
-def cells(box: Box) -> set[tuple[int, int]]:
-    return set(itertools.product(range(box.x, box.x + box.width), range(box.y, box.y + box.height)))
-
-
 def assert_fills(boxes: dict[str, Box], width: int, height: int) -> None:
-    covered: set[tuple[int, int]] = set()
+    covered = np.zeros((height, width), dtype=int)
     for box in boxes.values():
-        here = cells(box)
-        assert not covered & here
-        covered |= here
-    assert covered == set(itertools.product(range(width), range(height)))
+        assert 0 <= box.x and box.x + box.width <= width and 0 <= box.y and box.y + box.height <= height
+        covered[box.y : box.y + box.height, box.x : box.x + box.width] += 1
+    assert (covered == 1).all()
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
