@@ -136,7 +136,7 @@ WRONG: dict[str, tuple[str, str]] = {
     "obstacle: key missing": (BOX, "obstacle[1].height_mm: is missing"),
     "obstacle: flat": (BOX + "height_mm = 0", "obstacle[1].height_mm: must be above 0, got 0.0"),
     "obstacle: negative": (BOX + "height_mm = -3", "obstacle[1].height_mm: must be above 0, got -3.0"),
-    "obstacle: 1e9": (BOX + "height_mm = 1e9", "obstacle[1].height_mm: must be at most 10000, got 1000000000.0"),
+    "obstacle: 1e9": (BOX + "height_mm = 1e9", "obstacle[1].height_mm: must be from -10000 to 10000, got 1000000000.0"),
     "obstacle: unknown key": (BOX + "hight_mm = 3", "obstacle[1].hight_mm: no such key (did you mean height_mm"),
     "obstacle: no table": ("obstacle = [3]", "obstacle[1]: must be a table of keys and values, got 3"),
     "json obstacles: too many": (str([[0, 0, 1, 1]] * 1001), "has 1001 obstacles (at most 1000)"),

@@ -6,10 +6,10 @@ simulated seconds.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from tuisim.errors import ConfigError, ObstacleError, RobotError
+from tuisim.core.checks import require, require_one_of
+from tuisim.errors import ObstacleError
 
 MOTOR_KINDS = ("large", "medium")
 """Kinds of motors, for `MotorSpec.kind`."""
@@ -21,18 +21,6 @@ REMOTE_CHANNELS = (1, 2, 3, 4)
 """Channels that a remote control or beacon can be set to."""
 
 
-def _check(value: float, low: float, high: float, key: str, error: type[ConfigError] = RobotError) -> None:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise error(f"must be a number, got {value!r}", key=key)
-    if not low <= value <= high:
-        raise error(f"must be from {low:g} to {high:g}, got {value!r}", key=key)
-
-
-def _check_channel(channel: int, key: str) -> None:
-    if channel not in REMOTE_CHANNELS or isinstance(channel, bool):
-        raise ObstacleError(f"no such channel {channel!r}", "1, 2, 3 or 4", key=key)
-
-
 @dataclass(frozen=True, slots=True)
 class MotorSpec:
     """A motor that moves something on the robot, not the robot."""
@@ -42,10 +30,7 @@ class MotorSpec:
     """One of `MOTOR_KINDS`."""
 
     def __post_init__(self) -> None:
-        if self.kind not in MOTOR_KINDS:
-            raise RobotError(
-                f"no such kind of motor {self.kind!r}", f"one of {', '.join(MOTOR_KINDS)}", key="motors"
-            )
+        require_one_of(self.kind, "kind of motor", MOTOR_KINDS, "motors")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +45,9 @@ class TouchSpec:
     """Width of the bumper, across the robot."""
 
     def __post_init__(self) -> None:
-        _check(self.x_mm, -500, 500, f"{self.name}.x_mm")
-        _check(self.y_mm, -500, 500, f"{self.name}.y_mm")
-        _check(self.width_mm, 1, 500, f"{self.name}.width_mm")
+        require(self.x_mm, -500, 500, f"{self.name}.x_mm")
+        require(self.y_mm, -500, 500, f"{self.name}.y_mm")
+        require(self.width_mm, 1, 500, f"{self.name}.width_mm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +62,9 @@ class InfraredSpec:
     """Where it looks, counter-clockwise from straight ahead."""
 
     def __post_init__(self) -> None:
-        _check(self.x_mm, -500, 500, f"{self.name}.x_mm")
-        _check(self.y_mm, -500, 500, f"{self.name}.y_mm")
-        _check(self.angle_deg, -360, 360, f"{self.name}.angle_deg")
+        require(self.x_mm, -500, 500, f"{self.name}.x_mm")
+        require(self.y_mm, -500, 500, f"{self.name}.y_mm")
+        require(self.angle_deg, -360, 360, f"{self.name}.angle_deg")
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,9 +76,9 @@ class BeaconSpec:
     channel: int = 1
 
     def __post_init__(self) -> None:
-        _check(self.x_mm, -10_000, 10_000, "beacon.x_mm", ObstacleError)
-        _check(self.y_mm, -10_000, 10_000, "beacon.y_mm", ObstacleError)
-        _check_channel(self.channel, "beacon.channel")
+        require(self.x_mm, -10_000, 10_000, "beacon.x_mm", ObstacleError)
+        require(self.y_mm, -10_000, 10_000, "beacon.y_mm", ObstacleError)
+        require_one_of(self.channel, "channel", REMOTE_CHANNELS, "beacon.channel", ObstacleError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +100,7 @@ class RemotePress:
             )
         if not self.from_s <= self.until_s:
             raise ObstacleError("ends before it begins", key="remote.until_s")
-        _check_channel(self.channel, "remote.channel")
+        require_one_of(self.channel, "channel", REMOTE_CHANNELS, "remote.channel", ObstacleError)
 
 
 REMOTE_CODES = {

@@ -6,11 +6,11 @@ midpoint between its wheels. Defaults are those of the seed course's Default_Rob
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from tuisim.core.checks import require, require_one_of
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import ProfileSpec
@@ -42,19 +42,6 @@ BACKGROUND_FITS = ("stretch", "fit", "centre")
 """How an own image becomes a mat: filling the field, as large as fits, or pixel for pixel in the middle."""
 
 
-def _require(value: float, low: float, high: float, key: str, *, whole: bool = False) -> None:
-    number = isinstance(value, int) or (isinstance(value, float) and not whole and math.isfinite(value))
-    if not number or isinstance(value, bool):
-        raise RobotError(f"must be a {'whole ' if whole else ''}number, got {value!r}", key=key)
-    if not low <= value <= high:
-        raise RobotError(f"must be from {low:g} to {high:g}, got {value!r}", key=key)
-
-
-def _require_port(port: str, ports: tuple[str, ...], key: str) -> None:
-    if port not in ports:
-        raise RobotError(f"no such port {port!r}", f"one of {', '.join(ports)}", key=key)
-
-
 @dataclass(frozen=True, slots=True)
 class ColorSensorSpec:
     """One downward colour sensor: the mean of a disc of mat pixels."""
@@ -69,15 +56,12 @@ class ColorSensorSpec:
     """How the pixels of the disc count, one of `STRATEGIES`."""
 
     def __post_init__(self) -> None:
-        _require(self.x_mm, -500, 500, f"{self.name}.x_mm")
-        _require(self.y_mm, -500, 500, f"{self.name}.y_mm")
+        require(self.x_mm, -500, 500, f"{self.name}.x_mm")
+        require(self.y_mm, -500, 500, f"{self.name}.y_mm")
         # A disc of 1 pixel has no pixel strictly inside it.
-        _require(self.diameter_mm, 2, 100, f"{self.name}.diameter_mm", whole=True)
-        _require_port(self.port, INPUT_PORTS, f"{self.name}.port")
-        if self.strategy not in STRATEGIES:
-            raise RobotError(
-                f"no such strategy {self.strategy!r}", f"one of {', '.join(STRATEGIES)}", key=f"{self.name}.strategy"
-            )
+        require(self.diameter_mm, 2, 100, f"{self.name}.diameter_mm", whole=True)
+        require_one_of(self.port, "port", INPUT_PORTS, f"{self.name}.port")
+        require_one_of(self.strategy, "strategy", STRATEGIES, f"{self.name}.strategy")
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,12 +80,12 @@ class UltrasonicSpec:
     """Uniform ±noise_mm on every distance."""
 
     def __post_init__(self) -> None:
-        _require(self.x_mm, -500, 500, f"{self.name}.x_mm")
-        _require(self.y_mm, -500, 500, f"{self.name}.y_mm")
-        _require(self.angle_deg, -360, 360, f"{self.name}.angle_deg")
-        _require(self.max_range_mm, 1, 10_000, f"{self.name}.max_range_mm")
-        _require(self.noise_mm, 0, 1000, f"{self.name}.noise_mm")
-        _require_port(self.port, INPUT_PORTS, f"{self.name}.port")
+        require(self.x_mm, -500, 500, f"{self.name}.x_mm")
+        require(self.y_mm, -500, 500, f"{self.name}.y_mm")
+        require(self.angle_deg, -360, 360, f"{self.name}.angle_deg")
+        require(self.max_range_mm, 1, 10_000, f"{self.name}.max_range_mm")
+        require(self.noise_mm, 0, 1000, f"{self.name}.noise_mm")
+        require_one_of(self.port, "port", INPUT_PORTS, f"{self.name}.port")
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +96,7 @@ class GyroSpec:
     port: str = "in4"
 
     def __post_init__(self) -> None:
-        _require_port(self.port, INPUT_PORTS, f"{self.name}.port")
+        require_one_of(self.port, "port", INPUT_PORTS, f"{self.name}.port")
 
 
 SensorSpec = ColorSensorSpec | UltrasonicSpec | GyroSpec | TouchSpec | InfraredSpec
@@ -131,9 +115,9 @@ class PenSpec:
     down: bool = False
 
     def __post_init__(self) -> None:
-        _require(self.x_mm, -500, 500, "pen.x_mm")
-        _require(self.y_mm, -500, 500, "pen.y_mm")
-        _require(self.width_mm, 0.1, 200, "pen.width_mm")
+        require(self.x_mm, -500, 500, "pen.x_mm")
+        require(self.y_mm, -500, 500, "pen.y_mm")
+        require(self.width_mm, 0.1, 200, "pen.width_mm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,23 +155,23 @@ class RobotSpec:
         return tuple(sensor for sensor in (*usual, *further) if sensor is not None)
 
     def __post_init__(self) -> None:
-        _require(self.wheel_diameter_mm, 1, 500, "wheel_diameter_mm")
-        _require(self.wheel_spacing_mm, 1, 1000, "wheel_spacing_mm")
-        _require(self.wheel_width_mm, 1, 200, "wheel_width_mm")
-        _require(self.back_mm, -1000, 0, "back_mm")
-        _require(self.weight, 0, 1000, "weight")
+        require(self.wheel_diameter_mm, 1, 500, "wheel_diameter_mm")
+        require(self.wheel_spacing_mm, 1, 1000, "wheel_spacing_mm")
+        require(self.wheel_width_mm, 1, 200, "wheel_width_mm")
+        require(self.back_mm, -1000, 0, "back_mm")
+        require(self.weight, 0, 1000, "weight")
         for key in ("left_port", "right_port"):
-            _require_port(getattr(self, key), OUTPUT_PORTS, key)
+            require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
         if self.left_port == self.right_port:
             raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
         used = {self.left_port, self.right_port}
         for motor in self.extra_motors:
-            _require_port(motor.port, OUTPUT_PORTS, "motors")
+            require_one_of(motor.port, "port", OUTPUT_PORTS, "motors")
             if motor.port in used:
                 raise RobotError(f"two motors are on {motor.port}", "give each its own port", key="motors")
             used.add(motor.port)
         for sensor in self.sensors:
-            _require_port(sensor.port, INPUT_PORTS, f"{sensor.name}.port")
+            require_one_of(sensor.port, "port", INPUT_PORTS, f"{sensor.name}.port")
             if sensor.port in used:
                 raise RobotError(
                     f"two sensors are on {sensor.port}", "give each its own port", key=f"{sensor.name}.port"
@@ -211,11 +195,7 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         for key in ("x_mm", "y_mm", "width_mm", "height_mm"):
-            value = getattr(self, key)
-            if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value):
-                raise ObstacleError(f"must be a number, got {value!r}", key=key)
-            if abs(value) > MAX_OBSTACLE_MM:
-                raise ObstacleError(f"must be at most {MAX_OBSTACLE_MM:g}, got {value!r}", key=key)
+            require(getattr(self, key), -MAX_OBSTACLE_MM, MAX_OBSTACLE_MM, key, ObstacleError)
         for key in ("width_mm", "height_mm"):
             if getattr(self, key) <= 0:
                 raise ObstacleError(f"must be above 0, got {getattr(self, key)!r}", key=key)
