@@ -2,35 +2,60 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from tuisim.ui.actions import ACTIONS, Action
+from tuisim.ui.actions import ACTIONS
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
 
 
-class ActionProvider(Provider):
-    """Offers what `ACTIONS` lists."""
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """One line of the palette."""
 
-    def _do(self, action: Action) -> None:
-        cast("Lab", self.app).action_act(action.id)
+    title: str
+    group: str
+    key: str
+    """As people write it."""
+    do: Callable[[], None]
+
+    @property
+    def help(self) -> str:
+        """What stands below the title."""
+        return f"{self.group} · key {self.key}"
+
+
+class KeyProvider(Provider):
+    """Offers what keys do."""
+
+    def offers(self) -> Iterator[Offer]:
+        """Every line."""
+        yield from ()
 
     async def discover(self) -> Hits:
         """Offer everything before a word is typed."""
-        for action in ACTIONS.values():
-            yield DiscoveryHit(action.title, partial(self._do, action), help=_help(action))
+        for offer in self.offers():
+            yield DiscoveryHit(offer.title, offer.do, help=offer.help)
 
     async def search(self, query: str) -> Hits:
-        """Offer the actions whose title matches."""
+        """Offer what has a matching title."""
         matcher = self.matcher(query)
+        for offer in self.offers():
+            if (score := matcher.match(offer.title)) > 0:
+                yield Hit(score, matcher.highlight(offer.title), offer.do, help=offer.help)
+
+
+class ActionProvider(KeyProvider):
+    """Offers what the app's `ACTIONS` list."""
+
+    def offers(self) -> Iterator[Offer]:
+        """Every key of the app."""
+        act = cast("Lab", self.app).action_act
         for action in ACTIONS.values():
-            if (score := matcher.match(action.title)) > 0:
-                yield Hit(score, matcher.highlight(action.title), partial(self._do, action), help=_help(action))
-
-
-def _help(action: Action) -> str:
-    return f"{action.group} · key {action.key_label}"
+            yield Offer(action.title, action.group, action.key_label, partial(act, action.id))
