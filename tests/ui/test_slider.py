@@ -56,7 +56,7 @@ async def test_a_click_and_a_drag_past_the_end() -> None:
         assert app.slider.value == 128
         await pilot.hover(Slider, offset=(0, 0))
         assert app.slider.value == 128
-        assert app.told == [64, 128]
+        assert app.told == [64, 64, 128, 128]
 
 
 async def test_setting_it_tells_nobody_and_keeps_to_the_ends() -> None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
+from tuisim.core.spec import NoiseSpec
 from tuisim.datalog.store import RunStore
 from tuisim.errors import TuisimError
 from tuisim.host import RunOptions, start_run
@@ -62,6 +63,13 @@ class Branch:
     def tags(self) -> tuple[str, str]:
         """The title as tags of the run."""
         return f"{BRANCH_TAG}{self.of.number or self.of.run_id}", f"at-{self.time_s:.2f}s"
+
+    @property
+    def noise(self) -> NoiseSpec:
+        """The noise with which time goes on from there."""
+        if isinstance(self.then, protocol.SetNoise):
+            return NoiseSpec(self.then.light, self.then.motor)
+        return self.of.noise_at(self.of.telemetry.record(self.tick))
 
     def script(self) -> tuple[ScriptedAction, ...]:
         """Return what the user had done until then."""
@@ -139,6 +147,8 @@ def propose(lab: Lab, then: protocol.Message | None, anew: bool = False) -> None
 
     timeline = lab.bridge.timeline
     recording, tick = timeline.recording, timeline.at
+    if isinstance(lab.screen, BranchQuestion):
+        return
     if recording is None or tick is None or not lab.work.apply() or (program := lab.bridge.program) is None:
         return
     timeline.stand()
@@ -150,6 +160,9 @@ def propose(lab: Lab, then: protocol.Message | None, anew: bool = False) -> None
         elif answer == ANEW:
             lab.bridge.stop_now()
             lab.start_run()
+        else:
+            # Panels that showed what was asked for show the past again.
+            lab.draw(force=True)
 
     lab.push_screen(BranchQuestion(branch, _what(then), lab.bridge.in_run, anew), answered)
 

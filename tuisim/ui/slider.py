@@ -41,6 +41,8 @@ class Slider(Widget, can_focus=True):
 
         slider: Slider
         value: int
+        done: bool = True
+        """False while the mouse holds the knob; its last number comes again when it lets go."""
 
         @property
         def control(self) -> Slider:
@@ -69,7 +71,7 @@ class Slider(Widget, can_focus=True):
         before = self._value
         self.value = value
         if self._value != before:
-            self.post_message(self.Changed(self, self._value))
+            self.post_message(self.Changed(self, self._value, not self.dragging))
 
     def action_move(self, step: int) -> None:
         """Go up or down."""
@@ -113,6 +115,7 @@ class Slider(Widget, can_focus=True):
             event.stop()
             self.dragging = False
             self.release_mouse()
+            self.post_message(self.Changed(self, self._value))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         """Go up a step."""

@@ -44,6 +44,7 @@ class Noise(Vertical):
         super().__init__()
         self.border_title = self.TITLE
         self._shown: tuple[NoiseSpec, int] | None = None
+        self._past = False
 
     def compose(self) -> ComposeResult:
         """A row for each number, and a line that says what is wrong."""
@@ -62,32 +63,38 @@ class Noise(Vertical):
         self.query_one("#light", Slider).focus()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show noise and seed as they were last chosen, here or elsewhere."""
+        """Show noise and seed as they were last chosen, here or elsewhere; of a former instant its own noise."""
         if not self.is_mounted or not self.query(Slider):
             return
-        planned = snapshot.planned
-        shown = planned.world.noise, planned.seed
+        self._past = snapshot.past
+        noise = snapshot.instant.noise if snapshot.past else snapshot.planned.world.noise
+        shown = noise, snapshot.planned.seed
         if shown == self._shown:
             return
         before, self._shown = self._shown, shown
         for kind in _KINDS:
-            value = getattr(planned.world.noise, kind)
+            value = getattr(noise, kind)
             slider, entry = self.query_one(f"#{kind}", Slider), self.query_one(f"#{kind}-number", Input)
             if before is None or getattr(before[0], kind) != value:
                 slider.value = value
                 entry.value = str(value)
-        if before is None or before[1] != planned.seed:
-            self.query_one("#seed", Input).value = str(planned.seed)
+        if before is None or before[1] != shown[1]:
+            self.query_one("#seed", Input).value = str(shown[1])
 
     @on(Slider.Changed)
     def _slid(self, event: Slider.Changed) -> None:
         event.stop()
         self.query_one(f"#{event.slider.id}-number", Input).value = str(event.value)
         self._say("")
-        self._choose()
+        # In the past it is asked only at the end what is to come of that.
+        if event.done or not self._past:
+            self._choose()
 
     def _choose(self) -> None:
         light, motor = (self.query_one(f"#{kind}", Slider).value for kind in _KINDS)
+        if self._past:
+            # The past stays as it is, whether a branch comes of this or not.
+            self._shown = None
         self.post_message(self.Changed(NoiseSpec(light, motor)))
 
     @on(Input.Submitted)

@@ -1,0 +1,154 @@
+"""What the user does to a run that is held, or looked back at: seen at once, done right before the next tick."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from tests.ui.app_help import ready, settings, until
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec
+from tuisim.datalog.store import RunStore
+from tuisim.rerun import rerun, same
+from tuisim.ui.app import Lab
+from tuisim.ui.screens.branch import BranchQuestion
+from tuisim.ui.slider import Slider
+from tuisim.ui.snapshot import ENDED, PAUSED, RUNNING, WAITING
+from tuisim.ui.travel import to_now, to_tick
+
+pytestmark = pytest.mark.usefixtures("home")
+
+STEPS = """\
+import time
+n = 0
+while True:
+    n = n + 1
+    n = n + 1
+    time.sleep(0.05)
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+"""
+
+
+async def held(pilot: Pilot[Any], *keys: str) -> Lab:
+    """Hold the program at a line, with ticks behind it."""
+    app = await ready(pilot)
+    await until(pilot, lambda: app.bridge.timeline.newest > 20)
+    await pilot.press("n")
+    await until(pilot, lambda: app.debugging.standing is not None)
+    while app.debugging.standing is None or app.debugging.standing.paused.line != 4:
+        before = app.debugging.standing
+        await pilot.press("n")
+        await until(pilot, lambda before=before: app.debugging.standing not in (None, before))
+    return app
+
+
+async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> None:
+    async with Lab(settings(STEPS, autorun=True, speed=8.0)).run_test(size=(120, 40)) as pilot:
+        app = await held(pilot)
+        tick, start = app.bridge.timeline.newest, app.bridge.pose
+        app.bridge.set_noise(NoiseSpec(20, 0))
+        for key in ("up", "up", "right", "p", "p", "p"):
+            await pilot.press(key)
+        assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
+        now = app.bridge.snapshot()
+        assert (now.instant.noise, now.pen_down, now.gyro_deg) == (NoiseSpec(20, 0), True, 0)
+        # Another line, and still the same tick: nothing has been done yet.
+        await pilot.press("n")
+        await until(pilot, lambda: app.debugging.standing is not None and app.debugging.standing.paused.line == 5)
+        assert app.bridge.timeline.newest == tick
+        assert app.bridge.pose.y_mm == start.y_mm + 20
+        await pilot.press("full_stop")
+        await until(pilot, lambda: app.bridge.timeline.newest == tick + 1)
+        recording = app.bridge.timeline.recording
+        assert recording is not None
+        assert [(action.tick, action.kind) for action in recording.actions()][-1] == (tick, "set_pen")
+        assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
+        await pilot.press("S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        run = RunStore().load_run(app.bridge.run_id)
+        again = rerun(run, RunStore())
+        again.wait(20.0)
+        assert same(run, RunStore().load_run(again.run_id)).same
+
+
+async def noisy_past(pilot: Pilot[Any]) -> Lab:
+    """A run whose noise was set to 10 on its way, looked at before and after that by turns."""
+    app = await ready(pilot)
+    await until(pilot, lambda: app.bridge.timeline.newest > 30)
+    app.bridge.set_noise(NoiseSpec(10, 0))
+    await until(pilot, lambda: app.bridge.snapshot().instant.noise.light == 10 and app.bridge.timeline.newest > 60)
+    to_tick(app, 10)
+    await until(pilot, lambda: light(app) == 0)
+    return app
+
+
+def light(app: Lab) -> int:
+    return app.query_one("#light", Slider).value
+
+
+def noises(app: Lab) -> list[int]:
+    """The light noise that the user has set in the run at hand."""
+    recording = app.bridge.timeline.recording
+    assert recording is not None
+    return [action.fields["light"] for action in recording.actions() if action.kind == "set_noise"]
+
+
+async def test_noise_dragged_in_the_past_asks_once_and_goes_back_if_that_is_declined() -> None:
+    shown = frozenset({"noise"})
+    async with Lab(settings(STEPS, autorun=True, speed=8.0, panels_on=shown)).run_test(size=(120, 40)) as pilot:
+        app = await noisy_past(pilot)
+        await pilot.mouse_down("#light", offset=(0, 0))
+        await pilot.hover("#light", offset=(4, 0))
+        await pilot.hover("#light", offset=(8, 0))
+        assert light(app) > 20
+        assert len(app.screen_stack) == 1
+        await pilot.mouse_up("#light", offset=(8, 0))
+        await until(pilot, lambda: isinstance(app.screen, BranchQuestion))
+        assert len(app.screen_stack) == 2
+        await pilot.press("n")
+        await until(pilot, lambda: light(app) == 0)
+        to_now(app)
+        await until(pilot, lambda: light(app) == 10)
+        assert noises(app) == [10]
+
+
+async def test_noise_of_a_branch_is_set_once() -> None:
+    shown = frozenset({"noise"})
+    async with Lab(settings(STEPS, autorun=True, speed=8.0, panels_on=shown)).run_test(size=(120, 40)) as pilot:
+        app = await noisy_past(pilot)
+        field = app.query_one("#light-number", Input)
+        field.focus()
+        # As it was: nothing to ask.
+        await pilot.press("enter")
+        await pilot.pause()
+        assert len(app.screen_stack) == 1
+        field.value = "30"
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(app.screen, BranchQuestion))
+        await pilot.press("y")
+        await until(pilot, lambda: len(app.screen_stack) == 1 and app.bridge.state in (RUNNING, PAUSED))
+        await until(pilot, lambda: noises(app) == [30])
+        field.focus()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert (light(app), app.bridge.plan.spec.world.noise.light) == (30, 30)
+        newest = app.bridge.timeline.newest
+        app.bridge.resume()
+        await until(pilot, lambda: app.bridge.timeline.newest > newest + 5)
+        assert noises(app) == [30]
+
+
+async def test_a_run_paused_while_it_asks_goes_on() -> None:
+    asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
+    async with Lab(asks).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == WAITING)
+        await pilot.press("escape", "space")
+        await until(pilot, lambda: app.bridge.state == PAUSED)
+        await pilot.press("space")
+        await until(pilot, lambda: app.bridge.state == WAITING)
+        app.bridge.answer("Ann")
+        await until(pilot, lambda: app.bridge.state == RUNNING)
