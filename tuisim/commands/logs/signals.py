@@ -17,7 +17,7 @@ from tuisim.datalog.analysis.signals import HOLD, derivative, integral, moving_a
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.opening import Log, Series
 from tuisim.datalog.opening.layout import is_numeric
-from tuisim.datalog.opening.log import numbers_of
+from tuisim.datalog.opening.plain import numbers_of
 from tuisim.errors import ConfigError, LogError
 
 if TYPE_CHECKING:

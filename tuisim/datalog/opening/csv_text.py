@@ -14,6 +14,7 @@ import pyarrow.csv as pa_csv
 from tuisim.datalog.opening.lines import Block
 from tuisim.datalog.opening.notes import Notes
 from tuisim.datalog.opening.numbers import EMPTY_CELLS, are_numbers, parsed_numbers
+from tuisim.datalog.opening.plain import texts_array
 from tuisim.datalog.opening.texts import CODED, text_kind
 
 SEPARATORS = (",", ";", "\t", "|")
@@ -48,7 +49,7 @@ class CsvReader:
             columns, rows = self._careful(block)
         if not len(columns[0]):
             return None
-        return pa.table(
+        return pa.Table.from_arrays(
             [self._typed(n, c, block, rows) for n, c in zip(self._names, columns, strict=True)], self._names
         )
 
@@ -62,7 +63,7 @@ class CsvReader:
         row, heading = lines[0]
         names = [name.strip() for name in self._cells(heading)]
         self._decimal_comma = self._separator == ";" and _has_decimal_comma([text for _, text in lines[1:]])
-        if are_numbers(pa.array(names, pa.string()), self._decimal_comma):
+        if are_numbers(texts_array(names), self._decimal_comma):
             self._notes.say("no heading: the columns are numbered")
             self._names = [f"column {at}" for at in range(1, len(names) + 1)]
             return block
@@ -86,7 +87,7 @@ class CsvReader:
     def _parsed(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
         """All cells by the library's parser, None if a row is not like the others or a cell not of its kind."""
         if not block.text.strip():
-            return [pa.array([], pa.string()) for _ in self._names]
+            return [pa.nulls(0, pa.string()) for _ in self._names]
         try:
             table = pa_csv.read_csv(
                 io.BytesIO(block.text),

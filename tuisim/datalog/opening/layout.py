@@ -75,19 +75,20 @@ def guessed(table: pa.Table) -> Layout:
 
 def _guessed_time(table: pa.Table) -> str:
     lowered: dict[str, str] = {name.lower(): name for name in table.column_names}
-    usable = {n for n in table.column_names if is_numeric(table.schema.field(n).type) or _is_moment(table, n)}
     for wanted in _TIME_NAMES:
         for ending in ("", *(f"_{unit}" for unit in _UNITS_S), *(f" ({unit})" for unit in _UNITS_S)):
             name = lowered.get(wanted + ending, "")
-            if name in usable and not _is_empty(table, name):
+            if name and _is_usable(table, name):
                 return name
     numeric = [n for n in table.column_names if is_numeric(table.schema.field(n).type) and n not in _NO_VALUES]
     # A single column of numbers is what was measured.
     return numeric[0] if len(numeric) > 1 and _rises(table, numeric[0]) else ROW
 
 
-def _is_empty(table: pa.Table, name: str) -> bool:
-    return bool(table.column(name).null_count == table.num_rows)
+def _is_usable(table: pa.Table, name: str) -> bool:
+    """Whether a column holds times or numbers, at least one."""
+    column = table.column(name)
+    return column.null_count < table.num_rows and (is_numeric(column.type) or _is_moment(table, name))
 
 
 def _is_text(kind: pa.DataType) -> bool:

@@ -13,6 +13,7 @@ from tuisim.datalog.arrays import FloatArray, IntArray
 from tuisim.datalog.opening.layout import ROW, Layout
 from tuisim.datalog.opening.members import Member, members
 from tuisim.datalog.opening.moments import seconds_of
+from tuisim.datalog.opening.plain import numbers_of
 from tuisim.errors import LogError
 
 
@@ -129,11 +130,3 @@ class Log:
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another meaning of its columns."""
         return replace(self, layout=layout, _kept=_Kept())
-
-
-def numbers_of(column: pa.ChunkedArray) -> FloatArray:
-    """Return a column of numbers as floats, shape (n,); not a number where it is empty. Copied only if it must be."""
-    if pa.types.is_floating(column.type):
-        found: FloatArray = column.to_numpy()
-        return found
-    return np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), np.float64)

@@ -12,6 +12,7 @@ import pyarrow.compute as pc
 
 from tuisim.datalog.arrays import IntArray
 from tuisim.datalog.opening.layout import Layout
+from tuisim.datalog.opening.plain import whole_numbers_of
 
 _NO_ROWS: IntArray = np.empty(0, np.int64)
 
@@ -50,7 +51,7 @@ def members(table: pa.Table, layout: Layout) -> list[Member]:
         return [_member(name, run, rows, False) for name, rows in zip(names, rows_of, strict=True)]
     pairs = codes.astype(np.int64) * len(runs) + run_codes
     rows_of = _rows_by_code(pairs, len(names) * len(runs))
-    order = pc.unique(pa.array(pairs)).to_pylist()
+    order = sorted((pair for pair, rows in enumerate(rows_of) if len(rows)), key=lambda pair: rows_of[pair][0])
     return [_member(names[pair // len(runs)], runs[pair % len(runs)], rows_of[pair], True) for pair in order]
 
 
@@ -76,10 +77,10 @@ def _encoded(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     indices = [
         pc.fill_null(chunk.indices, len(values)) if chunk.null_count else chunk.indices for chunk in column.chunks
     ]
-    appeared = pc.unique(pa.chunked_array(indices, pa.int32()) if indices else pa.array([], pa.int32())).to_numpy()
+    appeared = pc.unique(pa.chunked_array(indices, pa.int32())).to_pylist()
     place_of = np.zeros(len(values) + 1, np.int32)
     place_of[appeared] = np.arange(len(appeared))
-    codes = [place_of[chunk.to_numpy()] for chunk in indices]
+    codes = [place_of[whole_numbers_of(chunk)] for chunk in indices]
     return [[*values, None][at] for at in appeared], np.concatenate(codes) if codes else np.empty(0, np.int32)
 
 

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from tuisim.datalog.arrays import FloatArray
+from tuisim.datalog.opening.plain import numbers_of
 
 _SPAN = r"^(?P<sign>-?)(?:(?P<days>\d+) days? )?(?P<h>\d+):(?P<m>\d{2}):(?P<s>\d{2}(?:\.\d+)?)$"
 """A span as pandas prints it, or hours, minutes and seconds."""
@@ -39,7 +40,7 @@ def _since_first(seconds: FloatArray, from_first: bool) -> FloatArray:
 
 
 def _floats(column: pa.ChunkedArray) -> FloatArray:
-    return np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), np.float64)
+    return np.asarray(numbers_of(column), np.float64)
 
 
 def seconds_of_texts(column: pa.ChunkedArray) -> FloatArray:

@@ -7,6 +7,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from tuisim.datalog.opening.plain import texts_array
+
 _NUMBER = r"^[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?$|^[+-]?(?i:inf|infinity|nan)$"
 EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
 """Cells that say that there is no value."""
@@ -25,15 +27,16 @@ def parsed_numbers(cells: pa.Array, decimal_comma: bool) -> tuple[pa.Array, pa.A
     texts: Any = pc.utf8_trim_whitespace(cells)
     if decimal_comma:
         texts = pc.replace_substring(texts, ",", ".")
-    empty = pc.fill_null(pc.is_in(texts, value_set=pa.array(EMPTY_CELLS)), True)
-    texts = pc.if_else(empty, None, texts)
-    wrong = pa.nulls(len(texts), pa.bool_())
+    nothing = pa.nulls(len(texts), pa.string())
+    empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=texts_array(EMPTY_CELLS)))
+    texts = pc.if_else(empty, nothing, texts)
     try:
-        return pc.cast(texts, pa.float64()), pc.fill_null(wrong, False)
+        return pc.cast(texts, pa.float64()), pc.is_valid(nothing)
     except pa.ArrowInvalid:
-        good = pc.fill_null(pc.match_substring_regex(texts, _NUMBER), False)
+        # Of what is empty the first is false and the second is nothing, which makes false.
+        good = pc.and_kleene(pc.is_valid(texts), pc.match_substring_regex(texts, _NUMBER))
         wrong = pc.and_(pc.invert(good), pc.invert(empty))
-        return pc.cast(pc.if_else(good, texts, None), pa.float64()), wrong
+        return pc.cast(pc.if_else(good, texts, nothing), pa.float64()), wrong
 
 
 def are_numbers(cells: pa.Array, decimal_comma: bool) -> bool | None:

@@ -14,7 +14,6 @@ from tuisim.datalog.analysis.statistics import Summary, summary_of
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.notes import Note, read_notes, write_notes
 from tuisim.datalog.opening.layout import is_numeric
-from tuisim.datalog.opening.log import numbers_of
 from tuisim.errors import LogError
 from tuisim.ui.analyser.aligning import TIME, aligned
 from tuisim.ui.analyser.rows import Rows
@@ -120,7 +119,7 @@ class Model:
             numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
             known = dict.fromkeys((*self.log.names, *numbers))
             raise LogError(f"no variable {name!r}", f"there are {', '.join(known)}", file=self.log.title)
-        return numbers_of(self.log.table.column(name))[series.rows]
+        return self.log.numbers(name)[series.rows]
 
     def run_of(self, row: int) -> int:
         """Return which run a row is of, from 0."""
