@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.ui.test_app_tmux import Terminal
+from tests.ui.terminals import Terminal
 from tuisim.datalog.store import RunStore
 
 pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
-
-
-@pytest.fixture
-def terminal(tmp_path: Path) -> Iterator[Terminal]:
-    made = Terminal(f"tuisim-{os.getpid()}-{tmp_path.name[-20:]}", tmp_path)
-    yield made
-    made.end()
 
 
 def held_at(text: str) -> tuple[int, str, str]:

@@ -6,36 +6,28 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.ui.test_app_tmux import PATIENCE_S, Terminal
+from tests.ui.terminals import PATIENCE_S, Terminal
 
 pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
 
 
-@pytest.fixture
-def terminals(tmp_path: Path) -> Iterator[tuple[Terminal, Terminal]]:
-    """One to crash in, one to come back in."""
-    first, second = (Terminal(f"tuisim-{os.getpid()}-{tmp_path.name[-20:]}-{n}", tmp_path) for n in (1, 2))
-    yield first, second
-    first.end()
-    second.end()
-
-
 def kill_the_app(terminal: Terminal) -> None:
     """Kill the one child of the terminal's shell without a warning."""
-    shell = terminal._run("display-message", "-p", "#{pane_pid}").strip()
-    children = subprocess.run(["ps", "-o", "pid=", "--ppid", shell], capture_output=True, text=True, check=True)
+    shell = terminal.shell_id()
+    children = subprocess.run(["ps", "-o", "pid=", "--ppid", str(shell)], capture_output=True, text=True, check=True)
     os.kill(int(children.stdout.split()[0]), signal.SIGKILL)
 
 
 def test_unsaved_text_outlives_a_kill_and_is_saved_and_run(
-    terminals: tuple[Terminal, Terminal], home: Path, tmp_path: Path
+    open_terminal: Callable[[], Terminal], home: Path, tmp_path: Path
 ) -> None:
-    terminal, again = terminals
+    # One to crash in, one to come back in.
+    terminal, again = open_terminal(), open_terminal()
     path = tmp_path / "prog.py"
     path.write_text("print('A: 1')\n")
     terminal.start(["prog.py"], 80, 24)

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.ui.test_app_tmux import Terminal
+from tests.ui.terminals import Terminal
 from tuisim.datalog.notes import read_notes
 
 pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
-
-
-@pytest.fixture
-def terminal(tmp_path: Path) -> Iterator[Terminal]:
-    made = Terminal(f"tuisim-analyser-{os.getpid()}", tmp_path)
-    yield made
-    made.end()
 
 
 def test_from_a_run_to_the_bands_to_a_note(terminal: Terminal, home: Path) -> None:

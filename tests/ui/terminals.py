@@ -1,0 +1,56 @@
+"""A real terminal to run the app in."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+PATIENCE_S = 30.0
+
+
+class Terminal:
+    """A tmux session of its own with one program in it."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        self._tmux = ["tmux", "-L", name, "-f", "/dev/null"]
+        self._folder = folder
+
+    def start(self, arguments: list[str], columns: int, rows: int) -> None:
+        command = shlex.join([sys.executable, "-m", "tuisim", *arguments])
+        size = ["-x", str(columns), "-y", str(rows)]
+        shell = f"{command}; echo EXIT $?; exec cat"
+        # Where these two are set, they win over the size of the terminal.
+        inherited = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
+        environment = {**inherited, "TERM": "xterm-256color", "LANG": "C.UTF-8", "PYTHONPATH": str(Path.cwd())}
+        self._run("new-session", "-d", *size, "-c", str(self._folder), shell, env=environment)
+
+    def _run(self, *words: str, env: dict[str, str] | None = None) -> str:
+        done = subprocess.run([*self._tmux, *words], capture_output=True, text=True, check=True, env=env)
+        return done.stdout
+
+    def shell_id(self) -> int:
+        """The process that the program is a child of."""
+        return int(self._run("display-message", "-p", "#{pane_pid}"))
+
+    def keys(self, *keys: str) -> None:
+        for key in keys:
+            self._run("send-keys", key)
+
+    def screen(self) -> str:
+        return self._run("capture-pane", "-p")
+
+    def until(self, condition: Callable[[str], bool]) -> str:
+        """Look at the screen until something is on it."""
+        give_up = time.monotonic() + PATIENCE_S
+        while not condition(text := self.screen()):
+            assert time.monotonic() < give_up, text
+            time.sleep(0.05)
+        return text
+
+    def end(self) -> None:
+        subprocess.run([*self._tmux, "kill-server"], capture_output=True, check=False)
