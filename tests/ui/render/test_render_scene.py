@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from tuisim.core.geometry import Pose
+from tuisim.core.parts import BeaconSpec, InfraredSpec, TouchSpec
 from tuisim.core.spec import Obstacle, PenSpec, RobotSpec
+from tuisim.ui.render.lines import BEACON_CORE_RGB, BEACON_RGB
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.pentrace import PenTrace, pen_rgb
 from tuisim.ui.render.robot import COLORED, draw_robot, shape_of
@@ -125,6 +127,38 @@ def test_obstacles_are_drawn(width_mm: float) -> None:
     scene = SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=(Obstacle(300, 200, width_mm, 300),))
 
     assert at(painter().paint(VIEW, scene), 301, 350) != (255, 255, 255)
+
+
+TOUCHES = RobotSpec(
+    touch_sensors=(TouchSpec(y_mm=90.0, width_mm=60.0),),
+    infrared=InfraredSpec(x_mm=50.0, y_mm=30.0),
+    color_sensors=(),
+    ultrasonic=None,
+    gyro=None,
+)
+CLOSE = Viewport(80, 78, 4.0, 1000 - 160.0, 500 + 156.0)
+
+
+def test_a_bumper_is_a_bar_in_front_and_red_while_it_is_pressed() -> None:
+    free = painter().paint(CLOSE, SceneState(TOUCHES, HERE))
+    pressed = painter().paint(CLOSE, SceneState(TOUCHES, HERE, pressed=(True,)))
+    # Beside the nose, as far as the bar goes.
+    assert [at(free, 1090, 500 + aside, CLOSE) for aside in (-26, 26)] == [COLORED.bumper] * 2
+    assert [at(pressed, 1090, 500 + aside, CLOSE) for aside in (-26, 26)] == [COLORED.pressed] * 2
+    assert at(free, 1090, 540, CLOSE) == at(free, 1110, 526, CLOSE) == (255, 255, 255)
+
+
+def test_an_infrared_sensor_is_drawn_where_it_is() -> None:
+    assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.infrared
+
+
+@pytest.mark.parametrize("view", [whole_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"])
+def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
+    scene = SceneState(ROBOT, Pose(2000, 1000, 0), beacon=BeaconSpec(1000.0, 500.0))
+    picture = painter().paint(view, scene)
+    assert at(picture, 1000, 500, view) == BEACON_CORE_RGB
+    assert (picture == np.array(BEACON_RGB)).all(axis=2).sum() >= 4
+    painter().paint(view, replace(scene, beacon=BeaconSpec(0.0, 1143.0)))
 
 
 def test_the_ghost_is_drawn_below_the_robot() -> None:

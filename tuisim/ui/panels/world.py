@@ -247,7 +247,11 @@ class WorldView(PixelView):
         spec = snapshot.spec
         pose = self._held or snapshot.instant.pose
         boxes = spec.world.obstacles if self._draft is None else self._draft
-        scene = SceneState(spec.robot, pose, boxes, ghost=snapshot.now_pose, marked=self._marked)
+        pressed = tuple(snapshot.further.get(f"{touch.name}_pressed", 0.0) > 0 for touch in spec.robot.touch_sensors)
+        scene = SceneState(
+            spec.robot, pose, boxes, ghost=snapshot.now_pose, marked=self._marked, pressed=pressed,
+            beacon=spec.world.beacon,
+        )  # fmt: skip
         if not self.show_rays or self._held is not None:
             return scene
         last = self._scene

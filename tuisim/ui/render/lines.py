@@ -1,4 +1,4 @@
-"""Lines on the field: the pen's trace, ultrasonic rays, obstacles."""
+"""What is on the field: the pen's trace, ultrasonic rays, obstacles, a beacon."""
 
 from __future__ import annotations
 
@@ -20,6 +20,10 @@ MARKED_RGB = (255, 215, 0)
 """Edge of the obstacle that is at hand."""
 RAY_RGB = (0, 175, 175)
 _RAY_OPACITY = 0.55
+BEACON_RGB = (215, 0, 135)
+BEACON_CORE_RGB = (255, 255, 255)
+_BEACON_MM = 25.0
+"""Radius of a beacon."""
 
 _LONGEST_STEP_MM = 250.0
 """Two trace points further apart are not joined: the robot was put somewhere else."""
@@ -114,6 +118,26 @@ def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle
         picture[rows, cols] = MARKED_RGB if index == marked else OBSTACLE_EDGE_RGB
         if rows.stop - rows.start > 2 and cols.stop - cols.start > 2:
             picture[rows.start + 1 : rows.stop - 1, cols.start + 1 : cols.stop - 1] = OBSTACLE_RGB
+
+
+def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> None:
+    """Paint an infrared beacon, a disc with a light core of at least three pixels across.
+
+    Args:
+        picture: Written in place.
+        view: What the picture shows.
+        x_mm: World x of its middle.
+        y_mm: World y of its middle.
+    """
+    col, row = (math.floor(at) for at in view.to_px(x_mm, y_mm))
+    radius = max(1, round(_BEACON_MM / view.mm_per_px))
+    aside = np.arange(-radius, radius + 1)
+    rows, cols = np.nonzero(np.hypot(aside[:, None], aside[None, :]) <= radius + 0.5)
+    light = np.hypot(rows - radius, cols - radius) <= radius / 3
+    rows, cols = rows + row - radius, cols + col - radius
+    inside = (rows >= 0) & (rows < view.height_px) & (cols >= 0) & (cols < view.width_px)
+    shades = np.where(light[:, None], np.array(BEACON_CORE_RGB, np.uint8), np.array(BEACON_RGB, np.uint8))
+    picture[rows[inside], cols[inside]] = shades[inside]
 
 
 def _span(low: float, high: float, size_px: int) -> slice:

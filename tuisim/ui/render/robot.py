@@ -19,7 +19,13 @@ _SAMPLES = 4
 _MIN_PX = 6.0
 """A robot narrower than this many pixels is drawn enlarged, or it could not be told from a dot."""
 
-_NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER = range(6)
+_BUMPER_MM = 8.0
+"""How thick the bar of a touch sensor is drawn."""
+
+_INFRARED_MM = 10.0
+"""Radius of an infrared sensor."""
+
+_NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _INFRARED = range(9)
 
 Rgb = tuple[int, int, int]
 
@@ -33,10 +39,16 @@ class RobotColors:
     wheel: Rgb = (28, 28, 28)
     sensor: Rgb = (255, 95, 95)
     marker: Rgb = (255, 215, 0)
+    bumper: Rgb = (0, 135, 95)
+    pressed: Rgb = (255, 0, 0)
+    infrared: Rgb = (135, 0, 95)
 
 
 COLORED = RobotColors()
-GREY = RobotColors(body=(48, 48, 48), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255))
+GREY = RobotColors(
+    body=(48, 48, 48), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255),
+    bumper=(108, 108, 108), pressed=(0, 0, 0), infrared=(128, 128, 128),
+)  # fmt: skip
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
 """For a robot that is shown where it was."""
@@ -55,12 +67,19 @@ class RobotShape:
     front_mm: float
     eyes_mm: tuple[tuple[float, float, float], ...] = field(default=())
     """Colour sensors as x, y, radius."""
+    bumpers_mm: tuple[tuple[float, float, float], ...] = field(default=())
+    """Touch sensors as x, y, half the width of the bar."""
+    infrared_mm: tuple[float, float] | None = None
+    """Where the infrared sensor is, if there is one."""
 
     @property
     def reach_mm(self) -> float:
         """Radius about the pose of a circle that holds everything that is drawn."""
         side = self.half_width_mm + self.wheel_half_width_mm
-        return math.hypot(side, max(-self.back_mm, self.tip_mm, self.wheel_radius_mm))
+        body_mm = math.hypot(side, max(-self.back_mm, self.tip_mm, self.wheel_radius_mm))
+        bars_mm = (math.hypot(abs(x) + half, abs(y) + _BUMPER_MM) for x, y, half in self.bumpers_mm)
+        eye_mm = math.hypot(*self.infrared_mm) + _INFRARED_MM if self.infrared_mm else 0.0
+        return max(body_mm, eye_mm, *bars_mm)
 
     @property
     def tip_mm(self) -> float:
@@ -81,6 +100,8 @@ def shape_of(robot: RobotSpec) -> RobotShape:
         back_mm=min(robot.back_mm, -robot.wheel_diameter_mm / 2),
         front_mm=max(ends) + 0.05 * robot.wheel_spacing_mm,
         eyes_mm=eyes,
+        bumpers_mm=tuple((touch.x_mm, touch.y_mm, touch.width_mm / 2) for touch in robot.touch_sensors),
+        infrared_mm=(robot.infrared.x_mm, robot.infrared.y_mm) if robot.infrared else None,
     )
 
 
@@ -90,7 +111,13 @@ def drawn_scale(shape: RobotShape, view: Viewport) -> float:
 
 
 def draw_robot(
-    picture: Pixels, view: Viewport, pose: Pose, shape: RobotShape, colors: RobotColors, opacity: float = 1.0
+    picture: Pixels,
+    view: Viewport,
+    pose: Pose,
+    shape: RobotShape,
+    colors: RobotColors,
+    opacity: float = 1.0,
+    pressed: tuple[bool, ...] = (),
 ) -> None:
     """Paint a robot into a picture; what lies outside it is left out.
 
@@ -101,6 +128,7 @@ def draw_robot(
         shape: Its outline.
         colors: Colours of its parts.
         opacity: 0 … 1.
+        pressed: Which of its bumpers are; empty for none.
     """
     scale = drawn_scale(shape, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
@@ -115,7 +143,9 @@ def draw_robot(
     north = (row - (np.arange(top, bottom)[:, None] + fine).ravel())[:, None] * step_mm
     heading = math.radians(pose.heading_deg)
     cos, sin = math.cos(heading), math.sin(heading)
-    parts = _parts(shape, east * sin - north * cos, east * cos + north * sin, step_mm)
+    side, ahead = east * sin - north * cos, east * cos + north * sin
+    parts = _parts(shape, side, ahead, step_mm)
+    _mount(parts, shape, side, ahead, step_mm, pressed)
     _blend(picture[top:bottom, left:right], parts, colors, opacity)
 
 
@@ -148,8 +178,29 @@ def _parts(
     return parts
 
 
+def _mount(
+    parts: npt.NDArray[np.intp],
+    shape: RobotShape,
+    side: npt.NDArray[np.float64],
+    ahead: npt.NDArray[np.float64],
+    px_mm: float,
+    pressed: tuple[bool, ...],
+) -> None:
+    """Put on what not every robot has; the heading marker stays on top of it."""
+    free = parts != _MARKER
+    for at, (x_mm, y_mm, half) in enumerate(shape.bumpers_mm):
+        # A bar is never so thin, nor so short, that it would be lost.
+        bar = np.abs(ahead - y_mm) <= max(_BUMPER_MM / 2, 0.5 * px_mm)
+        bar = bar & (np.abs(side - x_mm) <= max(half, 0.5 * px_mm))
+        parts[bar & free] = _PRESSED if at < len(pressed) and pressed[at] else _BUMPER
+    if shape.infrared_mm is not None and 2 * _INFRARED_MM >= 1.5 * px_mm:
+        x_mm, y_mm = shape.infrared_mm
+        parts[np.hypot(side - x_mm, ahead - y_mm) <= _INFRARED_MM] = _INFRARED
+
+
 def _blend(target: Pixels, parts: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:
-    table = np.array([(0, 0, 0), colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker], np.float32)
+    drawn = (colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker)
+    table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.infrared], np.float32)
     rows, cols = target.shape[:2]
     blocks = parts.reshape(rows, _SAMPLES, cols, _SAMPLES)
     total = table[blocks].sum(axis=(1, 3))

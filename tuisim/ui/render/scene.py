@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tuisim.core.geometry import Pose, world_point
+from tuisim.core.parts import BeaconSpec
 from tuisim.core.spec import Obstacle, RobotSpec
-from tuisim.ui.render.lines import draw_obstacles, draw_rays, trace_pixels
+from tuisim.ui.render.lines import draw_beacon, draw_obstacles, draw_rays, trace_pixels
 from tuisim.ui.render.mat import MatPictures, Pixels
 from tuisim.ui.render.pentrace import PenTrace, Rgb
 from tuisim.ui.render.robot import COLORED, GHOST, GREY, GREY_GHOST, RobotShape, draw_robot, shape_of
@@ -30,6 +31,10 @@ class SceneState:
     """A second robot, shown where it was read."""
     marked: int | None = None
     """Index of the obstacle that is at hand."""
+    pressed: tuple[bool, ...] = ()
+    """Which of the robot's bumpers are pressed."""
+    beacon: BeaconSpec | None = None
+    """The infrared beacon on the field."""
 
 
 class ScenePainter:
@@ -62,15 +67,17 @@ class ScenePainter:
             draw_rays(picture, view, x_mm, y_mm, scene.rays)
         if scene.ghost is not None:
             draw_robot(picture, view, scene.ghost, shape, self._ghost_colors, _GHOST_OPACITY)
-        draw_robot(picture, view, scene.pose, shape, self._robot_colors)
+        draw_robot(picture, view, scene.pose, shape, self._robot_colors, pressed=scene.pressed)
         return picture
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
-        """Return mat, obstacles and trace."""
-        key = (view, scene.obstacles, scene.marked, self.trace, self.trace.wiped)
+        """Return mat, obstacles, beacon and trace."""
+        key = (view, scene.obstacles, scene.marked, scene.beacon, self.trace, self.trace.wiped)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
             draw_obstacles(self._ground, view, scene.obstacles, scene.marked)
+            if scene.beacon is not None:
+                draw_beacon(self._ground, view, scene.beacon.x_mm, scene.beacon.y_mm)
             self._ground_key = key
             self._pieces_drawn = 0
             self.trace.join()
