@@ -53,7 +53,6 @@ class DroppingOutput:
 
 
 if __name__ == "__main__":
-    records.TelemetryWriter = DroppingSink  # type: ignore[assignment,misc]
-    records.OutputWriter = DroppingOutput  # type: ignore[assignment,misc]
+    vars(records).update(TelemetryWriter=DroppingSink, OutputWriter=DroppingOutput)
     sys.argv[0] = "tuisim.runtime"
     runpy.run_module("tuisim.runtime", run_name="__main__", alter_sys=True)

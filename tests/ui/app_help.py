@@ -69,3 +69,16 @@ def notices(app: Lab) -> list[str]:
 def screen_text(app: Lab) -> str:
     """What is on the screen, as lines of text."""
     return "\n".join("".join(s.text for s in strip) for strip in app.screen._compositor.render_strips())
+
+
+async def until_shown(pilot: Pilot[Any], text: str) -> None:
+    """Wait until words stand on the screen."""
+    await until(pilot, lambda: text in screen_text(lab(pilot)))
+
+
+async def press_and_stand(pilot: Pilot[Any], key: str) -> None:
+    """Press a key that lets the program stand anew."""
+    debugging = lab(pilot).debugging
+    before = debugging.standing
+    await pilot.press(key)
+    await until(pilot, lambda: debugging.standing not in (None, before))

@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.ui.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tests.ui.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until, until_shown
 from tuisim.config import build_run_spec, load_world
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
@@ -137,7 +137,7 @@ async def test_what_cannot_be_written_is_told(folder: Path) -> None:
         ):
             app.screen.query_one(Input).value = typed
             await pilot.press("enter")
-            await until(pilot, lambda said=said: said in screen_text(app))
+            await until_shown(pilot, said)
         assert sorted(path.name for path in folder.iterdir()) == ["lab.toml", "mine.py", "mine.toml"]
 
 

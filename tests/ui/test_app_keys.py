@@ -135,9 +135,9 @@ async def test_pen_is_p_and_not_shift_p() -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("P", "escape")
-        assert not app.bridge.pen_down
+        after_shift_p = app.bridge.pen_down
         await pilot.press("p")
-        assert app.bridge.pen_down
+        assert (after_shift_p, app.bridge.pen_down) == (False, True)
         await pilot.press("x")
         assert not app.desk.shown("positioning")
         await pilot.press("X")

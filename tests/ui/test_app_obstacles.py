@@ -97,10 +97,16 @@ async def test_a_wrong_number_is_refused() -> None:
             entry.focus()
             right, entry.value = entry.value, typed
             await pilot.press("enter")
-            await until(pilot, lambda said=said: str(app.query_one("Obstacles #message", Static).render()) == said)
+            await refused(pilot, said)
             assert boxes(app) == before
             entry.value = right
             await pilot.press("enter")
+
+
+async def refused(pilot: Pilot[Any], said: str) -> None:
+    """Wait until the panel says why."""
+    message = pilot.app.query_one("Obstacles #message", Static)
+    await until(pilot, lambda: str(message.render()) == said)
 
 
 async def test_one_is_drawn_and_moved_with_the_mouse() -> None:

@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.ui.app_help import notices, ready, settings, until
+from tests.ui.app_help import notices, press_and_stand, ready, settings, until
 from tuisim.breaks import parse_breaks
 from tuisim.protocol import Looked
 from tuisim.ui.app import Lab
@@ -67,15 +67,8 @@ async def stands(pilot: Pilot[Any], app: Lab, at: int) -> None:
 async def press(pilot: Pilot[Any], app: Lab, key: str, *lines: int) -> None:
     """Press a key again and again; it leads to these lines."""
     for at in lines:
-        await pressed(pilot, app, key)
+        await press_and_stand(pilot, key)
         await stands(pilot, app, at)
-
-
-async def pressed(pilot: Pilot[Any], app: Lab, key: str) -> None:
-    """Press a key that lets the program stand anew."""
-    before = app.debugging.standing
-    await pilot.press(key)
-    await until(pilot, lambda: app.debugging.standing not in (None, before))
 
 
 def drawn(app: Lab) -> str:

@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.ui.app_help import ready, settings, until
+from tests.ui.app_help import press_and_stand, ready, settings, until
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
 from tuisim.datalog.store import RunStore
@@ -39,9 +39,7 @@ async def held(pilot: Pilot[Any], *keys: str) -> Lab:
     await pilot.press("n")
     await until(pilot, lambda: app.debugging.standing is not None)
     while app.debugging.standing is None or app.debugging.standing.paused.line != 4:
-        before = app.debugging.standing
-        await pilot.press("n")
-        await until(pilot, lambda before=before: app.debugging.standing not in (None, before))
+        await press_and_stand(pilot, "n")
     return app
 
 
