@@ -104,7 +104,7 @@ class CsvReader:
             return None
         if b'"' in block.text and table.num_rows != sum(1 for line in block.text.split(b"\n") if line.strip()):
             return None
-        return [column.combine_chunks() for column in table.columns]
+        return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
 
     def _careful(self, block: Block) -> tuple[list[pa.Array], list[int]]:
         """Cells line by line; short rows are filled up, long ones cut, both are noted."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from typing import ClassVar
 
 from textual.app import App
@@ -9,6 +10,7 @@ from textual.app import App
 from tuisim.errors import TuisimError
 from tuisim.ui.analyser.screen import Analyser
 from tuisim.ui.analyser.subject import Wanted
+from tuisim.ui.driver import TerminalDriver
 
 
 class AnalyserApp(App[None]):
@@ -24,7 +26,7 @@ class AnalyserApp(App[None]):
     ENABLE_COMMAND_PALETTE: ClassVar[bool] = True
 
     def __init__(self, wanted: Wanted) -> None:
-        super().__init__()
+        super().__init__(driver_class=TerminalDriver)
         self.wanted = wanted
         self.failure: TuisimError | None = None
         """What kept the log from being opened."""
@@ -52,6 +54,8 @@ def run_analyser(wanted: Wanted) -> int:
     Raises:
         LogError: there is no such log, or it cannot be read.
     """
+    # What is imported by now stays until the end: there is no use in looking for garbage in it.
+    gc.freeze()
     app = AnalyserApp(wanted)
     app.run()
     if app.failure is not None:
