@@ -14,6 +14,7 @@ from tuisim.errors import ConfigError
 from tuisim.switches import SwitchParser, nearest
 
 COMMON = ("time", "value", "variable", "telemetry", "json", "out")
+_CHART = ("facets", "marks", "from", "to", "against", "size")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +40,13 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
     "reckon": Subcommand("dead reckoning from the wheels, and its error", "signals:reckon"),
     "diff": Subcommand("where two runs part; exit code 1 if they do", "comparing:diff"),
     "export": Subcommand("the log in another format", "signals:export"),
+    "plot": Subcommand("the chart, as text, SVG or PNG", "plotting:plot", _CHART),
 }
 """What `tuisim log` does, by name."""
 
 _DEFAULTS: Mapping[str, object] = {
     "at": None, "hysteresis": 0.0, "between": "hold", "width": 5, "period": None, "expression": "",
+    "facets": False, "marks": False, "from": None, "to": None, "against": "", "size": "",
 }  # fmt: skip
 
 
@@ -58,7 +61,9 @@ def add_arguments(parser: SwitchParser) -> None:
     parser.epilog = (
         "examples:\n  tuisim log bands last\n  tuisim log events log.csv --at 50 --hysteresis 5 --json\n"
         "  tuisim run prog.py | tuisim log summary -\n"
-        "  tuisim log resample last --telemetry --period 0.5 --out half.parquet"
+        "  tuisim log resample last --telemetry --period 0.5 --out half.parquet\n"
+        "  tuisim log plot last --facets --out chart.svg\n"
+        "  tuisim log plot last --telemetry --variable y_mm --against x_mm"
     )
     parser.add_argument("action", metavar="SUBCOMMAND", help="what to do")
     parser.add_argument("words", nargs="*", metavar="LOG", help="runs or files")
@@ -71,7 +76,9 @@ def add_arguments(parser: SwitchParser) -> None:
         "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
     )
     parser.add_argument("--json", action="store_true", help="as JSON")
-    parser.add_argument("--out", metavar="FILE", help="write the result: .csv, .parquet, .jsonl, .arrow")
+    parser.add_argument(
+        "--out", metavar="FILE", help="write the result: .csv, .parquet, .jsonl, .arrow; of plot .svg, .png, .txt"
+    )
     parser.add_argument("--at", type=float, metavar="VALUE", help="threshold of events")
     parser.add_argument("--hysteresis", type=float, default=0.0, metavar="VALUE", help="events: how far beyond counts")
     parser.add_argument(
@@ -80,6 +87,12 @@ def add_arguments(parser: SwitchParser) -> None:
     parser.add_argument("--width", type=int, default=5, metavar="N", help="samples of an average, odd")
     parser.add_argument("--period", type=float, metavar="S", help="seconds between rows of resample")
     parser.add_argument("--expression", default="", metavar="TEXT", help="such as '(left + right) / 2', see README")
+    parser.add_argument("--facets", action="store_true", help="plot: a chart for each variable")
+    parser.add_argument("--marks", action="store_true", help="plot: points instead of lines")
+    parser.add_argument("--from", type=float, metavar="S", help="plot: first second shown")
+    parser.add_argument("--to", type=float, metavar="S", help="plot: last second shown")
+    parser.add_argument("--against", default="", metavar="NAME", help="plot: over this variable or column, not time")
+    parser.add_argument("--size", default="", metavar="WxH", help="plot: in pixels, of text in characters")
 
 
 def execute(arguments: Namespace) -> int:

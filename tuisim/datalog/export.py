@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXPORTERS",
+    "check_place",
     "check_target",
     "export_frame",
     "export_samples",
@@ -62,26 +63,31 @@ def check_target(path: str | Path) -> Path:
     exporter = EXPORTERS.get(target.suffix.lower())
     if exporter is None:
         raise ExportError(f"cannot write {target}: unknown format {target.suffix!r}", f"a file ends in {_allowed()}")
-    try:
-        for place in (target, companion_of(target)) if exporter.companion else (target,):
-            _check_place(place)
-        folder = target.parent
-        if not folder.is_dir():
-            raise ExportError(f"cannot write {target}: there is no folder {folder}")
-        # The rights alone do not tell: a file system may be full or read-only.
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        # Also a name that is too long for the file system, which every look at it says.
-        raise ExportError(f"cannot write {target}: {error.strerror or error}") from error
+    for place in (target, companion_of(target)) if exporter.companion else (target,):
+        check_place(place)
     return target
 
 
-def _check_place(place: Path) -> None:
-    if place.is_dir():
-        raise ExportError(f"cannot write {place}: it is a folder")
-    if place.exists() and not (place.is_file() and os.access(place, os.W_OK)):
-        raise ExportError(f"cannot write {place}: it is there and may not be replaced")
+def check_place(place: Path) -> None:
+    """Make sure that a file can be written at a place; nothing is left behind.
+
+    Raises:
+        ExportError: no such folder, a folder that cannot be written, or something is there that is no file
+            that may be replaced.
+    """
+    try:
+        if place.is_dir():
+            raise ExportError(f"cannot write {place}: it is a folder")
+        if place.exists() and not (place.is_file() and os.access(place, os.W_OK)):
+            raise ExportError(f"cannot write {place}: it is there and may not be replaced")
+        if not place.parent.is_dir():
+            raise ExportError(f"cannot write {place}: there is no folder {place.parent}")
+        # The rights alone do not tell: a file system may be full or read-only.
+        with tempfile.TemporaryFile(dir=place.parent):
+            pass
+    except OSError as error:
+        # Also a name that is too long for the file system, which every look at it says.
+        raise ExportError(f"cannot write {place}: {error.strerror or error}") from error
 
 
 def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> None:

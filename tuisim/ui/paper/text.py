@@ -1,0 +1,58 @@
+"""Charts as lines of text."""
+
+from __future__ import annotations
+
+from rich.text import Text
+
+from tuisim.ui.paper.chart import Chart, Line
+from tuisim.ui.render.chart import ChartPainter, ChartState, Run
+from tuisim.ui.render.plot import BRAILLE
+from tuisim.ui.render.traces import Trace, Traces
+from tuisim.ui.render.xy import xy_lines
+
+LEAST_ROWS = 8
+"""A chart of one variable that is lower says nothing."""
+
+
+class _Drawn(Traces):
+    """The lines of a chart as the painter of charts takes them."""
+
+    def __init__(self, lines: tuple[Line, ...]) -> None:
+        super().__init__()
+        for line in lines:
+            trace = self._by_name[line.name] = Trace(line.name, line.number)
+            trace.on, trace.other_scale = True, line.other_scale
+            trace.add(line.xs.tolist(), line.ys.tolist())
+
+
+def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> Text:
+    """Return a chart as text, each line at most so wide.
+
+    Args:
+        chart: What is to be seen.
+        width, height: Size in characters; facets take more lines if they must.
+        colors: Whether colours tell the lines apart, otherwise marks do.
+    """
+    shown: list[list[Run]] = []
+    if chart.path:
+        (line,) = chart.lines
+        trace = Trace(line.name, line.number)
+        marker = trace.mark if chart.marks else BRAILLE
+        names = chart.x_label.partition(" ")[0], line.name
+        shown = xy_lines(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
+    else:
+        parts = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
+        rows = max(height // len(parts), LEAST_ROWS)
+        for part in parts:
+            grey = not colors and len(part) > 1
+            state = ChartState(x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart))
+            shown += ChartPainter().paint(_Drawn(part), state, width, rows).lines
+    lines = [Text(chart.title, "bold"), *(Text.assemble(*line) for line in shown)]
+    for at in lines:
+        at.rstrip()
+        at.truncate(width)
+    return Text("\n").join(lines)
+
+
+def _unit(chart: Chart) -> str:
+    return chart.x_label.rpartition("(")[2].rstrip(")") if "(" in chart.x_label else ""
