@@ -10,6 +10,7 @@ drift into each other are one.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,9 @@ _FAR = 5.0
 
 _NEAR_SAMPLES = 12
 """How far from a cut a drift is looked at."""
+
+_FEW_SAMPLES = 100
+"""Up to so many are sorted as a list."""
 
 _STEP_OF_RANGE = 0.005
 """A step below this part of the range is no step, whatever the noise."""
@@ -219,26 +223,56 @@ def _goes_on(
     values: FloatArray, left: tuple[int, int], right: tuple[int, int], least_step: float, sigma: float
 ) -> bool:
     """Whether one piece is the other's continuation: no step between them that a common drift does not explain."""
-    before = np.arange(max(left[0], left[1] - _NEAR_SAMPLES), left[1])
-    after = np.arange(right[0], min(right[1], right[0] + _NEAR_SAMPLES))
-    kept = np.concatenate([part[~_strays(values[part], sigma)] for part in (before, after)])
-    model = np.stack([np.ones(len(kept)), kept - left[1], kept >= right[0]], axis=1).astype(np.float64)
-    # Three unknowns: level, drift, step.
+    before = values[max(left[0], left[1] - _NEAR_SAMPLES) : left[1]]
+    after = values[right[0] : min(right[1], right[0] + _NEAR_SAMPLES)]
+    off_before, off_after = _strays(before, sigma), _strays(after, sigma)
+    apart = right[0] - left[1]
+    places = np.concatenate((np.arange(-len(before), 0)[~off_before], np.arange(apart, apart + len(after))[~off_after]))
+    kept = np.concatenate((before[~off_before], after[~off_after]))
+    fit = _step_fit(places.tobytes(), apart)
+    step = float(fit.row @ (fit.model.T @ kept))
+    return abs(step) <= max(least_step, _CERTAINTY * sigma * fit.spread)
+
+
+@dataclass(frozen=True, slots=True)
+class _StepFit:
+    """How samples at certain places tell the step between two pieces."""
+
+    model: FloatArray
+    """Shape (n, 3): level, drift and step at each place."""
+    row: FloatArray
+    """Shape (3,): of the inverse of the normal equations, what gives the step."""
+    spread: float
+    """Standard deviation of the step, in units of the noise."""
+
+
+@lru_cache(maxsize=1000)
+def _step_fit(places: bytes, apart: int) -> _StepFit:
+    """Return the fit for places counted from the end of the left piece; most cuts have the same ones around them."""
+    at = np.frombuffer(places, np.int64)
+    model = np.stack([np.ones(len(at)), at, at >= apart], axis=1).astype(np.float64)
     inverse = np.linalg.pinv(model.T @ model)
-    step = float(inverse[2] @ (model.T @ values[kept]))
-    return abs(step) <= max(least_step, _CERTAINTY * sigma * float(np.sqrt(inverse[2, 2])))
+    return _StepFit(model, inverse[2], float(np.sqrt(inverse[2, 2])))
 
 
 def _strays(part: FloatArray, sigma: float) -> NDArray[np.bool_]:
     """Which samples of a stretch of one level lie far off it."""
-    at = np.arange(len(part), dtype=np.float64)
     half = len(part) // 2
-    slope = 0.0
+    rest = part
     if half >= 4:
-        slope = (float(np.median(part[-half:])) - float(np.median(part[:half]))) / (len(part) - half)
-    rest = part - slope * at
-    off: NDArray[np.bool_] = np.abs(rest - np.median(rest)) > _FAR * sigma
+        slope = (_median(part[-half:]) - _median(part[:half])) / (len(part) - half)
+        rest = part - slope * np.arange(len(part))
+    off: NDArray[np.bool_] = np.abs(rest - _median(rest)) > _FAR * sigma
     return off if not off.all() else np.zeros(len(part), bool)
+
+
+def _median(part: FloatArray) -> float:
+    """Return the median; for the few samples of most pieces, numpy takes ten times as long."""
+    if len(part) > _FEW_SAMPLES:
+        return float(np.median(part))
+    ordered = sorted(part.tolist())
+    middle = len(ordered) // 2
+    return float(ordered[middle] if len(ordered) % 2 else (ordered[middle - 1] + ordered[middle]) / 2.0)
 
 
 def _plateau(values: FloatArray, start: int, stop: int, sigma: float) -> Plateau:
@@ -249,8 +283,10 @@ def _plateau(values: FloatArray, start: int, stop: int, sigma: float) -> Plateau
         return Plateau(start, stop, float(kept[0]), 0.0, 0.0, int(off.sum()))
     drift = 0.0
     if len(kept) >= 8:
-        drift = float(np.polyfit(np.flatnonzero(~off).astype(np.float64), kept, 1)[0]) * (len(part) - 1)
-    return Plateau(start, stop, float(np.mean(kept)), float(np.std(kept)), drift, int(off.sum()))
+        at = np.flatnonzero(~off).astype(np.float64)
+        at -= at.mean()
+        drift = float(at @ kept / (at @ at)) * (len(part) - 1)
+    return Plateau(start, stop, float(kept.mean()), float(kept.std()), drift, int(off.sum()))
 
 
 def _is_edge(found: list[Plateau], at: int) -> bool:
@@ -287,10 +323,10 @@ def _grown(values: FloatArray, found: list[Plateau], sigma: float) -> list[Plate
         start, stop = plateau.start, plateau.stop
         near = _FAR * sigma / 2.0
         for ahead in range(start - 1, max(first, start - 1 - _STRAY_SAMPLES) - 1, -1):
-            if abs(values[ahead] - np.median(values[start : start + _NEAR_SAMPLES])) <= near:
+            if abs(values[ahead] - _median(values[start : start + _NEAR_SAMPLES])) <= near:
                 start = ahead
         for ahead in range(stop, min(last, stop + 1 + _STRAY_SAMPLES)):
-            if abs(values[ahead] - np.median(values[max(start, stop - _NEAR_SAMPLES) : stop])) <= near:
+            if abs(values[ahead] - _median(values[max(start, stop - _NEAR_SAMPLES) : stop])) <= near:
                 stop = ahead + 1
         same = (start, stop) == (plateau.start, plateau.stop)
         grown.append(plateau if same else _plateau(values, start, stop, sigma))
