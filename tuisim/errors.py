@@ -2,7 +2,7 @@
 
 TuisimError(message, hint, exit_code)
 ├─ ConfigError: file, key ── BackgroundError, RobotError, ObstacleError, ProfileError
-├─ ProgramError: file, line ── ProgramRaised, ProgramStalled, ProgramKilled, NotSimulated
+├─ ProgramError: file, line ── NotSimulated
 ├─ HostError: child died, protocol mismatch
 ├─ LogError: file, row
 └─ ExportError
@@ -84,20 +84,6 @@ class ProgramError(TuisimError):
         super().__init__(where + message, hint)
         self.file = file
         self.line = line
-
-
-class ProgramRaised(ProgramError):
-    """The program ended with an exception of its own."""
-
-
-class ProgramStalled(ProgramError):
-    """The program ran into the simulated-time limit or the stall limit."""
-
-    exit_code = 3
-
-
-class ProgramKilled(ProgramError):
-    """The program had to be killed, or died without a word."""
 
 
 class NotSimulated(ProgramError):

@@ -107,7 +107,7 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
 
 
 def number(low: float, high: float) -> Callable[[str, str], float]:
-    """Return a converter from the text after a flag to a number in a range."""
+    """Return a converter from the text after a flag to a number in a range; it raises ConfigError for others."""
 
     def convert(text: str, flag: str) -> float:
         try:
@@ -122,7 +122,7 @@ def number(low: float, high: float) -> Callable[[str, str], float]:
 
 
 def whole(low: int, high: int) -> Callable[[str, str], int]:
-    """Return a converter from the text after a flag to a whole number in a range."""
+    """Return a converter from the text after a flag to a whole number in a range; it raises ConfigError for others."""
 
     def convert(text: str, flag: str) -> int:
         try:

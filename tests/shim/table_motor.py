@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from tests.shim.checking import Check, Table
 
-SPEED_CLASSES = "SpeedPercent SpeedNativeUnits SpeedRPS SpeedRPM SpeedDPS SpeedDPM"
-
 
 def _speed(name: str, argument: float, native: str, text: str, attribute: str) -> tuple[Check, ...]:
     ids = f"SpeedValue {name} {name}.__init__"

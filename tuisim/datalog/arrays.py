@@ -8,5 +8,5 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 """Real numbers, shape (n,)."""
 
-BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
+"""Numbers of rows, shape (n,)."""

@@ -111,7 +111,12 @@ class Catalogue:
         return self._do(insert)
 
     def update(self, run_id: str, **values: str | int | float | None) -> None:
-        """Change columns of a run, by name; a run that is not listed is left out."""
+        """Change columns of a run, by name; a run that is not listed is left out.
+
+        Raises:
+            ValueError: there is no such column.
+            LogError: the catalogue cannot be written.
+        """
         unknown = values.keys() - set(_NAMES)
         if unknown:
             raise ValueError(f"no such column: {', '.join(sorted(unknown))}")

@@ -13,7 +13,6 @@ import time
 
 monotonic = time.monotonic
 process_time = time.process_time
-real_sleep = time.sleep
 get_ident = _thread.get_ident
 allocate_lock = _thread.allocate_lock
 start_new_thread = _thread.start_new_thread

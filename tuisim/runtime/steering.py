@@ -224,7 +224,11 @@ class Steering:
             self.apply(session, self._waiting.popleft())
 
     def apply(self, session: Session, action: Message) -> None:
-        """Carry out a user action now, right before the next tick, and write it down."""
+        """Carry out a user action now, right before the next tick, and write it down.
+
+        Raises:
+            TypeError: the message is none.
+        """
         sim = session.sim
         match action:
             case protocol.Stop():

@@ -134,7 +134,11 @@ class _Evaluation:
         self._columns, self._names, self._text = columns, names, text
 
     def value(self, node: ast.expr) -> Any:
-        """Return the value of a node: an array or a number."""
+        """Return the value of a node: an array or a number.
+
+        Raises:
+            LogError: it is something that expressions do not have.
+        """
         match node:
             case ast.Constant(value=bool() | int() | float() as number):
                 return float(number)
