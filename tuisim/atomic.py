@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -31,8 +30,9 @@ def replacing(path: Path, *, lasting: bool = True) -> Iterator[BinaryIO]:
         OSError: the folder or the file cannot be written.
     """
     target = Path(os.path.realpath(path))
-    # Not `tempfile`: its files are readable by the owner only, whatever the umask says.
-    beside = target.with_name(f".{target.name}.{secrets.token_hex(4)}{PART_SUFFIX}")
+    # Not `tempfile`: its files are readable by the owner only, whatever the umask says. Nor `secrets`, which brings
+    # `random` along: a run's process imports this before its chance comes from the seed.
+    beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{PART_SUFFIX}")
     try:
         with open(beside, "xb") as handle:
             yield handle

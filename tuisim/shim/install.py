@@ -52,6 +52,14 @@ class FinishingFinder:
         return spec
 
 
+def finish_imports(finishers: Mapping[str, Finish]) -> None:
+    """Let functions finish modules, by name, right after their import; now, if they have been imported already."""
+    for name, finish in finishers.items():
+        if (there := sys.modules.get(name)) is not None:
+            finish(there)
+    sys.meta_path.insert(0, FinishingFinder(finishers))
+
+
 def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
     """Prepare `import ev3dev2` for the program.
 
@@ -73,7 +81,7 @@ def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
         **dict.fromkeys(REFUSED, refuse_classes),
         **more_finishers,
     }
-    sys.meta_path.insert(0, FinishingFinder(finishers))
+    finish_imports(finishers)
     connect(session, brick)
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules["evdev"] = evdev_module(session)
