@@ -12,11 +12,16 @@ import pytest
 
 from tests.running import Start, over, until_tick
 from tuisim.cli import run_command
+from tuisim.config import build_run_spec
 from tuisim.datalog.diff import diff_runs
+from tuisim.datalog.face import Face, face_after
+from tuisim.datalog.records import MOTORS
 from tuisim.datalog.store import RunStore
 from tuisim.errors import LogError
+from tuisim.host import Program, RunOptions, start_run
 from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
 from tuisim.rerun import STOP_FILE, rerun, same
+from tuisim.switches import Settings
 
 LOOP = """
 import random, time
@@ -189,3 +194,29 @@ def test_a_killed_run_is_compared_up_to_its_last_record(start: Start, tmp_path: 
     second = store.load_run(again.run_id)
     assert second.telemetry.count > 20
     assert same(stored, second).same
+
+
+ARM = """
+from ev3dev2.motor import MediumMotor, OUTPUT_A
+from ev3dev2.sensor.lego import InfraredSensor
+import time
+arm = MediumMotor(OUTPUT_A)
+arm.on(50)
+time.sleep(0.1)
+arm.position = 7
+arm.on_for_degrees(20, -90)
+time.sleep(0.0137)
+"""
+
+
+def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: Path) -> None:
+    spec = build_run_spec(Settings(robot="Explorer"))
+    live = start_run(Program("arm.py", ARM), spec, RunOptions(live=True, speed=16.0))
+    over(live)
+    run = RunStore().load_run(live.run_id)
+    turns = [row for row in run.output.rows() if row.stream == MOTORS]
+    ((position_deg, speed_dps),) = face_after(Face(), turns).turns
+    assert (round(position_deg), speed_dps) == (-83, 0.0)
+    again = rerun(run, RunStore())
+    over(again)
+    assert same(run, RunStore().load_run(again.run_id)).same

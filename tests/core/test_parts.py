@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.core.memory_sink import MemorySink
-from tuisim.core.extra_motors import simulation_of
+from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import PROFILES
@@ -130,3 +130,30 @@ def test_proximity_is_the_nearest_surface_in_percent_of_70_cm() -> None:
     values = [infrared.proximity(Pose(x_mm, 500.0, 0.0), InfraredSpec(), BOX) for x_mm in (510.0, 230.0)]
     assert values == [10, 50]
     assert infrared.proximity(Pose(1000.0, 500.0, 0.0), InfraredSpec(), BOX) == 100
+
+
+@pytest.mark.parametrize("profile", ["ev3", "nbev3devsim"])
+def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: str) -> None:
+    sim = simulation_of(replace(RUN, profile=PROFILES[profile]), MemorySink())
+    assert isinstance(sim, FurtherMotors)
+    told: list[tuple[int, tuple[Turn, ...]]] = [(0, ((0.0, 0.0),) * 2)]
+    sim.tell = lambda turns: told.append((sim.tick, turns))
+    arm, lift = sim.others
+    steps: dict[int, Callable[[], None]] = {
+        0: lambda: arm.run(300.0),
+        40: lambda: lift.run_to(-90.0, 100.0, backwards=True),
+        60: lambda: arm.stop(sim.spec.profile),
+        80: lambda: setattr(arm, "position_deg", 5.0),
+        90: lambda: arm.run_until(-50.0, 150),
+    }
+    for tick in range(300):
+        steps.get(tick, lambda: None)()
+        sim.advance(1)
+        at, turns = told[-1]
+        since_s = (sim.tick - at) / sim.spec.profile.tick_hz
+        # What was changed between two ticks is told with the next.
+        for motor, (position, dps) in zip(sim.others, turns, strict=True):
+            assert motor.position_deg == pytest.approx(position + dps * since_s, abs=0.3)
+            assert motor.moving_dps == dps
+    # Even turning is told once.
+    assert len(told) < 100

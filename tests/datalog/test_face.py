@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import random
 
+import pytest
+
 from tuisim.datalog.face import (
     BLANK,
     Face,
@@ -12,8 +14,9 @@ from tuisim.datalog.face import (
     display_row,
     face_after,
     led_row,
+    motors_row,
 )
-from tuisim.datalog.records import CONSOLE, DISPLAY, LED, STDOUT, OutputRow
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, STDOUT, OutputRow
 
 
 def row(text: str, stream: int) -> OutputRow:
@@ -41,3 +44,11 @@ def test_newest_screen_is_shown() -> None:
     face = face_after(Face(), [row(console_row(screen), CONSOLE), row(display_row(BLANK), DISPLAY)])
     assert face.text == screen
     assert not face.shows_text
+
+
+def test_motors_turn_evenly_on() -> None:
+    face = face_after(Face(), [row(motors_row([(90.0, -50.0), (1.5, 0.0)]), MOTORS)])
+    # The row is of tick 1.
+    (turning, standing) = face.turns_at(2.01, 100)
+    assert turning == pytest.approx((-10.0, -50.0))
+    assert standing == (1.5, 0.0)

@@ -8,6 +8,7 @@ import pytest
 
 from tests.ui.panel_help import SPEC, PanelApp, moment, screen_text
 from tuisim.core.geometry import Pose
+from tuisim.core.parts import MotorSpec
 from tuisim.ui.panels.instrumentation import Instrumentation, lines
 from tuisim.ui.snapshot import ENDED, Snapshot
 
@@ -23,7 +24,12 @@ EXTREME = moment(
 )
 BARE = moment(spec=replace(SPEC, robot=replace(SPEC.robot, gyro=None, ultrasonic=None)), ultrasonic_mm=None, colors={})
 
-FURTHER = moment(further={"bumper_pressed": 1.0, "infrared_proximity": 45.0, "back_mm": 1234.0})
+ARMED = replace(SPEC, robot=replace(SPEC.robot, extra_motors=(MotorSpec("outA"), MotorSpec("outD"))))
+FURTHER = moment(
+    spec=ARMED,
+    turns=((-2517.4, -312.2), (0.0, 0.0)),
+    further={"bumper_pressed": 1.0, "infrared_proximity": 45.0, "back_mm": 1234.0},
+)
 
 
 def text(now: Snapshot, width: int, height: int) -> list[str]:
@@ -102,9 +108,12 @@ async def test_what_is_left_of_last_time_is_wiped() -> None:
 
 def test_further_parts() -> None:
     rows = [" ".join(row.split()) for row in text(FURTHER, 40, 20)]
-    assert [row for row in rows if row.startswith(("Bumper", "Infrared", "Back"))] == [
+    assert [row for row in rows if row.startswith(("Motor", "Bumper", "Infrared", "Back"))] == [
+        "Motor A tacho -2517 -312 °/s",
+        "Motor D tacho 0 0 °/s",
         "Bumper pressed",
         "Infrared 45 %",
         "Back 1234 mm",
     ]
-    assert text(FURTHER, 26, 9)[6:9] == [row for row in text(FURTHER, 26, 30) if row.startswith(("Bum", "Inf", "Bac"))]
+    starts = ("Motor", "Bum", "Inf", "Bac")
+    assert text(FURTHER, 26, 11)[6:11] == [row for row in text(FURTHER, 26, 30) if row.startswith(starts)]

@@ -1,4 +1,6 @@
-"""What the brick shows as rows of the output: lights, picture, text screen. Pure Python: the child writes it.
+"""What is seen of the brick, as rows of the output: lights, picture, text screen, motors that do not drive the robot.
+
+Pure Python: the child writes it.
 
 Each row carries the whole of what it is about, so that the newest row of a stream is all that a viewer needs.
 """
@@ -11,7 +13,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
-from tuisim.datalog.records import CONSOLE, DISPLAY, LED, OutputRow
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, OutputRow
 
 DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128
 """Pixels of the display."""
@@ -47,6 +49,17 @@ class Face:
     """The text screen; None until the program writes to it."""
     shows_text: bool = False
     """Whether the text screen was changed later than the picture."""
+    turns: tuple[tuple[float, float], ...] = ()
+    """Position in degrees and speed in degrees per second of each motor in `RobotSpec.extra_motors`.
+
+    As they were at `turns_tick`; they turn evenly on. Empty until one of them has turned.
+    """
+    turns_tick: int = 0
+
+    def turns_at(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
+        """Return `turns` as they are at a later time."""
+        since_s = time_s - self.turns_tick / tick_hz
+        return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
 
 
 def led_row(brightness: Mapping[str, int]) -> str:
@@ -64,6 +77,11 @@ def console_row(screen: TextScreen) -> str:
     return json.dumps([screen.columns, screen.rows, screen.lines, screen.inverse])
 
 
+def motors_row(turns: Iterable[tuple[float, float]]) -> str:
+    """Return the row for the motors: `Face.turns` as they are from the row's tick on."""
+    return json.dumps(list(turns))
+
+
 def face_after(face: Face, rows: Iterable[OutputRow]) -> Face:
     """Return what the brick shows after some more output; rows of other streams change nothing."""
     for row in rows:
@@ -76,4 +94,7 @@ def face_after(face: Face, rows: Iterable[OutputRow]) -> Face:
                 columns, count, lines, inverse = json.loads(row.text)
                 spans = tuple((line, start, end) for line, start, end in inverse)
                 face = replace(face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True)
+            case stream if stream == MOTORS:
+                turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
+                face = replace(face, turns=turns, turns_tick=row.tick)
     return face

@@ -57,6 +57,9 @@ TEXT_STREAMS = (STDOUT, STDERR, SPEECH, INPUT)
 LED, DISPLAY, CONSOLE = 5, 6, 7
 """Streams of what the brick shows besides: its lights, its picture, its text screen."""
 
+MOTORS = 8
+"""Stream of how motors turn that do not drive the robot."""
+
 TELEMETRY_FILE = "telemetry.bin"
 OUTPUT_FILE = "output.bin"
 _TELEMETRY_CHUNK = 64 * 16384

@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from tuisim import protocol
-from tuisim.core.extra_motors import simulation_of
+from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.simulation import NS_PER_S
+from tuisim.datalog.face import motors_row
 from tuisim.datalog.lock import hold
-from tuisim.datalog.records import OutputWriter, TelemetryWriter
+from tuisim.datalog.records import MOTORS, OutputWriter, TelemetryWriter
 from tuisim.fields import open_field
 from tuisim.runtime.chance import finish_random, patch_urandom
 from tuisim.runtime.channel import Channel
@@ -66,6 +67,13 @@ class Child:
         session = self._session
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write
+        if isinstance(self._sim, FurtherMotors):
+            self._sim.tell = self._write_turns
+
+    def _write_turns(self, turns: tuple[Turn, ...]) -> None:
+        sim = self._sim
+        # Not at the session's time: that of a paced run goes on in smaller steps.
+        self._output.row_at(motors_row(turns), MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
 
     def _after_write(self) -> None:
         if self._session.slow & (ATTENTION | STOPPING):

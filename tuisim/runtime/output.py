@@ -31,6 +31,10 @@ class Output:
         if self.watch is not None:
             self.watch(text, stream)
 
+    def row_at(self, text: str, stream: int, tick: int, time_ns: int, line: int) -> None:
+        """Write one row that is of a tick and not of a moment between two."""
+        self._writer.write(text.encode(), tick, time_ns, line, stream)
+
     def close(self) -> None:
         """Cut the file to its size."""
         self._writer.close()

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from tuisim.datalog.records import CONSOLE, DISPLAY, LED, STDERR, TEXT_STREAMS, OutputRow
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, STDERR, STDOUT, TEXT_STREAMS, OutputRow
 from tuisim.datalog.samples import parse_sample
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SAMPLE, ERROR = "sample", "error"
 """What is marked of the output: a sample that reached another level, an error text."""
 
-_FACE_STREAMS = (LED, DISPLAY, CONSOLE)
+_FACE_STREAMS = (LED, DISPLAY, CONSOLE, MOTORS)
 _LEVEL_SHARE = 0.15
 """A sample that has gone so much of its variable's range is on another level."""
 
@@ -88,7 +88,7 @@ class RowIndex:
         if row.stream == STDERR:
             if not self.marks or self.marks[-1] != (row.tick, ERROR):
                 self.marks.append((row.tick, ERROR))
-        elif sample := parse_sample(row.text):
+        elif row.stream == STDOUT and (sample := parse_sample(row.text)):
             level = self._levels.get(sample[0])
             if level is None:
                 self._levels[sample[0]] = _Level(sample[1])

@@ -107,6 +107,9 @@ class Shown:
         record, recording = self._record(), self.timeline.recording
         instant, line, pen_down = self._moment()
         newest = recording.telemetry.last() if recording and self.in_past else None
+        face = self.timeline.face()
+        # Where the robot was put after the run, all its motors are as new.
+        turns = face.turns_at(instant.tick / self.spec.profile.tick_hz, self.spec.profile.tick_hz) if record else ()
         return replace(
             snapshot_of(
                 instant,
@@ -120,7 +123,8 @@ class Shown:
                 stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
                 next_spec=self.plan.spec,
             ),
-            face=self.timeline.face(),
+            face=face,
+            turns=turns or ((0.0, 0.0),) * len(self.spec.robot.extra_motors),
             pressed=self._pressed_at(record),
             past=self.in_past,
             now_tick=max(0, self.timeline.newest),

@@ -53,6 +53,8 @@ class Snapshot:
 
     face: Face = _DARK
     """What the brick shows."""
+    turns: tuple[tuple[float, float], ...] = ()
+    """Position in degrees and speed in degrees per second of each motor that does not drive the robot."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""
 

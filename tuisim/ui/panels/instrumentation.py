@@ -72,9 +72,15 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
         width: Columns, 18 or more for whole words.
         height: Rows; with fewer than 6 the last lines are left out.
     """
-    motors = [_motor(now, "LeftMotor", "L", width), _motor(now, "RightMotor", "R", width)]
+    motors = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
     sensors = [(f"Sensor{at}", now.colors.get(s.name)) for at, s in enumerate(now.spec.robot.color_sensors, 1)]
-    further = [_further(column, value, width) for column, value in now.further.items()]
+    further = [
+        *(
+            _motor(f"Motor {motor.port[-1]}", motor.port[-1], round(position), _value(f"{round(dps):d}"), width)
+            for motor, (position, dps) in zip(now.spec.robot.extra_motors, now.turns, strict=False)
+        ),
+        *(_further(column, value, width) for column, value in now.further.items()),
+    ]
     small = height < 7 + len(sensors) + len(further)
     if small:
         short = [_sensor_in_one(name, seen, width) for name, seen in sensors]
@@ -125,20 +131,26 @@ def _unit(text: str) -> Run:
     return text, _UNIT
 
 
-def _motor(now: Snapshot, name: str, short: str, width: int) -> Line:
+def _wheel(now: Snapshot, name: str, short: str, width: int) -> Line:
     left = short == "L"
     instant = now.instant
     counts = round(instant.left_position_deg if left else instant.right_position_deg)
     dps = round(instant.left_speed_dps if left else instant.right_speed_dps)
-    stands = now.stalled[0 if left else 1]
-    speed = ("stalled", _WARNING) if stands else _value(f"{dps:d}")
-    unit, close = (_unit(""), _unit("")) if stands else (_unit(" °/s"), _unit("°/s"))
+    if now.stalled[0 if left else 1]:
+        return _motor(name, short, counts, ("stalled", _WARNING), width)
+    return _motor(name, short, counts, _value(f"{dps:d}"), width)
+
+
+def _motor(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
+    """A motor's counts and speed, or a warning in place of that."""
+    warns = speed[1] is _WARNING
+    unit, close = (_unit(""), _unit("")) if warns else (_unit(" °/s"), _unit("°/s"))
     return _fit(
         width,
-        (_label(name), _unit("tacho"), _value(f"{counts:8d}"), _right(speed, 7 + 4 * stands), unit),
-        (_label(name, 11), _value(f"{counts:6d}"), _right(speed, 6 + 3 * stands), close),
+        (_label(name), _unit("tacho"), _value(f"{counts:8d}"), _right(speed, 7 + 4 * warns), unit),
+        (_label(name, 11), _value(f"{counts:6d}"), _right(speed, 6 + 3 * warns), close),
         (_label(name, 11), _value(f"{counts:d} "), speed, close),
-        (_label(short, 2), _value(f"{counts:7d}"), _right(speed, 6 + 3 * stands), close),
+        (_label(short, 2), _value(f"{counts:7d}"), _right(speed, 6 + 3 * warns), close),
     )
 
 
