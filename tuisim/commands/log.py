@@ -41,6 +41,7 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
     "diff": Subcommand("where two runs part; exit code 1 if they do", "comparing:diff"),
     "export": Subcommand("the log in another format", "signals:export"),
     "plot": Subcommand("the chart, as text, SVG or PNG", "plotting:plot", _CHART),
+    "report": Subcommand("program, world, chart, bands, statistics and notes on one page", "report:report"),
 }
 """What `tuisim log` does, by name."""
 
@@ -63,6 +64,7 @@ def add_arguments(parser: SwitchParser) -> None:
         "  tuisim run prog.py | tuisim log summary -\n"
         "  tuisim log resample last --telemetry --period 0.5 --out half.parquet\n"
         "  tuisim log plot last --facets --out chart.svg\n"
+        "  tuisim log report last\n"
         "  tuisim log plot last --telemetry --variable y_mm --against x_mm"
     )
     parser.add_argument("action", metavar="SUBCOMMAND", help="what to do")
@@ -77,7 +79,9 @@ def add_arguments(parser: SwitchParser) -> None:
     )
     parser.add_argument("--json", action="store_true", help="as JSON")
     parser.add_argument(
-        "--out", metavar="FILE", help="write the result: .csv, .parquet, .jsonl, .arrow; of plot .svg, .png, .txt"
+        "--out",
+        metavar="FILE",
+        help="write the result: .csv, .parquet, .jsonl, .arrow; of plot .svg, .png, .txt; of report .html",
     )
     parser.add_argument("--at", type=float, metavar="VALUE", help="threshold of events")
     parser.add_argument("--hysteresis", type=float, default=0.0, metavar="VALUE", help="events: how far beyond counts")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from html import escape
 
 from tuisim.ui.paper.layout import FONT_PX, Drawing, Rule, Shade, Shape, Stroke, Words
@@ -9,6 +10,8 @@ from tuisim.ui.render.plot import Rgb
 
 _INK, _PAPER = "#222", "#fff"
 _FONT = "system-ui, sans-serif"
+_NOWHERE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
+"""Control characters, halves of surrogate pairs, and what is no character at all."""
 
 
 def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
@@ -31,8 +34,8 @@ def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
 
 
 def clean(text: str) -> str:
-    """Return a text as XML and HTML take it, without the characters that have no place in either."""
-    return escape("".join(c if c.isprintable() or c in "\n\t" else "�" for c in text))
+    """Return a text as XML and HTML take it; characters that have no place in either become a question mark."""
+    return escape(_NOWHERE.sub("\ufffd", text))
 
 
 def _hex(rgb: Rgb) -> str:

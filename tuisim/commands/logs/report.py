@@ -1,0 +1,36 @@
+"""`tuisim log report`: everything about a run or a log on one page."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from pathlib import Path
+
+from tuisim.commands.analyse import asked
+from tuisim.commands.logs.sources import names_of
+from tuisim.errors import ConfigError
+from tuisim.ui.analyser.subject import Wanted, opening
+from tuisim.ui.paper.report import check_report, default_name, write_report
+
+
+def report(arguments: Namespace) -> int:
+    """Write the report and say where it is.
+
+    Raises:
+        ConfigError: no log, or a file among others.
+        LogError: the log cannot be read, or there is no such variable.
+        ExportError: the file cannot be written.
+    """
+    if arguments.json:
+        raise ConfigError("does not take --json", "`tuisim log summary` and `bands` do", key="report")
+    if not arguments.words:
+        raise ConfigError("which log?", "a file, `-`, or a stored run such as `last`", key="report")
+    if arguments.out:
+        check_report(Path(arguments.out))
+    what = asked(arguments)
+    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value))
+    *_, subject = opening(wanted)
+    names = names_of(subject.log, arguments) if arguments.variable else ()
+    target = Path(arguments.out or default_name(subject))
+    write_report(subject, target, names)
+    print(target)
+    return 0
