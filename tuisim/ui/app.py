@@ -22,6 +22,7 @@ from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
 from tuisim.ui.bridge import ROWS_A_POLL, Bridge
 from tuisim.ui.debugging import Debugging
 from tuisim.ui.desk import Desk
+from tuisim.ui.driver import TerminalDriver
 from tuisim.ui.editor.work import Work
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
@@ -69,7 +70,7 @@ class Lab(Wishes):
     ]
 
     def __init__(self, settings: AppSettings) -> None:
-        super().__init__()
+        super().__init__(driver_class=TerminalDriver)
         self.settings = settings
         self.bridge = Bridge(settings)
         self.desk = Desk(settings.panels_on, settings.panels_off)

@@ -1,0 +1,56 @@
+"""The driver of the terminal: one that goes away must not keep the app from ending."""
+
+from __future__ import annotations
+
+from io import TextIOWrapper
+from typing import TextIO, cast
+
+from textual.app import App
+from textual.drivers.linux_driver import LinuxDriver
+
+
+class Outlasting:
+    """A terminal's output that may be written to when the terminal is gone, after a lost connection for one.
+
+    Textual writes from a thread of its own. That thread would end with the first write that fails, and the app, which
+    has to write a few words more before it can leave its program and its files in order, would wait for it for ever.
+
+    Args:
+        file: The output.
+    """
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+        self.gone = False
+        """Whether a write has failed; what follows is dropped."""
+
+    def write(self, text: str) -> int:
+        """Write a text, or drop it; return its length."""
+        if not self.gone:
+            try:
+                self._file.write(text)
+            except OSError:
+                self.gone = True
+        return len(text)
+
+    def flush(self) -> None:
+        """Send what was written."""
+        if not self.gone:
+            try:
+                self._file.flush()
+            except OSError:
+                self.gone = True
+
+    def fileno(self) -> int:
+        """Return the number of the output's file."""
+        return self._file.fileno()
+
+
+class TerminalDriver(LinuxDriver):
+    """Textual's driver with an output that outlasts its terminal."""
+
+    def __init__(
+        self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
+    ) -> None:
+        super().__init__(app, debug=debug, mouse=mouse, size=size)
+        self._file = cast(TextIOWrapper, Outlasting(cast(TextIO, self._file)))
