@@ -18,8 +18,7 @@ h1 { font-size: 1.6rem; margin: 0 0 .3rem; }
 h2 { font-size: 1.15rem; margin: 2rem 0 .5rem; border-bottom: 1px solid var(--rule); break-after: avoid; }
 h3 { font-size: 1rem; margin: 1rem 0 .3rem; break-after: avoid; }
 p { margin: .4rem 0; }
-footer, figcaption, .soft { color: var(--soft); font-size: .9rem; }
-footer { margin-top: 2rem; }
+figcaption, .soft { color: var(--soft); font-size: .9rem; }
 figure { margin: .5rem 0; break-inside: avoid; }
 img, svg { display: block; max-width: 100%; height: auto; }
 img { border: 1px solid var(--rule); }

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim import __version__
 from tuisim.datalog.analysis.logbands import in_words
 from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.datalog.export import check_place
@@ -96,7 +95,6 @@ def report_of(subject: Subject, names: Sequence[str] = ()) -> str:
         section("Statistics", _statistics(model)),
         section("Notes", _notes(model), *(paragraph(f"Reading: {note}", soft=True) for note in log.notes)),
         *_programs(runs),
-        f"<footer>tuisim {__version__}</footer>",
     ]
     return page(f"{log.title}: report", [part for part in body if part])
 
