@@ -26,6 +26,7 @@ from tuisim.ui.driver import TerminalDriver
 from tuisim.ui.editor.work import Work
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
+from tuisim.ui.hints import BrickHint
 from tuisim.ui.loading import Loading
 from tuisim.ui.lookback import Lookback
 from tuisim.ui.news import News
@@ -84,6 +85,7 @@ class Lab(Wishes):
         self.loading = Loading(self)
         self.work = Work(self)
         self.debugging = Debugging(self)
+        self.brick_hint = BrickHint(self)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
@@ -168,6 +170,7 @@ class Lab(Wishes):
             self.complain(error)
             return False
         self.run_changed()
+        self.brick_hint.started(self.bridge.program.text if self.bridge.program else "")
         return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
@@ -223,6 +226,7 @@ class Lab(Wishes):
             self._last_words = ""
 
     def _take_rows(self, news: News) -> None:
+        self.brick_hint.shown(news.rows)
         if self.desk.output:
             self.desk.output.add(news.rows, news.skipped)
         self._append(sample_series(news.rows))
