@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, ClassVar, Protocol
 
 from tuisim.core.checks import require, require_one_of
 from tuisim.core.geometry import Pose
@@ -99,8 +99,43 @@ class GyroSpec:
         require_one_of(self.port, "port", INPUT_PORTS, f"{self.name}.port")
 
 
-SensorSpec = ColorSensorSpec | UltrasonicSpec | GyroSpec | TouchSpec | InfraredSpec
-"""Any sensor: each has a name and a port."""
+class SensorSpec(Protocol):
+    """Any sensor: a frozen dataclass with a name and a port."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def port(self) -> str: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """Where a robot keeps sensors of one class."""
+
+    field: str
+    """The field of `RobotSpec`."""
+    spec: type
+    """Class of the sensors; all its fields have defaults, but those of colour sensors."""
+    many: bool
+    """Whether the field holds a tuple; otherwise one sensor, or None."""
+    usual: bool = False
+    """Whether panels and files have a place of its own for it; the others are shown and written alike."""
+    key: str = ""
+    """How it is called in a robot's file; empty if as the field."""
+
+
+MOUNTS = (
+    Mount("color_sensors", ColorSensorSpec, many=True, usual=True),
+    Mount("ultrasonic", UltrasonicSpec, many=False, usual=True),
+    Mount("gyro", GyroSpec, many=False, usual=True),
+    Mount("extra_ultrasonics", UltrasonicSpec, many=True, key="ultrasonics"),
+    Mount("touch_sensors", TouchSpec, many=True),
+    Mount("infrared", InfraredSpec, many=False),
+)
+"""Every place for sensors, in the order of the telemetry columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,9 +185,19 @@ class RobotSpec:
     @property
     def sensors(self) -> tuple[SensorSpec, ...]:
         """Every sensor that is mounted, in the order of the telemetry columns."""
-        usual = (*self.color_sensors, self.ultrasonic, self.gyro)
-        further = (*self.extra_ultrasonics, *self.touch_sensors, self.infrared)
-        return tuple(sensor for sensor in (*usual, *further) if sensor is not None)
+        return tuple(sensor for mount in MOUNTS for sensor in self.sensors_in(mount))
+
+    @property
+    def further_sensors(self) -> tuple[SensorSpec, ...]:
+        """Sensors that only some robots have, in the same order."""
+        return tuple(sensor for mount in MOUNTS if not mount.usual for sensor in self.sensors_in(mount))
+
+    def sensors_in(self, mount: Mount) -> tuple[SensorSpec, ...]:
+        """Return the sensors in one place."""
+        found = getattr(self, mount.field)
+        if mount.many:
+            return tuple(found)
+        return () if found is None else (found,)
 
     def __post_init__(self) -> None:
         require(self.wheel_diameter_mm, 1, 500, "wheel_diameter_mm")
@@ -262,17 +307,15 @@ def from_plain(data: Mapping[str, Any]) -> RunSpec:
         RobotError, ObstacleError: a value in it is impossible.
     """
     robot, world = dict(data["robot"]), dict(data["world"])
-    robot["color_sensors"] = tuple(ColorSensorSpec(**sensor) for sensor in robot["color_sensors"])
-    if robot["ultrasonic"] is not None:
-        robot["ultrasonic"] = _plain_ultrasonic(robot["ultrasonic"])
-    if robot["gyro"] is not None:
-        robot["gyro"] = GyroSpec(**robot["gyro"])
+    for mount in MOUNTS:
+        # A run of a robot that could not have such sensors yet says nothing of them.
+        plain = robot[mount.field] if mount.usual else robot.get(mount.field)
+        if mount.many:
+            robot[mount.field] = tuple(_sensor(mount.spec, sensor) for sensor in plain or ())
+        else:
+            robot[mount.field] = None if plain is None else _sensor(mount.spec, plain)
     robot["pen"] = PenSpec(**robot["pen"])
     robot["extra_motors"] = tuple(MotorSpec(**motor) for motor in robot.get("extra_motors", ()))
-    robot["extra_ultrasonics"] = tuple(map(_plain_ultrasonic, robot.get("extra_ultrasonics", ())))
-    robot["touch_sensors"] = tuple(TouchSpec(**sensor) for sensor in robot.get("touch_sensors", ()))
-    if robot.get("infrared") is not None:
-        robot["infrared"] = InfraredSpec(**robot["infrared"])
     world["obstacles"] = tuple(Obstacle(**obstacle) for obstacle in world["obstacles"])
     world["start"] = Pose(**world["start"])
     world["noise"] = NoiseSpec(**world["noise"])
@@ -284,5 +327,5 @@ def from_plain(data: Mapping[str, Any]) -> RunSpec:
     return RunSpec(RobotSpec(**robot), WorldSpec(**world), ProfileSpec(**data["profile"]), int(data["seed"]))
 
 
-def _plain_ultrasonic(data: Mapping[str, Any]) -> UltrasonicSpec:
-    return UltrasonicSpec(**{**data, "ray_angles_deg": tuple(data["ray_angles_deg"])})
+def _sensor(spec: type, data: Mapping[str, Any]) -> Any:
+    return spec(**{key: tuple(value) if isinstance(value, list) else value for key, value in data.items()})

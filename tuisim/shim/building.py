@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
 from tuisim.core.motors import Motor
 from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import mounted
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, SensorSpec, UltrasonicSpec
-from tuisim.shim.devices import Brick, SimDevice
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
+from tuisim.shim.devices import Brick
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
 from tuisim.shim.lego_sensors import ColorDevice, LegoSensor
 from tuisim.shim.ports import PORT_CLASS, all_ports
@@ -17,6 +20,15 @@ from tuisim.shim.tacho import KINDS, TachoMotor
 
 MOTOR_CLASS, SENSOR_CLASS = "tacho-motor", "lego-sensor"
 """Classes of devices, as the kernel names them."""
+
+DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor]] = {
+    ColorSensorSpec: lambda session, spec, _others: ColorDevice(session, spec),
+    UltrasonicSpec: ultrasonic_sensor,
+    GyroSpec: lambda session, spec, _others: GyroDevice(session, spec),
+    TouchSpec: lambda session, spec, _others: touch_sensor(session, spec),
+    InfraredSpec: lambda session, spec, _others: infrared_sensor(session, spec),
+}
+"""What makes a sensor's device, by the class of its spec: from the session, the spec and the sensors made so far."""
 
 
 def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
@@ -35,34 +47,19 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     for at, (port, motor, kind) in enumerate(sorted(motors, key=lambda found: found[0])):
         brick.add(MOTOR_CLASS, f"motor{at}", TachoMotor(session, motor, port, kind).device())
     colors: dict[str, ColorDevice] = {}
-    sonars: list[LegoSensor] = []
-    for at, sensor in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
-        brick.add(SENSOR_CLASS, f"sensor{at}", _sensor_device(session, sensor, at, colors, sonars))
+    sensors: list[LegoSensor] = []
+    for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
+        sensor = DEVICES[type(spec)](session, spec, sensors)
+        sensors.append(sensor)
+        brick.add(SENSOR_CLASS, f"sensor{at}", sensor.device())
+        if isinstance(sensor, ColorDevice):
+            colors[f"/sys/class/{SENSOR_CLASS}/sensor{at}"] = sensor
     for at, socket in enumerate(all_ports(session)):
         brick.add(PORT_CLASS, f"port{at}", socket)
     for name, light in Lights(session).lights.items():
         brick.add(LED_CLASS, led_name(name), light.device())
     brick.add(POWER_CLASS, BATTERY, Battery(session).device())
     return brick, colors
-
-
-def _sensor_device(
-    session: Session, spec: SensorSpec, at: int, colors: dict[str, ColorDevice], sonars: list[LegoSensor]
-) -> SimDevice:
-    match spec:
-        case ColorSensorSpec():
-            color = colors[f"/sys/class/{SENSOR_CLASS}/sensor{at}"] = ColorDevice(session, spec)
-            return color.device()
-        case UltrasonicSpec():
-            sonars.append(ultrasonic_sensor(session, spec, sonars))
-            return sonars[-1].device()
-        case GyroSpec():
-            gyro = GyroDevice(session, spec)
-            return gyro.device(gyro.resets)
-        case TouchSpec():
-            return touch_sensor(session, spec).device()
-        case InfraredSpec():
-            return infrared_sensor(session, spec).device()
 
 
 def ports_hint(session: Session, class_name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import partial
 
 from tuisim.shim.session import Session
 
@@ -61,7 +62,7 @@ class SimDevice:
         self.number_writers = _NumberWriters(number_writers or {}, self.writers)
         """By attribute, what sets it to a whole number without the way through text."""
         for name, write_number in self.number_writers.items():
-            self.writers[name] = lambda text, write=write_number: write(_whole(text))  # type: ignore[misc]
+            self.writers[name] = partial(_write_whole, write_number)
         self._costs = dict(costs or {})
         self._common_cost = session.sim.spec.profile.attribute_read_ns
 
@@ -90,11 +91,12 @@ class SimDevice:
         self.writers[name](text)
 
 
-def _whole(text: str) -> int:
+def _write_whole(write: NumberWriter, text: str) -> None:
     try:
-        return int(text)
+        number = int(text)
     except ValueError:
         raise refuse(text) from None
+    write(number)
 
 
 class Brick:

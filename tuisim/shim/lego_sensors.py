@@ -1,4 +1,4 @@
-"""Lego sensors: modes and values of colour, ultrasonic and gyro, as the kernel driver has them."""
+"""Lego sensors as the kernel driver has them: what they have in common, and the colour sensor."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import errno
 import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import NoReturn
 
 from tuisim.core.sensors import SENSORS, color
@@ -55,7 +56,11 @@ class LegoSensor:
         self._values: tuple[int, ...] = ()
         self._next_free = (-1, -1)
 
-    def device(self, extra_writers: Mapping[str, Writer] | None = None) -> SimDevice:
+    def writers(self) -> dict[str, Writer]:
+        """Return what takes the text written to each attribute."""
+        return {"mode": self.set_mode, "command": _no_commands}
+
+    def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""
         session = self._session
         readers: dict[str, Callable[[], object]] = {
@@ -73,10 +78,9 @@ class LegoSensor:
         # Values charge for themselves: only the first of a measurement costs.
         costs = {"bin_data": 0}
         for n in range(8):
-            readers[f"value{n}"] = lambda n=n: self._value(n)  # type: ignore[misc]
+            readers[f"value{n}"] = partial(self._value, n)
             costs[f"value{n}"] = 0
-        writers: dict[str, Writer] = {"mode": self.set_mode, "command": _no_commands, **(extra_writers or {})}
-        return SimDevice(session, readers, writers, costs)
+        return SimDevice(session, readers, self.writers(), costs)
 
     def set_mode(self, text: str) -> None:
         """Switch the mode; costs nothing."""

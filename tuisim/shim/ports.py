@@ -39,9 +39,6 @@ INPUT = PortKind(
 )
 OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "raw"), "no-motor")
 
-ANALOG_DRIVERS = ("lego-ev3-touch",)
-"""Sensors without a processor of their own; all others speak over the port's serial line."""
-
 
 @dataclass(frozen=True, slots=True)
 class Plugged:
@@ -58,8 +55,7 @@ def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
     motors |= {motor.port: motor.kind for motor in robot.extra_motors}
     found = {port: Plugged(KINDS[kind].driver_name, "tacho-motor") for port, kind in motors.items()}
     for kind, sensor in mounted(robot):
-        mode = "ev3-analog" if kind.driver_name in ANALOG_DRIVERS else "ev3-uart"
-        found[sensor.port] = Plugged(kind.driver_name, mode)
+        found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
     return found
 
 

@@ -17,13 +17,13 @@ MAX_RATE_DPS = 440
 """The gyro measures no faster turn."""
 
 
-def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[LegoSensor] = ()) -> LegoSensor:
+def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[LegoSensor]) -> LegoSensor:
     """Return an ultrasonic sensor.
 
     Args:
         session: Clock and simulation.
         spec: The sensor.
-        others: The robot's ultrasonic sensors, which it hears while they ping; may grow later.
+        others: The robot's sensors, itself among them; it hears those that ping. They may become more later.
     """
     sim = session.sim
     read, period = sim.spec.profile.ultrasonic_read_ns, sim.spec.profile.ultrasonic_period_ticks
@@ -77,8 +77,10 @@ class GyroDevice(LegoSensor):
             "TILT-RATE": Mode(lambda: (0,), read, 0, "d/s", "s16"),
         }
         super().__init__(session, spec.port, SENSORS["gyro"].driver_name, modes, "GYRO-ANG")
-        self.resets: dict[str, Writer] = {"direct": lambda _text: sim.reset_gyro()}
-        """The attribute through which it is reset."""
+
+    def writers(self) -> dict[str, Writer]:
+        """Return also the attribute through which it is reset."""
+        return super().writers() | {"direct": lambda _text: self._session.sim.reset_gyro()}
 
     def set_mode(self, text: str) -> None:
         """Switch the mode; one that ends a calibration sets the angle to 0."""

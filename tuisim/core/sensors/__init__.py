@@ -29,13 +29,15 @@ class SensorKind:
     """From a sensor's spec to the names of its telemetry columns."""
     measure: Callable[[Any, Instant, RunSpec, Field], tuple[float, ...]]
     """From spec and instant to the values of those columns."""
+    port_mode: str = "ev3-uart"
+    """The mode of the port that it needs; `ev3-analog` for one without a processor of its own."""
 
 
 SENSORS: Mapping[str, SensorKind] = {
     "color": SensorKind("lego-ev3-color", ColorSensorSpec, color.columns, color.measure),
     "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, ultrasonic.columns, ultrasonic.measure),
     "gyro": SensorKind("lego-ev3-gyro", GyroSpec, gyro.columns, gyro.measure),
-    "touch": SensorKind("lego-ev3-touch", TouchSpec, touch.columns, touch.measure),
+    "touch": SensorKind("lego-ev3-touch", TouchSpec, touch.columns, touch.measure, "ev3-analog"),
     "infrared": SensorKind("lego-ev3-ir", InfraredSpec, infrared.columns, infrared.measure),
 }
 """Every kind of sensor, in the order of the telemetry columns."""
