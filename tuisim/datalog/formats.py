@@ -23,7 +23,7 @@ Metadata = Mapping[str, Any]
 METADATA_KEY = b"tuisim"
 """Key of the metadata in the schema of Parquet and Arrow files."""
 
-_TIMEDELTA, _TEXT, _WHOLE = ("index",), ("variable",), ("run", "line")
+TIMEDELTA, TEXT, WHOLE = ("index",), ("variable",), ("run", "line")
 """Columns of the frames by type; all others are floating-point numbers."""
 
 
@@ -53,7 +53,7 @@ def _read_csv(path: Path) -> pd.DataFrame:
     # As text first: a variable may be called NA, and the reader's own numbers may be a last bit off.
     frame = pd.read_csv(path, dtype="str", keep_default_na=False, encoding="utf-8")
     for name in frame.columns:
-        if name not in (*_TIMEDELTA, *_TEXT):
+        if name not in (*TIMEDELTA, *TEXT):
             frame[name] = [_number(text) for text in frame[name].tolist()]
     return _typed(frame)
 
@@ -67,7 +67,7 @@ def _number(text: str) -> int | float:
 
 def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
     names = [str(name) for name in frame.columns]
-    columns = [frame[name].astype("str") if name in _TIMEDELTA else frame[name] for name in frame.columns]
+    columns = [frame[name].astype("str") if name in TIMEDELTA else frame[name] for name in frame.columns]
     for values in zip(*(column.tolist() for column in columns), strict=True):
         # A missing number is the only value that is not equal to itself.
         row = {name: value if value == value else None for name, value in zip(names, values, strict=True)}
@@ -91,11 +91,11 @@ def _typed(frame: pd.DataFrame) -> pd.DataFrame:
     import pandas as pd
 
     for name in frame.columns:
-        if name in _TIMEDELTA:
+        if name in TIMEDELTA:
             frame[name] = pd.to_timedelta(frame[name]).astype("timedelta64[ns]")
-        elif name in _TEXT:
+        elif name in TEXT:
             frame[name] = frame[name].astype("str")
-        elif name in _WHOLE:
+        elif name in WHOLE:
             frame[name] = frame[name].astype("int64")
         elif frame[name].dtype == object:
             frame[name] = frame[name].astype("float64")

@@ -15,13 +15,16 @@ from tuisim.datalog.analysis.expressions import evaluate
 from tuisim.datalog.analysis.reckoning import dead_reckoning, error_mm
 from tuisim.datalog.analysis.signals import HOLD, derivative, integral, moving_average, resample, value_at
 from tuisim.datalog.arrays import FloatArray
+from tuisim.datalog.export import check_target
 from tuisim.datalog.opening import Log, Series
+from tuisim.datalog.opening.exporting import export_log
 from tuisim.datalog.opening.layout import is_numeric
 from tuisim.datalog.opening.plain import numbers_of
 from tuisim.errors import ConfigError, LogError
 
 if TYPE_CHECKING:
     import pandas as pd
+    import pyarrow as pa
 
 
 def _each(arguments: Namespace, column: str, change: Callable[[Series], FloatArray]) -> int:
@@ -127,9 +130,23 @@ def reckon(arguments: Namespace) -> int:
 
 
 def export(arguments: Namespace) -> int:
-    """The log as it is, in another format."""
+    """The log as it is, or some of its variables, in another format."""
     if not arguments.out:
         raise ConfigError("to which file?", "such as --out log.parquet", key="export")
+    check_target(arguments.out)
     log = the_source(arguments)
-    show_frame(log.table.to_pandas(), arguments)
+    export_log(log, _chosen_part(log, arguments), arguments.out)
     return 0
+
+
+def _chosen_part(log: Log, arguments: Namespace) -> pa.Table:
+    """The rows of the variables that were asked for; where each has a column, those columns and what is no variable."""
+    if not arguments.variable:
+        return log.table
+    names = names_of(log, arguments)
+    rows = np.unique(np.concatenate([log.series(name).rows for name in names]))
+    part = log.table if len(rows) == log.rows else log.table.take(rows)
+    if log.layout.variable:
+        return part
+    wanted = {name.partition(" #")[0] for name in names}
+    return part.select([name for name in part.column_names if name in wanted or name not in log.layout.values])

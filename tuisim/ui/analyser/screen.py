@@ -292,11 +292,10 @@ class Analyser(ModalScreen[None]):
             self.run_worker(partial(self._write, self.model, target), thread=True, group="export")
 
     def _write(self, model: Model, target: Path) -> None:
-        from tuisim.datalog.export import export_frame
+        from tuisim.datalog.opening.exporting import export_log
 
         try:
-            frame = model.rows.shown().to_pandas()
-            export_frame(frame, target, {**model.log.metadata, "columns": list(frame.columns)})
+            export_log(model.log, model.rows.shown(), target)
         except TuisimError as error:
             self.app.call_from_thread(self.complain, error)
         else:
