@@ -13,6 +13,7 @@ from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
 from tests.bench.frames import chart, frames
+from tests.bench.logs import logs
 from tests.bench.recording import recording
 from tests.bench.running import EMPTY, begin
 from tests.bench.speed import LOADS, speeds
@@ -35,6 +36,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "back": back,
     "recording": recording,
     "variables": variables,
+    "logs": logs,
 }
 """Every bench by name."""
 

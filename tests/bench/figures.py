@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from math import isnan, nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,10 +18,14 @@ class Effort:
     """Stops of each kind."""
     watch_s: float
     """How long the app is watched while the robot drives."""
+    parquet_rows: int
+    """Of the longest logs."""
 
 
-THOROUGH = Effort(repeats=7, stops=10, watch_s=6.0)
-QUICK = Effort(repeats=3, stops=5, watch_s=5.0)
+THOROUGH = Effort(repeats=7, stops=10, watch_s=6.0, parquet_rows=10_000_000)
+QUICK = Effort(repeats=3, stops=5, watch_s=5.0, parquet_rows=1_000_000)
+NOT_MEASURED = nan
+"""In place of the figure of something that is not there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +67,15 @@ def as_table(figures: Sequence[Figure]) -> str:
 
 
 def as_json(figures: Iterable[Figure]) -> str:
-    """Return the figures as a JSON list of objects."""
-    return json.dumps([{**asdict(figure), "verdict": figure.verdict} for figure in figures], indent=1)
+    """Return the figures as a JSON list of objects; what was not measured is null."""
+    objects = [{**asdict(figure), "verdict": figure.verdict} for figure in figures]
+    return json.dumps([{**one, "value": None if isnan(one["value"]) else one["value"]} for one in objects], indent=1)
 
 
 def _rounded(value: float) -> str:
     """Return a number with three figures that count."""
+    if isnan(value):
+        return "–"
     if abs(value) >= 100:
         return f"{value:,.0f}"
     return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}"

@@ -28,14 +28,17 @@ class Terminal:
 
     Args:
         words: The command line of the app.
+        command: What is started with them, if it is not the app.
         environment: More variables, such as COLORTERM.
     """
 
-    def __init__(self, words: Sequence[str], **environment: str) -> None:
+    def __init__(
+        self, words: Sequence[str], command: Sequence[str] = (sys.executable, "-m", "tuisim"), **environment: str
+    ) -> None:
         self._fd, inside = pty.openpty()
         fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "tuisim", *words],
+            [*command, *words],
             stdin=inside,
             stdout=inside,
             stderr=inside,

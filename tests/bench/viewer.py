@@ -1,0 +1,101 @@
+"""A program that shows a log in a terminal: what opening it and each key costs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import pyte
+
+from tests.bench.processes import cpu_s
+from tests.bench.terminal import COLUMNS, ROWS, Terminal
+
+QUIET_S = 0.08
+"""So long after the last output the answer to a key is on the screen."""
+_CALM_S, _CALM_SHARE = 0.5, 0.05
+"""A program that uses no more than this part of a core for so long has nothing left to do."""
+_PATIENCE_S = 120.0
+_UNKNOWN = re.compile(rb"\x1b\[[<>=?][0-9;]*[a-zA-Z]|\x1b\[[?>]?[0-9;]*\$p|\x1bP[^\x1b]*\x1b\\|\x1b_[^\x1b]*\x1b\\")
+"""Sequences that ask for abilities of a terminal; the screen in memory has none of them."""
+
+
+class Viewer:
+    """A program in a terminal of 120×40.
+
+    Args:
+        command: The program and its words.
+    """
+
+    def __init__(self, command: Sequence[str]) -> None:
+        self._terminal = Terminal(command[1:], command[:1])
+        self._screen = pyte.Screen(COLUMNS, ROWS)
+        self._stream = pyte.ByteStream(self._screen)
+        self._fed = 0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._terminal.__exit__(kind, error, trace)
+
+    def text(self) -> str:
+        """Return what is on the screen."""
+        # What may be but the beginning of a sequence waits for its end.
+        seen = bytes(self._terminal.seen[self._fed :])
+        whole = len(seen) if b"\x1b" not in seen[-40:] else seen.rfind(b"\x1b")
+        self._stream.feed(_UNKNOWN.sub(b"", seen[:whole]))
+        self._fed += whole
+        return "\n".join(self._screen.display)
+
+    def cpu_s(self) -> float:
+        """Return the CPU seconds used since its start, by all its threads."""
+        return cpu_s(self._terminal.pid)
+
+    def until(self, text: str) -> float:
+        """Wait until a text, a regular expression, is on the screen, and return the CPU seconds used till then."""
+        used = 0.0
+
+        def there() -> bool:
+            nonlocal used
+            used = self.cpu_s()
+            return re.search(text, self.text()) is not None
+
+        self._terminal.read_until(there, _PATIENCE_S)
+        return used
+
+    def until_calm(self) -> float:
+        """Wait until it does nothing any more, and return the CPU seconds used till then."""
+        while True:
+            before = self.cpu_s()
+            self._terminal.read_for(_CALM_S)
+            if self.cpu_s() - before < _CALM_SHARE * _CALM_S:
+                return before
+
+    def key_s(self, key: bytes) -> float:
+        """Press a key and return the CPU seconds from there until the screen stands still."""
+        terminal, before = self._terminal, self.cpu_s()
+        terminal.type(key)
+        length = len(terminal.seen)
+        terminal.read_until(lambda: len(terminal.seen) > length)
+        while length != len(terminal.seen):
+            length = len(terminal.seen)
+            terminal.read_for(QUIET_S)
+        return self.cpu_s() - before
+
+    def work_s(self, keys: bytes) -> float:
+        """Press keys and return the CPU seconds from there until the program does nothing any more."""
+        before = self.cpu_s()
+        self._terminal.type(keys)
+        return self.until_calm() - before
+
+    def peak_bytes(self) -> int:
+        """Return the most memory it has had in use."""
+        status = Path(f"/proc/{self._terminal.pid}/status").read_text()
+        found = re.search(r"VmHWM:\s+(\d+) kB", status)
+        assert found is not None, status
+        return int(found[1]) << 10
