@@ -1,54 +1,32 @@
-"""A robot's further parts as tables of a file: motors that do not drive it, more sensors."""
+"""A robot's sensors and further motors as tables of a file."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from dataclasses import replace
-from typing import Any, TypeVar
+from collections.abc import Iterable
+from dataclasses import MISSING, fields, replace
+from typing import Any
 
 from tuisim.config.reading import Section
-from tuisim.core.parts import MOTOR_KINDS, InfraredSpec, MotorSpec, TouchSpec
-from tuisim.core.spec import OUTPUT_PORTS, RobotSpec, UltrasonicSpec
+from tuisim.core.parts import MOTOR_KINDS, MotorSpec
+from tuisim.core.spec import MOUNTS, OUTPUT_PORTS, Mount, RobotSpec, SensorSpec
 from tuisim.errors import RobotError
 
-Part = TypeVar("Part", UltrasonicSpec, TouchSpec, InfraredSpec)
-
-MAX_RAYS = 100
+MAX_WHOLE = 10**9
+MAX_ITEMS = 1000
+SENSOR_KEYS = tuple(mount.key for mount in MOUNTS)
+PART_KEYS = ("motors", *SENSOR_KEYS)
+"""Keys of a robot's file for what is mounted on it besides its wheels and the pen."""
 _SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
-_ULTRASONIC_NUMBERS = ("x_mm", "y_mm", "angle_deg", "max_range_mm", "noise_mm")
-ULTRASONIC_KEYS = ("port", *_ULTRASONIC_NUMBERS, "ray_angles_deg")
-TOUCH_KEYS = ("port", "x_mm", "y_mm", "width_mm")
-INFRARED_KEYS = ("port", "x_mm", "y_mm", "angle_deg")
-PART_KEYS = ("motors", "ultrasonics", "touch_sensors", "infrared")
-"""Keys of a robot's file for what it has besides the usual parts."""
 
 
-def sensor_name(table: Section, name: str) -> str:
-    """Return a key as the name of a sensor, or raise."""
-    if not _SENSOR_NAME.fullmatch(name):
-        raise table.wrong(name, "is no name for a sensor", "letters, digits and _, a letter first, at most 31")
-    return name
-
-
-def ultrasonic(table: Section, base: UltrasonicSpec) -> UltrasonicSpec:
-    """Return an ultrasonic sensor; what the table leaves out is as in `base`."""
-    table.allow(ULTRASONIC_KEYS)
-    found: dict[str, Any] = {key: table.number(key) for key in _ULTRASONIC_NUMBERS if key in table}
-    if "port" in table:
-        found["port"] = table.text("port")
-    if "ray_angles_deg" in table:
-        angles = table.items("ray_angles_deg")
-        if not 1 <= len(angles) <= MAX_RAYS:
-            raise table.wrong("ray_angles_deg", f"must be 1 to {MAX_RAYS} angles, got {len(angles)}")
-        numbered = Section({f"ray_angles_deg[{at}]": angle for at, angle in enumerate(angles, start=1)},
-                           table.file, RobotError, table.key)  # fmt: skip
-        found["ray_angles_deg"] = tuple(numbered.number(key, -360, 360) for key in numbered)
-    return replace(base, **found)
+def keys_of(spec: type) -> tuple[str, ...]:
+    """Return what a file may say of a sensor, by its class: each of its fields but the name."""
+    return tuple(field.name for field in fields(spec) if field.name != "name")
 
 
 def parts_from_table(table: Section, base: RobotSpec) -> dict[str, Any]:
-    """Return the further parts that a robot's table names, by field of `RobotSpec`; others stay as in `base`.
+    """Return the parts that a robot's table names, by field of `RobotSpec`; others stay as in `base`.
 
     Raises:
         RobotError: a key or a value is wrong.
@@ -56,18 +34,9 @@ def parts_from_table(table: Section, base: RobotSpec) -> dict[str, Any]:
     found: dict[str, Any] = {}
     if "motors" in table:
         found["extra_motors"] = _motors(table.section("motors"), base.extra_motors)
-    if "ultrasonics" in table:
-        section = table.section("ultrasonics")
-        found["extra_ultrasonics"] = _named(
-            section, base.extra_ultrasonics, ultrasonic, lambda name: UltrasonicSpec(name=name)
-        )
-    if "touch_sensors" in table:
-        section = table.section("touch_sensors")
-        found["touch_sensors"] = _named(section, base.touch_sensors, _touch, lambda name: TouchSpec(name=name))
-    if "infrared" in table:
-        on = table.raw("infrared") is not False
-        infrared = _infrared(table.section("infrared"), base.infrared or InfraredSpec()) if on else None
-        found["infrared"] = infrared
+    for mount in MOUNTS:
+        if mount.key in table:
+            found[mount.field] = _named(table, mount, base) if mount.many else _single(table, mount, base)
     return found
 
 
@@ -83,37 +52,66 @@ def _motors(table: Section, base: Iterable[MotorSpec]) -> tuple[MotorSpec, ...]:
     return tuple(MotorSpec(port, kind) for port, kind in kinds.items())
 
 
-def _named(
-    table: Section, base: tuple[Part, ...], read: Callable[[Section, Part], Part], fresh: Callable[[str], Part]
-) -> tuple[Part, ...]:
-    """The sensors of the base as the table changes them, and the table's own."""
-    found = {sensor.name: sensor for sensor in base}
+def _single(table: Section, mount: Mount, base: RobotSpec) -> SensorSpec | None:
+    """The one sensor of its kind; `false` takes it away."""
+    if table.raw(mount.key) is False:
+        return None
+    with table.telling():
+        sensor: SensorSpec = _sensor(table.section(mount.key), getattr(base, mount.field) or mount.spec())
+    return sensor
+
+
+def _named(robot: Section, mount: Mount, base: RobotSpec) -> tuple[SensorSpec, ...]:
+    """The sensors of the base as the table changes them, and the table's own; `false` takes one away."""
+    table = robot.section(mount.key)
+    found = {sensor.name: sensor for sensor in base.sensors_in(mount)}
     for name in table:
         if table.raw(name) is False:
             found.pop(name, None)
             continue
-        sensor_name(table, name)
+        if not _SENSOR_NAME.fullmatch(name):
+            raise table.wrong(name, "is no name for a sensor", "letters, digits and _, a letter first, at most 31")
         section = table.section(name)
-        if name not in found:
-            # A further sensor has no port that is its own by custom.
-            section.raw("port")
-        with table.telling(table.key.rpartition(".")[0]):
-            found[name] = read(section, found.get(name) or fresh(name))
-    return tuple(found.values())
+        with table.telling():
+            found[name] = _sensor(section, found[name]) if name in found else _fresh(section, mount, name)
+    # A file that names them all also says their order.
+    order = [name for name in table if name in found]
+    return tuple(found[name] for name in (order if len(order) == len(found) else found))
 
 
-def _touch(table: Section, base: TouchSpec) -> TouchSpec:
-    return _with_numbers(table, base, TOUCH_KEYS)
+def _fresh(table: Section, mount: Mount, name: str) -> Any:
+    """A sensor that only the file has; its port is not its own by custom, so that it must be said."""
+    table.allow(keys_of(mount.spec))
+    for field in fields(mount.spec):
+        if field.name == "port" or (field.default is MISSING and field.name != "name"):
+            table.raw(field.name)
+    return mount.spec(name=name, **_values(table, mount.spec))
 
 
-def _infrared(table: Section, base: InfraredSpec) -> InfraredSpec:
-    with table.telling(table.key.rpartition(".")[0]):
-        return _with_numbers(table, base, INFRARED_KEYS)
+def _sensor(table: Section, base: Any) -> Any:
+    """A sensor of a table; what that leaves out is as in `base`."""
+    table.allow(keys_of(type(base)))
+    return replace(base, **_values(table, type(base)))
 
 
-def _with_numbers(table: Section, base: Part, keys: tuple[str, ...]) -> Part:
-    table.allow(keys)
-    found: dict[str, Any] = {key: table.number(key) for key in keys if key != "port" and key in table}
-    if "port" in table:
-        found["port"] = table.text("port")
-    return replace(base, **found)
+def _values(table: Section, spec: type) -> dict[str, Any]:
+    """What a table says of a sensor, by field."""
+    return {field.name: _value(table, field.name, field.type) for field in fields(spec) if field.name in table}
+
+
+def _value(table: Section, key: str, kind: object) -> Any:
+    """A value of the type that a field is declared with."""
+    match kind:
+        case "bool":
+            return table.flag(key)
+        case "str":
+            return table.text(key)
+        case "int":
+            return table.whole(key, -MAX_WHOLE, MAX_WHOLE)
+        case "float":
+            return table.number(key)
+    items = table.items(key)
+    if len(items) > MAX_ITEMS:
+        raise table.wrong(key, f"must be at most {MAX_ITEMS} numbers, got {len(items)}")
+    numbered = Section({f"{key}[{at}]": item for at, item in enumerate(items, 1)}, table.file, RobotError, table.key)
+    return tuple(numbered.number(each) for each in numbered)

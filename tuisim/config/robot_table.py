@@ -12,15 +12,14 @@ from typing import Any
 
 from tuisim.config.presets import ROBOTS
 from tuisim.config.reading import MAX_NAME, Section
-from tuisim.config.robot_parts import PART_KEYS, parts_from_table, sensor_name, ultrasonic
-from tuisim.core.spec import ROBOT_WEIGHTS, ColorSensorSpec, GyroSpec, PenSpec, UltrasonicSpec
+from tuisim.config.robot_parts import PART_KEYS, parts_from_table
+from tuisim.core.spec import ROBOT_WEIGHTS, PenSpec
 from tuisim.switches import RobotChoice, pen_color
 
 DEFAULT_ROBOT = "Default_Robot"
 LENGTH_KEYS = ("wheel_diameter_mm", "wheel_spacing_mm", "wheel_width_mm", "back_mm")
 PORT_KEYS = ("left_port", "right_port")
-_TOP = ("base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, "color_sensors", "ultrasonic", "gyro", "pen", *PART_KEYS)
-COLOR_SENSOR_KEYS = ("port", "x_mm", "y_mm", "diameter_mm", "strategy")
+_TOP = ("base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, *PART_KEYS, "pen")
 PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
 
 
@@ -45,11 +44,6 @@ def robot_from_table(table: Section, name: str) -> RobotChoice:
     if "color_sensors" in table:
         sensors = table.section("color_sensors")
         own_places = any(sensors.raw(key) is not False and "x_mm" in sensors.section(key) for key in sensors)
-        found["color_sensors"] = _color_sensors(sensors, base.color_sensors)
-    if "ultrasonic" in table:
-        found["ultrasonic"] = _ultrasonic(table, base.ultrasonic)
-    if "gyro" in table:
-        found["gyro"] = _gyro(table, base.gyro)
     if "pen" in table:
         found["pen"] = pen(table.section("pen"), base.pen)
     found |= parts_from_table(table, base)
@@ -83,48 +77,3 @@ def pen(table: Section, base: PenSpec, keys: Iterable[str] = PEN_KEYS) -> PenSpe
         found["down"] = table.flag("down")
     with table.telling(table.key.removesuffix("pen").removesuffix(".")):
         return replace(base, **found)
-
-
-def _color_sensors(table: Section, base: tuple[ColorSensorSpec, ...]) -> tuple[ColorSensorSpec, ...]:
-    """The sensors of the base as the table changes them, and the table's own."""
-    by_name = {sensor.name: sensor for sensor in base}
-    found = dict(by_name)
-    for name in table:
-        if table.raw(name) is False:
-            found.pop(name, None)
-            continue
-        sensor_name(table, name)
-        found[name] = _color_sensor(table.section(name), name, by_name.get(name))
-    # A file that names them all also says their order.
-    order = [name for name in table if name in found]
-    return tuple(found[name] for name in (order if len(order) == len(found) else found))
-
-
-def _color_sensor(table: Section, name: str, base: ColorSensorSpec | None) -> ColorSensorSpec:
-    table.allow(COLOR_SENSOR_KEYS)
-    found: dict[str, Any] = {key: table.text(key) for key in ("port", "strategy") if key in table}
-    found |= {key: table.number(key) for key in ("x_mm", "y_mm") if key in table}
-    if "diameter_mm" in table:
-        found["diameter_mm"] = table.whole("diameter_mm", 2, 100)
-    if base is None:
-        for key in ("port", "x_mm", "y_mm"):
-            table.raw(key)
-    with table.telling(table.key.removesuffix(name).removesuffix(".")):
-        return ColorSensorSpec(name=name, **found) if base is None else replace(base, **found)
-
-
-def _ultrasonic(table: Section, base: UltrasonicSpec | None) -> UltrasonicSpec | None:
-    if table.raw("ultrasonic") is False:
-        return None
-    with table.telling():
-        return ultrasonic(table.section("ultrasonic"), base or UltrasonicSpec())
-
-
-def _gyro(table: Section, base: GyroSpec | None) -> GyroSpec | None:
-    if table.raw("gyro") is False:
-        return None
-    sensor = table.section("gyro")
-    sensor.allow(("port",))
-    found: dict[str, Any] = {"port": sensor.text("port")} if "port" in sensor else {}
-    with table.telling():
-        return replace(base or GyroSpec(), **found)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from tuisim.config.presets import ROBOTS
 from tuisim.config.reading import Section, means_file, name_of, parse_toml, read_file
 from tuisim.config.robot_json import robot_from_json
-from tuisim.config.robot_parts import INFRARED_KEYS, TOUCH_KEYS, ULTRASONIC_KEYS
+from tuisim.config.robot_parts import keys_of
 from tuisim.config.robot_table import (
-    COLOR_SENSOR_KEYS,
     DEFAULT_ROBOT,
     LENGTH_KEYS,
     PEN_KEYS,
@@ -18,7 +17,8 @@ from tuisim.config.robot_table import (
     robot_from_table,
 )
 from tuisim.config.writing import Scalar, toml_key, toml_lines, write_toml
-from tuisim.core.spec import ROBOT_WEIGHTS, RobotSpec
+from tuisim.core.parts import TouchSpec
+from tuisim.core.spec import MOUNTS, ROBOT_WEIGHTS, RobotSpec
 from tuisim.errors import RobotError
 from tuisim.switches import RobotChoice, nearest
 
@@ -38,6 +38,9 @@ COMMENTS = {
     "ray_angles_deg": "the fan of rays; the nearest echo counts",
     "color": "a CSS colour name, or #rrggbb",
 }
+_FURTHER_COMMENTS: Mapping[type, Mapping[str, str]] = {TouchSpec: {"width_mm": "of the bumper, across the robot"}}
+"""What a key means in sensors of one class."""
+
 _HEAD = (
     "# A robot for tuisim. Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels,",
     "# y forward of it.",
@@ -110,36 +113,19 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
     names = [sensor.name for sensor in spec.color_sensors]
     if gone := [sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names]:
         lines += ["", f"[{under}color_sensors]", *(f"{toml_key(name)} = false" for name in gone)]
-    for key in ("ultrasonic", "gyro"):
-        if getattr(spec, key) is None:
+    for mount in MOUNTS:
+        if mount.usual and not mount.many and not spec.sensors_in(mount):
             # A key of the robot itself must stand before its first table.
-            lines.insert(1 if parent else 0, f"{key} = false")
-    for sensor in spec.color_sensors:
-        lines += ["", f"[{under}color_sensors.{toml_key(sensor.name)}]"]
-        lines += toml_lines(_values(sensor, COLOR_SENSOR_KEYS), COMMENTS)
-    if spec.ultrasonic is not None:
-        lines += ["", f"[{under}ultrasonic]", *toml_lines(_values(spec.ultrasonic, ULTRASONIC_KEYS), COMMENTS)]
-    if spec.gyro is not None:
-        lines += ["", f"[{under}gyro]", *toml_lines(_values(spec.gyro, ("port",)), COMMENTS)]
-    lines += _part_lines(spec, under)
-    return [*lines, "", f"[{under}pen]", *toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
-
-
-def _part_lines(spec: RobotSpec, under: str) -> list[str]:
-    """What the robot has besides the usual parts."""
-    lines: list[str] = []
+            lines.insert(1 if parent else 0, f"{mount.key} = false")
+    for mount in MOUNTS:
+        for sensor in spec.sensors_in(mount):
+            place = f"{mount.key}.{toml_key(sensor.name)}" if mount.many else mount.key
+            comments = {**COMMENTS, **_FURTHER_COMMENTS.get(mount.spec, {})}
+            lines += ["", f"[{under}{place}]", *toml_lines(_values(sensor, keys_of(mount.spec)), comments)]
     if spec.extra_motors:
         motors: dict[str, Scalar] = {motor.port: motor.kind for motor in spec.extra_motors}
         lines += ["", f"[{under}motors]", *toml_lines(motors)]
-    for sonar in spec.extra_ultrasonics:
-        lines += ["", f"[{under}ultrasonics.{toml_key(sonar.name)}]"]
-        lines += toml_lines(_values(sonar, ULTRASONIC_KEYS), COMMENTS)
-    for touch in spec.touch_sensors:
-        lines += ["", f"[{under}touch_sensors.{toml_key(touch.name)}]"]
-        lines += toml_lines(_values(touch, TOUCH_KEYS), COMMENTS | {"width_mm": "of the bumper, across the robot"})
-    if spec.infrared is not None:
-        lines += ["", f"[{under}infrared]", *toml_lines(_values(spec.infrared, INFRARED_KEYS), COMMENTS)]
-    return lines
+    return [*lines, "", f"[{under}pen]", *toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
 
 
 def _values(spec: object, keys: Iterable[str]) -> dict[str, Scalar]:

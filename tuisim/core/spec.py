@@ -25,6 +25,9 @@ FIELD_HEIGHT_MM = 1143
 MAX_OBSTACLE_MM = 10_000.0
 """Farthest coordinate and largest size of an obstacle."""
 
+MAX_RAYS = 100
+"""Rays of an ultrasonic sensor."""
+
 MAX_LIGHT_NOISE = 128
 MAX_MOTOR_NOISE = 500
 
@@ -85,6 +88,12 @@ class UltrasonicSpec:
         require(self.angle_deg, -360, 360, f"{self.name}.angle_deg")
         require(self.max_range_mm, 1, 10_000, f"{self.name}.max_range_mm")
         require(self.noise_mm, 0, 1000, f"{self.name}.noise_mm")
+        if not 1 <= len(self.ray_angles_deg) <= MAX_RAYS:
+            raise RobotError(
+                f"must be 1 to {MAX_RAYS} angles, got {len(self.ray_angles_deg)}", key=f"{self.name}.ray_angles_deg"
+            )
+        for at, angle_deg in enumerate(self.ray_angles_deg, start=1):
+            require(angle_deg, -360, 360, f"{self.name}.ray_angles_deg[{at}]")
         require_one_of(self.port, "port", INPUT_PORTS, f"{self.name}.port")
 
 
@@ -123,15 +132,20 @@ class Mount:
     """Whether the field holds a tuple; otherwise one sensor, or None."""
     usual: bool = False
     """Whether panels and files have a place of its own for it; the others are shown and written alike."""
-    key: str = ""
-    """How it is called in a robot's file; empty if as the field."""
+    written: str = ""
+    """How it is called in a robot's file, if not as the field."""
+
+    @property
+    def key(self) -> str:
+        """How it is called in a robot's file."""
+        return self.written or self.field
 
 
 MOUNTS = (
     Mount("color_sensors", ColorSensorSpec, many=True, usual=True),
     Mount("ultrasonic", UltrasonicSpec, many=False, usual=True),
     Mount("gyro", GyroSpec, many=False, usual=True),
-    Mount("extra_ultrasonics", UltrasonicSpec, many=True, key="ultrasonics"),
+    Mount("extra_ultrasonics", UltrasonicSpec, many=True, written="ultrasonics"),
     Mount("touch_sensors", TouchSpec, many=True),
     Mount("infrared", InfraredSpec, many=False),
 )
