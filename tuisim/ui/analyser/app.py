@@ -8,6 +8,7 @@ from typing import ClassVar
 from textual.app import App
 
 from tuisim.errors import TuisimError
+from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.screen import Analyser
 from tuisim.ui.analyser.subject import Wanted
 from tuisim.ui.driver import TerminalDriver
@@ -38,6 +39,13 @@ class AnalyserApp(App[None]):
 
 class _First(Analyser):
     """The only screen: an error before there is anything to see ends the app."""
+
+    def _take(self, model: Model) -> None:
+        first = self.model is None
+        super()._take(model)
+        if first:
+            # Also what drawing has imported stays: no key waits for a search through all that.
+            self.call_after_refresh(gc.freeze)
 
     def complain(self, error: TuisimError) -> None:
         """Show an error, or keep it for the shell."""

@@ -12,8 +12,6 @@ import numpy as np
 from tuisim.errors import LogError
 
 if TYPE_CHECKING:
-    from datetime import timedelta
-
     import pyarrow as pa
 
     from tuisim.datalog.arrays import IntArray
@@ -102,7 +100,13 @@ class Rows:
 
     def text(self, row: int, column: str) -> str:
         """Return a cell as text."""
-        return text_of(self._log.table.column(column)[row].as_py())
+        import pyarrow as pa
+
+        cell = self._log.table.column(column)[row]
+        if pa.types.is_duration(cell.type):
+            # As an object of Python's it would be one of pandas, whose import takes longer than a whole screen.
+            return f"{cell.value / _per_s(cell.type.unit):.3f}" if cell.is_valid else ""
+        return text_of(cell.as_py())
 
     def shown(self) -> pa.Table:
         """Return what is shown as a table of its own."""
@@ -234,7 +238,4 @@ def text_of(value: Any) -> str:
         return ""
     if isinstance(value, float):
         return f"{value:.6g}"
-    if hasattr(value, "total_seconds"):
-        span: timedelta = value
-        return f"{span.total_seconds():.3f}"
     return str(value)
