@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.ui.app_help import press_and_stand, ready, settings, until
+from tests.ui.app_help import press_and_stand, ready, screen_text, settings, until
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
 from tuisim.datalog.store import RunStore
@@ -31,8 +31,10 @@ while True:
     print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
 """
 
+LINES = "".join(f"n{number} = {number}\n" for number in range(1, 10))
 
-async def held(pilot: Pilot[Any], *keys: str) -> Lab:
+
+async def held(pilot: Pilot[Any]) -> Lab:
     """Hold the program at a line, with ticks behind it."""
     app = await ready(pilot)
     await until(pilot, lambda: app.bridge.timeline.newest > 20)
@@ -150,3 +152,29 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
         await until(pilot, lambda: app.bridge.state == WAITING)
         app.bridge.answer("Ann")
         await until(pilot, lambda: app.bridge.state == RUNNING)
+
+
+async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_same_tick() -> None:
+    async with Lab(settings(LINES)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for line in range(1, 7):
+            await pilot.press("n")
+            await until(pilot, lambda line=line: at_line(app, line))
+            # The panels are there from the first line on.
+            assert app.desk.shown("code") and app.desk.shown("debug")
+        await pilot.press("N", "N", "N", "n")
+        await until(pilot, lambda: at_line(app, 3) and not app.debugging.busy)
+        assert app.bridge.timeline.newest == 0
+        assert "past 0.00 s" in screen_text(app)
+        await pilot.press("end")
+        await until(pilot, lambda: at_line(app, 6))
+        # While the way back is worked out, it can be given up.
+        await pilot.press("N", "end")
+        assert not app.debugging.busy
+        await pilot.press("n")
+        await until(pilot, lambda: at_line(app, 7))
+        assert not app.debugging.looks_back
+
+
+def at_line(app: Lab, line: int) -> bool:
+    return app.debugging.standing is not None and app.debugging.standing.paused.line == line

@@ -51,6 +51,8 @@ class Situation:
     """Whether there has been a run, so that there is a log, and a past."""
     in_past: bool = False
     """Whether an instant before the newest is looked at."""
+    looks_back: bool = False
+    """The same, or a former line of the newest tick, or it is on its way there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +127,10 @@ def _can_look_on(now: Situation) -> str:
     return "" if now.in_past else _can_look_back(now) or "This is the newest instant"
 
 
+def _can_come_back(now: Situation) -> str:
+    return "" if now.looks_back else _can_look_on(now)
+
+
 def _can_change_world(now: Situation) -> str:
     return "Not during a run: S stops it" if now.state in IN_RUN else ""
 
@@ -186,7 +192,7 @@ def _travels() -> list[Action]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
     return [
-        Action("now", "end", "Back to now (also escape)", TIME, travel.to_now, on, "now"),
+        Action("now", "end", "Back to now (also escape)", TIME, travel.to_now, _can_come_back, "now"),
         Action("second-back", "less_than_sign", "One second back", TIME, travel.second_back, back, "1 s", "", keys),
         Action("second-on", "greater_than_sign", "One second on", TIME, travel.second_on, on),
         Action("sample-before", "left_parenthesis", "The sample before", TIME, travel.sample_before, back),

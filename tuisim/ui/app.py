@@ -18,7 +18,7 @@ from textual.widget import Widget
 from tuisim.errors import TuisimError
 from tuisim.protocol import Ended
 from tuisim.ui import branching, travel
-from tuisim.ui.actions import ACTIONS, IN_RUN, Act, Situation
+from tuisim.ui.actions import ACTIONS, Act
 from tuisim.ui.bridge import ROWS_A_POLL, Bridge
 from tuisim.ui.debugging import Debugging
 from tuisim.ui.desk import Desk
@@ -33,9 +33,9 @@ from tuisim.ui.news import News
 from tuisim.ui.pacer import Pacer
 from tuisim.ui.replaying import open_run
 from tuisim.ui.session import AppSettings
-from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.speech import Voice
-from tuisim.ui.verbs import end_label, speed_label
+from tuisim.ui.status import show_footer, situation
+from tuisim.ui.verbs import end_label
 from tuisim.ui.watch import PERIOD_S
 from tuisim.ui.wishes import Wishes
 
@@ -272,7 +272,7 @@ class Lab(Wishes):
         self._feed_panels()
         self.lookback.show()
         self.desk.show(snapshot)
-        self._show_footer(snapshot)
+        show_footer(self, snapshot)
         if self.pacer.drawn():
             self.call_after_refresh(self._ask_terminal)
 
@@ -298,21 +298,7 @@ class Lab(Wishes):
 
     def situation_changed(self) -> None:
         """Bring the footer up to date."""
-        self._show_footer(self.bridge.snapshot())
-
-    def _show_footer(self, snapshot: Snapshot) -> None:
-        status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
-        if snapshot.past:
-            status = "playing" if self.bridge.timeline.playing else f"past {snapshot.time_s:.2f} s"
-        if snapshot.state in IN_RUN or snapshot.speed != 1:
-            status += f" {speed_label(snapshot.speed)}"
-        shown = frozenset(panel for panel in self.desk.panels if self.desk.shown(panel))
-        self.key_footer.show(self.situation(), status, shown)
-
-    def situation(self) -> Situation:
-        """Return what decides which keys work."""
-        bridge = self.bridge
-        return Situation(bridge.state, bridge.program is not None, bool(bridge.run_id), bridge.in_past)
+        show_footer(self, self.bridge.snapshot())
 
     # Panels
 
@@ -346,7 +332,7 @@ class Lab(Wishes):
     def action_act(self, name: str) -> None:
         """Do what a key stands for, or say why it does nothing now."""
         action = ACTIONS[name]
-        if reason := action.why_not(self.situation()):
+        if reason := action.why_not(situation(self)):
             self.say(reason)
             return
         action.do(self)
@@ -357,7 +343,7 @@ class Lab(Wishes):
 
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, come back from the past."""
-        if self.bridge.in_past and self.focused in (None, self.desk.world):
+        if self.debugging.is_away and self.focused in (None, self.desk.world):
             travel.to_now(self)
         self.set_focus(self.desk.world if self.desk.shown("world") else None)
 

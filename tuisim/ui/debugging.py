@@ -56,6 +56,8 @@ class Debugging:
         """The instant that the stand-in was last sent to."""
         self._first: Message | None = None
         """To be done when a run that was started for it stands at its first line."""
+        self._more_back = 0
+        """So many further lines back were asked for while the first ones were being worked out."""
         self._panels_came = False
         self._untold = False
         """Whether the run at work was not told the breaks, as a branch is only on its instant."""
@@ -127,6 +129,7 @@ class Debugging:
         self._paused = self._position = self.standing = self._lab.bridge.held_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_came, self._untold = False, bool(self.breaks)
+        self._first, self._more_back = None, 0
         self._stand_in.close()
         self.show()
 
@@ -182,6 +185,11 @@ class Debugging:
         return self._stand_in.busy
 
     @property
+    def is_away(self) -> bool:
+        """Whether a former instant is looked at, or will be once it is worked out."""
+        return self.looks_back or self.busy
+
+    @property
     def look(self) -> protocol.Look:
         """What is asked of a program that stands still."""
         return protocol.Look(self.watches, self._thread, self._frame)
@@ -221,7 +229,12 @@ class Debugging:
 
     def to_now(self) -> None:
         """Look at the newest instant again, also if only lines of its own tick were looked back at."""
-        self._position = None
+        self._position, self._more_back = None, 0
+        if self._stand_in.busy:
+            # What it is on its way to is not wanted any more.
+            self._stand_in.close()
+            self._wanted = None
+            self.show()
 
     def _back_to_now(self) -> None:
         self.standing, self._wanted = None, None
@@ -246,10 +259,12 @@ class Debugging:
             self._wanted = None
             return
         self._set_standing(Standing(paused, looked, True))
-        self._lab.draw(force=True)
+        self._lab.situation_changed()
+        if self._more_back:
+            self.lines_back(0)
 
     def _not_there(self, why: str) -> None:
-        self._wanted = None
+        self._wanted, self._more_back = None, 0
         self._lab.say(why)
         self.show()
 
@@ -289,7 +304,7 @@ class Debugging:
     def go_on(self, command: Message) -> None:
         """Carry out a command that lets the program go on and stand still again."""
         lab = self._lab
-        if self.looks_back:
+        if self.is_away:
             self._in_past(command)
         elif lab.bridge.in_run:
             lab.bridge.debug(command)
@@ -298,6 +313,7 @@ class Debugging:
             first = None if isinstance(command, protocol.StepLine) else command
             if lab.start_run(held=True):
                 self._first = first
+                self._come()
 
     def _in_past(self, command: Message) -> None:
         timeline = self._lab.bridge.timeline
@@ -316,11 +332,14 @@ class Debugging:
         here, recording = self._here(), lab.bridge.timeline.recording
         if here is None or recording is None:
             lab.say("No run yet to look back on: R runs the program")
-        elif not self._stand_in.busy:
+        elif self._stand_in.busy:
+            self._more_back += count
+        else:
             if lab.bridge.in_run and lab.bridge.state != PAUSED:
                 lab.bridge.pause()
             self._come()
             self._position, self._wanted = None, None
+            count, self._more_back = count + self._more_back, 0
             self._stand_in.lines_back(recording, here, count, self.look)
             self.show()
 

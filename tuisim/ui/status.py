@@ -1,0 +1,31 @@
+"""What the footer says: the keys that work now, and what the run does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tuisim.ui.actions import IN_RUN, Situation
+from tuisim.ui.snapshot import ENDED, Snapshot
+from tuisim.ui.verbs import end_label, speed_label
+
+if TYPE_CHECKING:
+    from tuisim.ui.app import Lab
+
+
+def situation(lab: Lab) -> Situation:
+    """Return what decides which keys work."""
+    bridge = lab.bridge
+    return Situation(
+        bridge.state, bridge.program is not None, bool(bridge.run_id), bridge.in_past, lab.debugging.is_away
+    )
+
+
+def show_footer(lab: Lab, snapshot: Snapshot) -> None:
+    """Bring the footer up to date."""
+    status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
+    if lab.debugging.looks_back:
+        status = "playing" if lab.bridge.timeline.playing else f"past {snapshot.time_s:.2f} s"
+    if snapshot.state in IN_RUN or snapshot.speed != 1:
+        status += f" {speed_label(snapshot.speed)}"
+    shown = frozenset(panel for panel in lab.desk.panels if lab.desk.shown(panel))
+    lab.key_footer.show(situation(lab), status, shown)
