@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import pytest
@@ -159,7 +160,7 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
         app = await ready(pilot)
         for line in range(1, 7):
             await pilot.press("n")
-            await until(pilot, lambda line=line: at_line(app, line))
+            await until(pilot, partial(at_line, app, line))
             # The panels are there from the first line on.
             assert app.desk.shown("code") and app.desk.shown("debug")
         await pilot.press("N", "N", "N", "n")
