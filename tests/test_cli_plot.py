@@ -59,7 +59,9 @@ def test_svg_is_well_formed_and_says_what_is_what(here: Command, log: Path, tmp_
     assert (done.returncode, done.stdout) == (0, "")
     texts = texts_of(tmp_path / "chart.svg")
     # x_mm has a scale of its own, on the right.
-    assert {"left", "right", "x_mm (mm) →", "<b>&", "time (s)", "2", "5"} <= {text.removesuffix(".0") for text in texts}
+    assert {"left", "right", "x_mm (mm), right scale", "<b>&", "time (s)", "2", "5"} <= {
+        text.removesuffix(".0") for text in texts
+    }
     root = ElementTree.parse(tmp_path / "chart.svg").getroot()
     width, height = float(root.attrib["width"]), float(root.attrib["height"])
     for path in root.iter(f"{SVG}path"):

@@ -8,6 +8,7 @@ from contextlib import redirect_stdout
 from dataclasses import dataclass
 from html.parser import HTMLParser
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 from PIL import Image
@@ -133,13 +134,11 @@ def test_the_world_shows_the_way(driven: Driven) -> None:
     assert colors[(230, 90, 0)] > 500
 
 
-def test_several_runs_stand_side_by_side(here: Command, home: Path, tmp_path: Path) -> None:
-    here("run", "log_greys")
-    here("run", "log_greys", "-N", "20", "--seed", "4")
-    assert here("log", "report", "1", "2", "--out", "two.html").returncode == 0
+def test_several_runs_stand_side_by_side(here: Command, tmp_path: Path, driven: Driven) -> None:
+    assert here("log", "report", driven.run.id, driven.run.id, "--out", "two.html").returncode == 0
     page = page_of(tmp_path / "two.html")
     facts = page.section["Facts"]
-    assert facts[facts.index("seed") + 1 :][:2] == ["0", "4"]
+    assert facts[facts.index("seed") + 1 :][:2] == ["0", "0"]
     assert page.tags.count("img") == 2
     assert sum(name.startswith("Program") for name in page.section) == 1
     assert {"Colour #1", "Colour #2"} <= set(page.section["Statistics"])
@@ -155,12 +154,13 @@ def test_a_run_without_samples_shows_its_telemetry(here: Command, home: Path, tm
     assert any(text.endswith("ZeroDivisionError: division by zero") for text in page.section["Facts"])
 
 
-def test_a_mat_that_is_gone_costs_only_its_picture(here: Command, home: Path, tmp_path: Path) -> None:
-    here("run", "log_greys")
-    path = RunStore().load_run("last").folder / "run.json"
+def test_a_mat_that_is_gone_costs_only_its_picture(here: Command, home: Path, tmp_path: Path, driven: Driven) -> None:
+    folder = home / "runs" / driven.run.id
+    copytree(driven.run.folder, folder)
+    path = folder / "run.json"
     path.write_text(path.read_text().replace('"Grey_bands"', '"Gone"').replace(".rgb", ".gone"))
-    assert here("log", "report", "last").returncode == 0
-    page = page_of(tmp_path / "log_greys-report.html")
+    assert here("log", "report", driven.run.id).returncode == 0
+    page = page_of(tmp_path / "greys-report.html")
     assert page.section["World"][0].startswith("No picture: ")
     assert "Bands" in page.section
 
@@ -183,11 +183,11 @@ def test_a_file_is_told_without_program_and_world(here: Command, home: Path, tmp
     assert "here" in page.section["Notes"]
 
 
-def test_an_export_tells_of_its_runs(here: Command, home: Path, tmp_path: Path) -> None:
-    here("run", "log_greys", "--seed", "7", "--export", "x.parquet")
+def test_an_export_tells_of_its_runs(here: Command, tmp_path: Path, driven: Driven) -> None:
+    here("runs", "export", driven.run.id, "x.parquet")
     here("log", "report", "x.parquet", "--variable", "Colour")
     facts = page_of(tmp_path / "x-report.html").section["Facts"]
-    assert facts[facts.index("seed") + 1] == "7"
+    assert facts[facts.index("SHA-256") + 1] == driven.run.program.sha256
     assert facts[facts.index("mat") + 1] == "Grey_bands"
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.ui.analyser import doing, noting, tabling
+from tuisim.ui.analyser import doing, noting, outward, tabling
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.screen import Analyser
@@ -89,6 +89,8 @@ ACTIONS: Mapping[str, Action] = {
         Action("copy-row", "Y", "Y", "Copy the row", LOG, tabling.copy_row),
         Action("copy-pane", "ctrl+y", "ctrl+y", "Copy the table as shown, or the pane", LOG, tabling.copy_pane),
         Action("export", "e", "e", "Export the rows and columns as shown", LOG, tabling.ask_export, "export"),
+        Action("save-chart", "S", "S", "Save the chart as shown: SVG, PNG or text", LOG, outward.ask_chart),
+        Action("report", "E", "E", "Write a report: one page with everything", LOG, outward.ask_report, of_rows=False),
         Action("delete-note", "delete", "delete", "Delete the chosen note", LOG, noting.delete),
         Action("telemetry", "T", "T", "What every tick recorded, or what was printed", LOG,
                 doing.telemetry, of_rows=False),

@@ -159,12 +159,12 @@ def _cut(text: str, width_px: float) -> str:
 
 
 def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape], int]:
-    """A stroke and the name of each line, an arrow if its scale is on the right; how many lines of text that takes."""
+    """A stroke and the name of each line, and which have the scale on the right; how many lines of text that takes."""
     shapes: list[Shape] = []
     x, row = float(_PAD), 0
     two = _Scales.of(lines).right is not None
     for line in lines:
-        text = _cut(line.label + (" →" if two and line.other_scale else ""), width - 2 * _PAD - 30)
+        text = _cut(line.label + (", right scale" if two and line.other_scale else ""), width - 2 * _PAD - 30)
         taken = 30 + len(text) * _LETTER_PX
         if x > _PAD and x + taken > width - _PAD:
             x, row = float(_PAD), row + 1

@@ -36,10 +36,10 @@ def _draw(draw: ImageDraw, shape: Shape, font: FreeTypeFont | BitmapFont) -> Non
             ends = [end * _FINE for end in (shape.x1, shape.y1, shape.x2, shape.y2)]
             draw.line(ends, fill=_FAINT if shape.faint else _INK, width=_FINE)
         case Words():
-            draw.text(
-                (shape.x * _FINE, shape.y * _FINE), shape.text, fill=shape.rgb or _INK, font=font,
-                anchor=_ANCHORS[shape.anchor], stroke_width=int(shape.strong),
-            )  # fmt: skip
+            x, y = shape.x * _FINE, shape.y * _FINE
+            # The font has one weight: what is strong is written once more, half a pixel beside.
+            for place in ((x, y), (x + 1, y))[: 1 + shape.strong]:
+                draw.text(place, shape.text, fill=shape.rgb or _INK, font=font, anchor=_ANCHORS[shape.anchor])
         case Shade():
             corners = (shape.x, shape.y, shape.x + shape.width, shape.y + shape.height)
             draw.rectangle([corner * _FINE for corner in corners], fill=_SHADE)

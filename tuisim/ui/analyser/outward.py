@@ -1,0 +1,74 @@
+"""What leaves the analyser as a picture or a page: the chart as shown, the report."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.errors import LogError, TuisimError
+from tuisim.ui.analyser.asking import Asking
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from tuisim.ui.analyser.screen import Analyser
+    from tuisim.ui.analyser.subject import Subject
+
+_CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it stands here"))
+_REPORTS = (("run-report.html", "program, world, chart, bands, statistics and notes on one page"),)
+
+
+def ask_chart(screen: Analyser) -> None:
+    """Ask for the file that the chart is saved to: as shown, with the time and the variables that are chosen."""
+    from tuisim.ui.paper.chart import View
+    from tuisim.ui.paper.files import save_chart
+
+    model, look = screen.model, screen.chart.look
+    if model is None:
+        return
+
+    def go(text: str) -> None:
+        target = _file(text, "such as chart.svg")
+        # Text has the size of the chart that it is taken from; pictures have their own.
+        size = (screen.chart.size.width, screen.chart.size.height) if target.suffix.lower() == ".txt" else None
+        save_chart(model, View(look.facets, look.marks, look.hold, look.against), target, size)
+        screen.say(f"The chart is in {target}")
+        screen.redraw_chart()
+
+    screen.app.push_screen(Asking("Save the chart as shown", go, "chart.svg", _CHARTS))
+
+
+def ask_report(screen: Analyser) -> None:
+    """Ask for the file that the report is written to."""
+    from tuisim.ui.paper.report import check_report, default_name
+
+    model = screen.model
+    if model is None:
+        return
+    names = [trace.name for trace in model.traces.ticked()]
+
+    def go(text: str) -> None:
+        target = _file(text, "such as run-report.html")
+        check_report(target)
+        screen.run_worker(partial(_write, screen, model.subject, target, names), thread=True, group="report")
+
+    screen.app.push_screen(Asking("Write the report", go, default_name(model.subject), _REPORTS))
+
+
+def _file(text: str, hint: str) -> Path:
+    if not text:
+        raise LogError("which file?", hint)
+    return Path(text).expanduser()
+
+
+def _write(screen: Analyser, subject: Subject, target: Path, names: Sequence[str]) -> None:
+    """Write the report, beside the screen: the bands of a long log take a while."""
+    from tuisim.ui.paper.report import write_report
+
+    try:
+        write_report(subject, target, names)
+    except TuisimError as error:
+        screen.app.call_from_thread(screen.complain, error)
+    else:
+        screen.app.call_from_thread(screen.say, f"The report is in {target}")
