@@ -24,10 +24,9 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import COLOR_NAMES
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, UltrasonicSpec
 from tuisim.errors import ConfigError
 
 OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
@@ -167,16 +166,16 @@ def moved(one: Break, line: int) -> Break:
 def quantities(robot: RobotSpec) -> tuple[str, ...]:
     """Return the names whose values a break can compare, for a robot."""
     names: list[str] = []
-    for _, sensor in mounted(robot):
+    for kind, sensor in mounted(robot):
         match sensor:
             case ColorSensorSpec():
                 names += [f"{sensor.name}.{part}" for part in COLOR_PARTS]
             case GyroSpec():
                 names += [sensor.name, f"{sensor.name}.rate"]
-            case TouchSpec() | InfraredSpec():
-                continue
-            case _:
+            case UltrasonicSpec():
                 names.append(sensor.name)
+            case _:
+                names += kind.columns(sensor)
     return (*names, *POSE_NAMES, *WHEEL_NAMES)
 
 

@@ -16,6 +16,8 @@ from tuisim.core.profile import PROFILES
 from tuisim.core.spec import (
     BACKGROUND_FITS,
     INPUT_PORTS,
+    MAX_RAYS,
+    MOUNTS,
     OUTPUT_PORTS,
     ROBOT_WEIGHTS,
     STRATEGIES,
@@ -33,7 +35,6 @@ from tuisim.ui.plan import Plan, with_profile, with_robot, with_robot_edited, wi
 ON, OFF = "on", "off"
 SWITCHED = (OFF, ON)
 MAX_NAME = 100
-MAX_RAYS = 100
 MAX_LABEL = 12
 
 
@@ -68,7 +69,7 @@ def sections(plan: Plan) -> list[Section]:
         *(Section(f"Sensor {name}", _eye_edits(name, eye, plan)) for name, eye in eyes.items()),
         Section("Ultrasonic", _sonar_edits(plan)),
         Section("Gyro", _gyro_edits(plan)),
-        *(Section(part.name.capitalize(), _further_edits(part)) for part in _further(plan.robot_choice.spec)),
+        *(Section(part.name.capitalize(), _further_edits(part)) for part in plan.robot_choice.spec.further_sensors),
         Section("Pen", _pen_edits()),
         Section("World", _world_edits()),
     ]
@@ -174,10 +175,6 @@ def _robot_edits() -> tuple[Edit, ...]:
 
 # Sensors
 
-_MANY = ("color_sensors", "extra_ultrasonics", "touch_sensors")
-_ONE = ("ultrasonic", "gyro", "infrared")
-"""Fields of a robot that hold sensors."""
-
 
 def _parts(robot: RobotSpec) -> dict[str, SensorSpec]:
     """Every sensor by its name."""
@@ -188,11 +185,9 @@ def _with_parts(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
     """The robot with some of its sensors changed, at once: two may have swapped their ports."""
     changed = {part.name: part for part in parts}
     found: dict[str, Any] = {}
-    for field in _MANY:
-        found[field] = tuple(changed.get(part.name, part) for part in getattr(robot, field))
-    for field in _ONE:
-        part = getattr(robot, field)
-        found[field] = part and changed.get(part.name, part)
+    for mount in MOUNTS:
+        sensors = tuple(changed.get(part.name, part) for part in robot.sensors_in(mount))
+        found[mount.field] = sensors if mount.many else next(iter(sensors), None)
     return replace(robot, **found)
 
 
@@ -317,12 +312,6 @@ def _gyro_edits(plan: Plan) -> tuple[Edit, ...]:
     fresh = gyro or plan.robot.spec.gyro or GyroSpec()
     used = _single_used(fresh.name, "gyro", fresh)
     return (used,) if gyro is None else (used, _port_edit(gyro.name))
-
-
-def _further(robot: RobotSpec) -> list[SensorSpec]:
-    """The sensors that only some robots have."""
-    infrared = [robot.infrared] if robot.infrared else []
-    return [*robot.extra_ultrasonics, *robot.touch_sensors, *infrared]
 
 
 def _further_edits(part: SensorSpec) -> tuple[Edit, ...]:

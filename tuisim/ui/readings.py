@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tuisim.core.field import Field
-from tuisim.core.sensors import color, gyro, mounted, ultrasonic
+from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.ui.snapshot import Snapshot
@@ -49,14 +49,9 @@ def snapshot_of(
 
 def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
     """Return what the sensors measure that not every robot has, by telemetry column."""
-    robot = spec.robot
-    further = {sonar.name for sonar in robot.extra_ultrasonics} | {touch.name for touch in robot.touch_sensors}
-    if robot.infrared is not None:
-        further.add(robot.infrared.name)
     values: dict[str, float] = {}
-    for kind, sensor in mounted(robot):
-        if sensor.name in further:
-            values |= zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True)
+    for kind, sensor in with_kinds(spec.robot.further_sensors):
+        values |= zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True)
     return values
 
 

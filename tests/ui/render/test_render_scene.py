@@ -149,7 +149,7 @@ def test_a_bumper_is_a_bar_in_front_and_red_while_it_is_pressed() -> None:
 
 
 def test_an_infrared_sensor_is_drawn_where_it_is() -> None:
-    assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.infrared
+    assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.spot
 
 
 @pytest.mark.parametrize("view", [whole_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"])

@@ -7,14 +7,14 @@ the contract test walk the table.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from tuisim.core.field import Field
 from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import color, gyro, infrared, touch, ultrasonic
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, RunSpec, UltrasonicSpec
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, RunSpec, SensorSpec, UltrasonicSpec
 from tuisim.core.state import Instant
 
 
@@ -45,5 +45,10 @@ SENSORS: Mapping[str, SensorKind] = {
 
 def mounted(robot: RobotSpec) -> list[tuple[SensorKind, Any]]:
     """Return the robot's sensors as (kind, spec), in the order of the telemetry columns."""
+    return with_kinds(robot.sensors)
+
+
+def with_kinds(sensors: Iterable[SensorSpec]) -> list[tuple[SensorKind, Any]]:
+    """Return sensors as (kind, spec)."""
     kinds = {kind.spec: kind for kind in SENSORS.values()}
-    return [(kinds[type(sensor)], sensor) for sensor in robot.sensors]
+    return [(kinds[type(sensor)], sensor) for sensor in sensors]

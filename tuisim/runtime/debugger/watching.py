@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
+from typing import Any
 
 from tuisim.breaks import (
     CHANGES,
@@ -17,7 +18,7 @@ from tuisim.breaks import (
     TimeBreak,
     ValueBreak,
 )
-from tuisim.core.sensors import gyro, mounted, ultrasonic
+from tuisim.core.sensors import SensorKind, gyro, mounted, ultrasonic
 from tuisim.core.sensors.color import COLOR_NAMES, ColorReading, reading
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
@@ -153,7 +154,9 @@ class Watcher:
         """Return what gives a quantity now, None if this robot does not have it."""
         session = self._session
         sim = session.sim
-        for _, sensor in mounted(sim.spec.robot):
+        for kind, sensor in mounted(sim.spec.robot):
+            if quantity in kind.columns(sensor):
+                return partial(self._column, kind, sensor, kind.columns(sensor).index(quantity))
             name, _, part = quantity.partition(".")
             if sensor.name != name:
                 continue
@@ -172,6 +175,11 @@ class Watcher:
                     measure = gyro.rate_dps if part == "rate" else gyro.angle_deg
                     return lambda: float(measure(sim.instant()))
         return self._motion(quantity)
+
+    def _column(self, kind: SensorKind, sensor: Any, at: int) -> float:
+        """Return one of the values that the telemetry has of a sensor."""
+        sim = self._session.sim
+        return kind.measure(sensor, sim.instant(), sim.spec, self._session.field)[at]
 
     def _motion(self, quantity: str) -> Value | None:
         sim = self._session.sim

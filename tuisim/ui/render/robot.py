@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import RobotSpec
+from tuisim.core.parts import TouchSpec
+from tuisim.core.spec import RobotSpec, UltrasonicSpec
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.viewport import Viewport
 
@@ -22,10 +24,10 @@ _MIN_PX = 6.0
 _BUMPER_MM = 8.0
 """How thick the bar of a touch sensor is drawn."""
 
-_INFRARED_MM = 10.0
-"""Radius of an infrared sensor."""
+_SPOT_MM = 10.0
+"""Radius of a further sensor."""
 
-_NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _INFRARED = range(9)
+_NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
 
 Rgb = tuple[int, int, int]
 
@@ -41,13 +43,13 @@ class RobotColors:
     marker: Rgb = (255, 215, 0)
     bumper: Rgb = (0, 135, 95)
     pressed: Rgb = (255, 0, 0)
-    infrared: Rgb = (135, 0, 95)
+    spot: Rgb = (135, 0, 95)
 
 
 COLORED = RobotColors()
 GREY = RobotColors(
     body=(48, 48, 48), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255),
-    bumper=(108, 108, 108), pressed=(0, 0, 0), infrared=(128, 128, 128),
+    bumper=(108, 108, 108), pressed=(0, 0, 0), spot=(128, 128, 128),
 )  # fmt: skip
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
@@ -69,8 +71,8 @@ class RobotShape:
     """Colour sensors as x, y, radius."""
     bumpers_mm: tuple[tuple[float, float, float], ...] = field(default=())
     """Touch sensors as x, y, half the width of the bar."""
-    infrared_mm: tuple[float, float] | None = None
-    """Where the infrared sensor is, if there is one."""
+    spots_mm: tuple[tuple[float, float], ...] = field(default=())
+    """Where further sensors are, as x, y."""
 
     @property
     def reach_mm(self) -> float:
@@ -78,8 +80,8 @@ class RobotShape:
         side = self.half_width_mm + self.wheel_half_width_mm
         body_mm = math.hypot(side, max(-self.back_mm, self.tip_mm, self.wheel_radius_mm))
         bars_mm = (math.hypot(abs(x) + half, abs(y) + _BUMPER_MM) for x, y, half in self.bumpers_mm)
-        eye_mm = math.hypot(*self.infrared_mm) + _INFRARED_MM if self.infrared_mm else 0.0
-        return max(body_mm, eye_mm, *bars_mm)
+        spots_mm = (math.hypot(*spot) + _SPOT_MM for spot in self.spots_mm)
+        return max((body_mm, *spots_mm, *bars_mm))
 
     @property
     def tip_mm(self) -> float:
@@ -101,8 +103,15 @@ def shape_of(robot: RobotSpec) -> RobotShape:
         front_mm=max(ends) + 0.05 * robot.wheel_spacing_mm,
         eyes_mm=eyes,
         bumpers_mm=tuple((touch.x_mm, touch.y_mm, touch.width_mm / 2) for touch in robot.touch_sensors),
-        infrared_mm=(robot.infrared.x_mm, robot.infrared.y_mm) if robot.infrared else None,
+        spots_mm=tuple(_spots(robot)),
     )
+
+
+def _spots(robot: RobotSpec) -> Iterator[tuple[float, float]]:
+    """Where sensors are that have a place but no form of their own; ultrasonic ones are told by their rays."""
+    for sensor in robot.further_sensors:
+        if not isinstance(sensor, TouchSpec | UltrasonicSpec) and hasattr(sensor, "x_mm") and hasattr(sensor, "y_mm"):
+            yield sensor.x_mm, sensor.y_mm
 
 
 def drawn_scale(shape: RobotShape, view: Viewport) -> float:
@@ -193,14 +202,13 @@ def _mount(
         bar = np.abs(ahead - y_mm) <= max(_BUMPER_MM / 2, 0.5 * px_mm)
         bar = bar & (np.abs(side - x_mm) <= max(half, 0.5 * px_mm))
         parts[bar & free] = _PRESSED if at < len(pressed) and pressed[at] else _BUMPER
-    if shape.infrared_mm is not None and 2 * _INFRARED_MM >= 1.5 * px_mm:
-        x_mm, y_mm = shape.infrared_mm
-        parts[np.hypot(side - x_mm, ahead - y_mm) <= _INFRARED_MM] = _INFRARED
+    for x_mm, y_mm in shape.spots_mm if 2 * _SPOT_MM >= 1.5 * px_mm else ():
+        parts[np.hypot(side - x_mm, ahead - y_mm) <= _SPOT_MM] = _SPOT
 
 
 def _blend(target: Pixels, parts: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:
     drawn = (colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker)
-    table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.infrared], np.float32)
+    table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.spot], np.float32)
     rows, cols = target.shape[:2]
     blocks = parts.reshape(rows, _SAMPLES, cols, _SAMPLES)
     total = table[blocks].sum(axis=(1, 3))
