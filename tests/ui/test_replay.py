@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from tests.conftest import Command
 from tests.ui.app_help import LOGS, notices, program, ready, screen_text, settings, until
 from tuisim.config import build_run_spec
 from tuisim.datalog.catalogue import RunInfo
+from tuisim.datalog.compact import compact
 from tuisim.datalog.store import RunStore
 from tuisim.host import RunOptions, start_run
 from tuisim.protocol import ScriptedAction, SetNoise
@@ -111,16 +113,33 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
         assert not app.bridge.snapshot().colors
 
 
-async def test_a_damaged_run_is_a_notice() -> None:
+def _no_run_file(folder: Path) -> str:
+    (folder / "run.json").write_text("{")
+    return "run.json"
+
+
+def _torn_pack(name: str) -> Callable[[Path], str]:
+    def damage(folder: Path) -> str:
+        compact(folder, RunStore().load_run(folder.name).spec)
+        packed = folder / f"{name}.packed"
+        packed.write_bytes(packed.read_bytes()[:-5])
+        return "the packed recording is damaged"
+
+    return damage
+
+
+@pytest.mark.parametrize(
+    "damage", [_no_run_file, _torn_pack("telemetry.bin"), _torn_pack("output.bin")], ids=["file", "ticks", "output"]
+)
+async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
     run_id = stored("print('A: 1')\ntank_drive.on_for_seconds(50, 50, 1)\n")
-    folder = RunStore().folder(run_id)
+    said = damage(RunStore().folder(run_id))
     async with Lab(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        (folder / "run.json").write_text("{")
         await pilot.press("h")
         await until(pilot, lambda: "1 of 1 runs" in screen_text(app))
         await pilot.press("enter")
-        await until(pilot, lambda: any("run.json" in notice for notice in notices(app)))
+        await until(pilot, lambda: any(said in notice for notice in notices(app)))
         assert not app.bridge.run_id
 
 
