@@ -34,8 +34,9 @@ def test_a_run_has_samples_telemetry_output_and_a_picture() -> None:
 
 
 def test_same_seed_same_frames() -> None:
+    noisy = "for _ in range(20):\n    print('Colour:', colorLeft.reflected_light_intensity_pc)\n"
     first, second, other = (
-        tuisim.simulate(LOGGER, background="Grey_bands", sensornoise=20, seed=seed).samples for seed in (3, 3, 4)
+        tuisim.simulate(noisy, background="Grey_bands", x=300, sensornoise=20, seed=seed).samples for seed in (3, 3, 4)
     )
     assert first.equals(second)
     assert not first.equals(other)

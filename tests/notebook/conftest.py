@@ -19,6 +19,7 @@ class Shown:
     out: str
     err: str
     bundles: tuple[dict[str, Any], ...]
+    """The displays that stay, each as it was drawn last."""
     result: Any
 
     @property
@@ -50,7 +51,9 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Cell]:
     def run(text: str) -> Shown:
         with capture_output() as captured:
             done = shell.run_cell(text)
-        bundles = tuple(output.data for output in captured.outputs)
+        # One that is drawn anew stands in its old place; how often depends on the machine.
+        stays = {(output.transient or {}).get("display_id", at): output for at, output in enumerate(captured.outputs)}
+        bundles = tuple(output.data for output in stays.values())
         done.raise_error()
         return Shown(captured.stdout, captured.stderr, bundles, done.result)
 
