@@ -9,12 +9,15 @@ from itertools import takewhile, zip_longest
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.spec import to_plain
-from tuisim.datalog.records import OutputRow
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, TEXT_STREAMS, OutputRow, line_of
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.samples import samples_of
 
 if TYPE_CHECKING:
     import numpy as np
+
+_SEEN = {LED: "[lights]", DISPLAY: "[display]", CONSOLE: "[text screen]", MOTORS: "[motors]"}
+"""What stands for rows that are no lines for people, by stream."""
 
 DIFF_LINES = 20
 """Lines of a unified diff of two programs that are kept."""
@@ -190,7 +193,7 @@ def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
 
 def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
     for row in _written(run, until):
-        yield row, row.text, row.time_ns / 1e9
+        yield row, line_of(row) if row.stream in TEXT_STREAMS else _SEEN[row.stream], row.time_ns / 1e9
 
 
 def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:

@@ -52,7 +52,7 @@ class _Listed(Dialog[None], Generic[Entry]):
 
     def content(self) -> ComposeResult:
         """The list, the field, what is wrong there, and what may stand there."""
-        yield OptionList()
+        yield OptionList(markup=False)
         yield Input(placeholder=self.PLACEHOLDER, compact=True)
         yield Static(id="message", classes="wrong", markup=False)
         yield from self.explanation()

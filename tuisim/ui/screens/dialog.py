@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Generic, TypeVar
 
 from rich.table import Table
+from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
@@ -18,7 +19,8 @@ def name_and_title(name: str, title: str, name_cells: int) -> Table:
     table = Table.grid(padding=(0, 2), expand=True)
     table.add_column(width=name_cells, style="bold")
     table.add_column(ratio=1)
-    table.add_row(name, title)
+    # A name that somebody has given is no markup.
+    table.add_row(Text(name), Text(title))
     return table
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.table import Table
+from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
@@ -92,7 +93,7 @@ class Differences(Dialog[bool]):
         table.add_column(style="bold")
         table.add_column()
         for name, what in lines_of(self._diff):
-            table.add_row(name, what)
+            table.add_row(Text(name), Text(what))
         with VerticalScroll():
             yield Static(table)
 

@@ -39,7 +39,7 @@ class MatPicker(ListDialog):
         from tuisim.assets import backgrounds
 
         mats = backgrounds()
-        listed = OptionList(*(Option(name, id=name) for name in mats))
+        listed = OptionList(*(Option(name, id=name) for name in mats), markup=False)
         listed.styles.width = max(map(len, mats), default=0) + 5
         listed.highlighted = list(mats).index(self._current) if self._current in mats else 0
         with Horizontal(classes="mats"):
