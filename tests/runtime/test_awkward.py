@@ -91,9 +91,10 @@ def test_stop_works_at_every_step(start: Start, name: str) -> None:
         stops_at_once(driver)
 
 
-LOOKS = {
+LOOKS: dict[str, tuple[str, str | tuple[str, ...]]] = {
     "repr that raises": ("r", "<repr raised ValueError: no repr>"),
-    "repr that loops": ("r", "<repr takes too long>"),
+    # The second where the machine is busy, and the whole look takes too long.
+    "repr that loops": ("r", ("<repr takes too long>", "<R, not shown: values take too long>")),
     "repr that recurses": ("r", "<repr calls itself without end>"),
     "repr of no text": ("r", "<repr raised TypeError: __repr__ returned non-string (type int)>"),
     "repr of 20 MB": ("r", "x" * 300),
@@ -104,7 +105,7 @@ LOOKS = {
 
 
 @pytest.mark.parametrize(("name", "shown"), LOOKS.items(), ids=LOOKS)
-def test_hostile_values_are_cut_safely(start: Start, name: str, shown: tuple[str, str]) -> None:
+def test_hostile_values_are_cut_safely(start: Start, name: str, shown: tuple[str, str | tuple[str, ...]]) -> None:
     text = PROGRAMS[name]
     driver = Driver(start(text, live=True, speed=0.0, breaks=(str(text.count("\n")),)))
     driver.paused()
