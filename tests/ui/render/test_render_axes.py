@@ -35,6 +35,12 @@ def test_value_limits_hold_the_values(low: float, span: float) -> None:
     assert bottom < top
 
 
+@pytest.mark.parametrize("value", [1e16, -1e17, 1e149, 5e-324])
+def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
+    bottom, top = axes.value_limits(value, value)
+    assert bottom < value < top
+
+
 @pytest.mark.parametrize(("end_s", "upper_s"), [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)])
 def test_time_limits(end_s: float, upper_s: float) -> None:
     assert axes.time_limits(end_s) == (0, upper_s)

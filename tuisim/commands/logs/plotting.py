@@ -40,9 +40,7 @@ def plot(arguments: Namespace) -> int:
     log = the_source(arguments)
     model = _model(log, arguments)
     view = View(arguments.facets, arguments.marks, against=_against(log, model, arguments))
-    if not any(len(trace.pyramid.between(*model.x_limits())[0]) for trace in model.traces.ticked()):
-        low, high = model.traces.span_s()
-        raise LogError("no samples in that time", f"they lie between {low:g} s and {high:g} s", file=log.title)
+    _check_seen(model)
     if target:
         save_chart(model, view, target, size)
     else:
@@ -51,6 +49,16 @@ def plot(arguments: Namespace) -> int:
     if hidden and not arguments.variable:
         print(f"note: not drawn: {', '.join(hidden)}; --variable NAME draws one", file=sys.stderr)
     return 0
+
+
+def _check_seen(model: Model) -> None:
+    """Make sure that there is something to draw."""
+    ticked = model.traces.ticked()
+    if not any(len(trace.pyramid.times_s) for trace in ticked):
+        raise LogError(f"no numbers in {', '.join(trace.name for trace in ticked)}", file=model.log.title)
+    if not any(len(trace.pyramid.between(*model.x_limits())[0]) for trace in ticked):
+        low, high = model.traces.span_s()
+        raise LogError("no samples in that time", f"they lie between {low:g} s and {high:g} s", file=model.log.title)
 
 
 def _size(text: str, least: Size, most: Size) -> Size:
@@ -108,4 +116,7 @@ def _show(model: Model, view: View, size: Size | None) -> None:
     chart = chart_of(model, view, width * finer[0], height * finer[1])
     console = Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False)
     colors = console.color_system is not None and not console.no_color
-    console.print(text_of(chart, width, height, colors=colors), soft_wrap=True)
+    # Written by ourselves: the console would end the process where a pipe is closed.
+    with console.capture() as captured:
+        console.print(text_of(chart, width, height, colors=colors), soft_wrap=True)
+    sys.stdout.write(captured.get())

@@ -27,6 +27,8 @@ def report(arguments: Namespace) -> int:
     if arguments.out:
         check_report(Path(arguments.out))
     what = asked(arguments)
+    if arguments.telemetry and len(what.runs) > 1:
+        raise ConfigError("takes one run", f"got {len(what.runs)}", key="--telemetry")
     wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value))
     *_, subject = opening(wanted)
     names = names_of(subject.log, arguments) if arguments.variable else ()

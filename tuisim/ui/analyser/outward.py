@@ -30,8 +30,9 @@ def ask_chart(screen: Analyser) -> None:
 
     def go(text: str) -> None:
         target = _file(text, "such as chart.svg")
-        # Text has the size of the chart that it is taken from; pictures have their own.
-        size = (screen.chart.size.width, screen.chart.size.height) if target.suffix.lower() == ".txt" else None
+        # Text has the size of the chart that it is taken from, if that is to be seen; pictures have their own.
+        shown = screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
+        size = (shown.width, shown.height) if shown else None
         save_chart(model, View(look.facets, look.marks, look.hold, look.against), target, size)
         screen.say(f"The chart is in {target}")
         screen.redraw_chart()

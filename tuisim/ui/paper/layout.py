@@ -224,7 +224,7 @@ def _widest(limits: Limits) -> float:
 
 def _squared(chart: Chart, frame: _Frame) -> _Frame:
     """For a path over the field one mm is as long to the right as upwards."""
-    names = [chart.x_label.partition(" ")[0], *(line.name for line in chart.lines)]
+    names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
     if not chart.path or {unit_of(name) for name in names} != {"mm"}:
         return frame
     width_px, height_px = frame.right - frame.left, frame.bottom - frame.top

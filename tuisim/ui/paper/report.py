@@ -150,17 +150,20 @@ def _number(value: float, how: str) -> str:
 
 
 def _bands(model: Model) -> list[str]:
-    heads = ("variable", "name", "band", "from s", "to s", "samples", "level", "less noise", "spread", "width mm")
+    heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
     parts = [paragraph(in_words(report)) for report in model.reports() if report.bands]
     bands = model.bands()
     rows = [
-        (
+        [
             *(band.variable, band.grey, str(band.number), f"{band.start_s:.2f}", f"{band.stop_s:.2f}"),
-            *(str(band.samples), f"{band.level:.2f}", f"{band.true_level:.2f}", f"{band.spread:.2f}"),
-            _number(band.width_mm, ".0f"),
-        )
+            *(str(band.samples), f"{band.level:.2f}", f"{band.spread:.2f}", _number(band.width_mm, ".0f")),
+        ]
         for band in bands[:MOST_BANDS]
     ]
+    if any(band.true_level != band.level for band in bands[:MOST_BANDS]):
+        heads.append("without noise")
+        for row, band in zip(rows, bands[:MOST_BANDS], strict=True):
+            row.append(f"{band.true_level:.2f}")
     more = len(bands) - len(rows)
     return [*parts, table(heads, rows, numbers=2), paragraph(f"and {more:,} more", soft=True) if more else ""]
 

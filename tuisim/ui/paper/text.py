@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.text import Text
 
-from tuisim.ui.paper.chart import Chart, Line
+from tuisim.ui.paper.chart import Chart, Line, plain
 from tuisim.ui.render.chart import ChartPainter, ChartState, Run
 from tuisim.ui.render.plot import BRAILLE
 from tuisim.ui.render.traces import Trace, Traces
@@ -20,7 +20,7 @@ class _Drawn(Traces):
     def __init__(self, lines: tuple[Line, ...]) -> None:
         super().__init__()
         for line in lines:
-            trace = self._by_name[line.name] = Trace(line.name, line.number)
+            trace = self._by_name[line.name] = Trace(plain(line.name), line.number)
             trace.on, trace.other_scale = True, line.other_scale
             trace.add(line.xs.tolist(), line.ys.tolist())
 
@@ -38,7 +38,7 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
         (line,) = chart.lines
         trace = Trace(line.name, line.number)
         marker = trace.mark if chart.marks else BRAILLE
-        names = chart.x_label.partition(" ")[0], line.name
+        names = chart.x_label.partition(" (")[0], plain(line.name)
         shown = xy_lines(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
     else:
         parts = [(line,) for line in chart.lines] if chart.facets else [chart.lines]

@@ -19,8 +19,11 @@ def nice_step(span: float, count: int) -> float:
 
 def value_limits(low: float, high: float) -> Limits:
     """Return round limits around values, so that they seldom change while values come in."""
-    if high - low < 1e-9 * max(abs(low), abs(high), 1.0):
-        low, high = low - 1.0, high + 1.0
+    size = max(abs(low), abs(high), 1.0)
+    if high - low < 1e-9 * size:
+        # One more or less would make no difference to a number with more than sixteen digits.
+        room = max(1.0, 1e-6 * size)
+        low, high = low - room, high + room
     step = nice_step(high - low, 4)
     return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
 
