@@ -10,14 +10,13 @@ import os
 import select
 import signal
 import subprocess
-import sys
 import time
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 from tuisim import assets
 from tuisim.breaks import parse_breaks
+from tuisim.child import start_child, stuck_line, what_ended, write_command
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView
@@ -26,10 +25,13 @@ from tuisim.errors import HostError
 from tuisim.fields import FieldFiles, prepare
 from tuisim.protocol import (
     PROTOCOL_VERSION,
+    Answer,
     Ended,
     InputWanted,
     Message,
     Paused,
+    Reply,
+    ReplyWanted,
     Resumed,
     ScriptedAction,
     Started,
@@ -75,6 +77,10 @@ class RunOptions:
     """Scripted answers to input()."""
     asks_user: bool = False
     """Whether input() asks the user when there are no scripted answers left; otherwise that is the end of the input."""
+    time_waits: bool = False
+    """Whether simulated time stands still while input() waits for the user; otherwise the world goes on."""
+    replies: bool = False
+    """Whether the host replies to `pyState()`, while simulated time stands still; otherwise there are no messages."""
     actions: tuple[ScriptedAction, ...] = ()
     """User actions that are known already, in the order of their ticks."""
     breaks: tuple[str, ...] = ()
@@ -104,6 +110,7 @@ class RunHandle:
         """Whether the child has come to the program's first line."""
         self.paused = False
         self.waiting_for_input: str | None = None
+        self.waiting_for_reply = False
         self.telemetry, self.output = TelemetryView(self.folder), OutputView(self.folder)
         self._rest = b""
         self._held: list[Message] = []
@@ -115,29 +122,7 @@ class RunHandle:
         self._stack_asked = False
         self._announced: Ended | None = None
         self._announced_at = 0.0
-        self._start()
-
-    def _start(self) -> None:
-        command_read, self._command_fd = os.pipe()
-        self._event_fd, event_write = os.pipe()
-        lifeline_read, self._lifeline_fd = os.pipe()
-        inherited = (command_read, event_write, lifeline_read)
-        try:
-            with (self.folder / "child.log").open("wb") as log:
-                self._process = subprocess.Popen(
-                    [sys.executable, "-s", "-P", "-m", "tuisim.runtime", str(self.folder), *map(str, inherited)],
-                    pass_fds=inherited,
-                    stdin=subprocess.DEVNULL,
-                    stdout=subprocess.DEVNULL,
-                    stderr=log,
-                    env=_child_environment(),
-                    start_new_session=True,
-                )
-        finally:
-            for fd in inherited:
-                os.close(fd)
-        os.set_blocking(self._event_fd, False)
-        os.set_blocking(self._command_fd, False)
+        self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(run.folder)
 
     # Events
 
@@ -174,6 +159,8 @@ class RunHandle:
                     self.paused = False
                 case InputWanted(prompt=prompt):
                     self.waiting_for_input = prompt
+                case ReplyWanted():
+                    self.waiting_for_reply = True
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         self._press_on()
@@ -210,28 +197,18 @@ class RunHandle:
         last = self.telemetry.last()
         tick = last.tick if last else 0
         time_ns = -(-tick * 1_000_000_000 // self.spec.profile.tick_hz)
-        line = self._stuck_line()
+        line = stuck_line(self.folder, self.program.path or self.program.name)
         if self._stop_at is not None:
             where = f" in line {line}, where it was stuck" if line else ""
             return Ended("stopped", tick, time_ns, summary=f"stopped{where}", error_line=line)
-        return self._crash(tick, time_ns, line)
-
-    def _crash(self, tick: int, time_ns: int, line: int) -> Ended:
-        code = self._process.returncode
         if self._stack_asked:
             summary = f"stuck in line {line}: no simulated time passed" if line else "stuck: no simulated time passed"
             return Ended("stalled", tick, time_ns, 1, summary, error_line=line)
-        if code < 0:
-            summary = f"the program's process was ended by {signal.Signals(-code).name}"
-        else:
-            log = (self.folder / "child.log").read_text("utf-8", "replace").strip()
-            summary = f"the program's process ended with exit status {code}"
-            summary += f": {log.splitlines()[-1]}" if log else ""
-        return Ended("crashed", tick, time_ns, 1, summary, error_line=line)
+        return Ended("crashed", tick, time_ns, 1, what_ended(self._process.returncode, self.folder), error_line=line)
 
     def _finish(self, final: Ended) -> None:
         self.ended = final
-        self.paused, self.waiting_for_input = False, None
+        self.paused, self.waiting_for_input, self.waiting_for_reply = False, None, False
         for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
             os.close(fd)
         for name in ("child.log", "stack.txt"):
@@ -278,14 +255,14 @@ class RunHandle:
         if not self.started:
             self._held.append(command)
             return
-        if command.kind == "answer":
-            self.waiting_for_input = None
-        try:
-            os.write(self._command_fd, command.encode())
-        except (BrokenPipeError, BlockingIOError):
-            # The child is gone, or so stuck that its pipe is full: pump() finds out.
-            return
-        self._signal(signal.SIGUSR1)
+        match command:
+            case Answer():
+                self.waiting_for_input = None
+            case Reply():
+                self.waiting_for_reply = False
+        # If not all of it can be written, the child is gone or stuck: pump() finds out.
+        if write_command(self._command_fd, command.encode()):
+            self._signal(signal.SIGUSR1)
 
     def stop(self) -> None:
         """Ask the program to stop; `pump` or `wait` kill it if it does not."""
@@ -321,7 +298,7 @@ class RunHandle:
                 self._signal(signal.SIGUSR1)
         elif self._options.stall_limit_s and not self.paused:
             tick = self.telemetry.count
-            if tick != self._progress[0]:
+            if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
                 self._progress = (tick, now)
             elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
                 self._read_stack_and_kill()
@@ -334,18 +311,6 @@ class RunHandle:
             time.sleep(0.005)
         self._kill_group()
 
-    def _stuck_line(self) -> int:
-        """Line of the program in the stack that a stuck child wrote, 0 if it wrote none."""
-        try:
-            stack = (self.folder / "stack.txt").read_text("utf-8", "replace")
-        except OSError:
-            return 0
-        file = self.program.path or self.program.name
-        for line in stack.splitlines():
-            if f'"{file}"' in line:
-                return int(line.partition(", line ")[2].partition(" ")[0] or 0)
-        return 0
-
     def _signal(self, number: int) -> None:
         if self._process.poll() is None:
             self._process.send_signal(number)
@@ -355,22 +320,6 @@ class RunHandle:
             os.killpg(self._process.pid, signal.SIGKILL)
         except ProcessLookupError:
             return
-
-
-def _child_environment() -> dict[str, str]:
-    """The child's environment: no surprises from the user's, the same hashes every time."""
-    kept = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR") if name in os.environ}
-    package_folder = str(Path(__file__).parent.parent)
-    return {
-        **kept,
-        "PYTHONPATH": package_folder,
-        "PYTHONHASHSEED": "0",
-        "PYTHONUTF8": "1",
-        "OPENBLAS_NUM_THREADS": "1",
-        "OMP_NUM_THREADS": "1",
-        "TZ": "UTC",
-        "LANG": "C.UTF-8",
-    }
 
 
 def field_files(spec: RunSpec) -> FieldFiles:

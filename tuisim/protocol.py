@@ -17,7 +17,7 @@ from tuisim.breaks import parse_breaks
 from tuisim.errors import ConfigError
 from tuisim.held import FrameState, MetLine, ThreadState, Variable, Watched
 
-PROTOCOL_VERSION = 2
+PROTOCOL_VERSION = 3
 
 AFTER_TICK = 0
 """Ordinal of the moment at which a tick has just been done."""
@@ -196,9 +196,23 @@ class Answer(Message):
 
     kind = "answer"
     text: str | None
+    at_once: bool = False
+    """Whether simulated time stood still until it came."""
 
 
-ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer)
+@dataclass(frozen=True, slots=True)
+class Reply(Message):
+    """User action: what a responder had to say when the program asked for it; simulated time stood still until then."""
+
+    kind = "reply"
+    messages: tuple[Any, ...]
+    """What JSON can hold, oldest first."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "messages", tuple(self.messages))
+
+
+ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer, Reply)
 """The commands that are user actions."""
 _CONTROLS: tuple[type[Message], ...] = (
     Stop, Pause, Resume, StepTicks, StepLine, RunToLine, RunToInstant, SetBreaks, Look, WantHistory, SetSpeed,
@@ -314,6 +328,13 @@ class InputWanted(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class ReplyWanted(Message):
+    """The program has called `pyState()`: simulated time stands still until a `Reply` comes."""
+
+    kind = "reply_wanted"
+
+
+@dataclass(frozen=True, slots=True)
 class Ended(Message):
     """The last event of a run.
 
@@ -364,9 +385,8 @@ class LineHistory(Message):
     lines: tuple[MetLine, ...]
 
 
-EVENTS: dict[str, type[Message]] = {
-    event.kind: event for event in (Started, Paused, Resumed, Looked, LineHistory, Spoke, InputWanted, Ended)
-}
+_EVENTS = (Started, Paused, Resumed, Looked, LineHistory, Spoke, InputWanted, ReplyWanted, Ended)
+EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
 
 
 def parse_command(line: bytes) -> Message:

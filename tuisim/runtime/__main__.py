@@ -65,6 +65,7 @@ class Child:
         file = config.path or config.name
         self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)
         session = self._session
+        session.replies = config.replies
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):

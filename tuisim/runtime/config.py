@@ -28,6 +28,8 @@ class RunConfig:
     stall_limit_s: float
     answers: tuple[str, ...]
     asks_user: bool
+    time_waits: bool
+    replies: bool
     actions: tuple[ScriptedAction, ...]
     breaks: tuple[str, ...]
     trace_from_tick: int | None
@@ -61,6 +63,8 @@ def read_config(folder: Path) -> RunConfig:
         stall_limit_s=options["stall_limit_s"],
         answers=tuple(options["answers"]),
         asks_user=options["asks_user"],
+        time_waits=options["time_waits"],
+        replies=options["replies"],
         actions=tuple(ScriptedAction.from_plain(row) for row in options["actions"]),
         breaks=tuple(options["breaks"]),
         trace_from_tick=options["trace_from_tick"],

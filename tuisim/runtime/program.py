@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import INPUT, STDERR
 from tuisim.errors import LogError
-from tuisim.protocol import InputWanted
+from tuisim.protocol import Answer, InputWanted
 from tuisim.runtime.baton import Baton
 from tuisim.runtime.config import RunConfig
 from tuisim.runtime.halt import Deadlock, StopProgram
@@ -75,7 +75,9 @@ class ProgramRunner:
             self._prepare()
             self._execute()
             self._baton.join_all()
-            outcome = Outcome("finished")
+            # A stop that struck one of its threads need not have reached the main one.
+            stop = self._session.stop_reason
+            outcome = Outcome("finished") if stop is None else Outcome(stop.end, 0, stop.summary)
         except BaseException as error:  # whatever a program lets escape is an outcome, not an error of ours
             outcome = self._outcome_of(error)
         outcome = self._hold_at_end(outcome)
@@ -182,8 +184,7 @@ class ProgramRunner:
     # Input
 
     def _input(self, prompt: object = "") -> str:
-        """The program's input(): scripted answers, or the user's, while the world goes on."""
-        session = self._session
+        """The program's input(): scripted answers, or the user's."""
         self.stdout.write(str(prompt))
         asked = self.stdout.take_part()
         answer: str | None
@@ -192,13 +193,21 @@ class ProgramRunner:
         elif not self._config.asks_user:
             answer = None
         else:
-            session.channel.send(InputWanted(asked))
-            tick_ns = NS_PER_S // session.sim.spec.profile.tick_hz
-            while not session.steering.answers:
-                session.spend(tick_ns)
-            answer = session.steering.answers.popleft()
+            answer = self._users_answer(asked)
         if answer is None:
             self._output.row(asked, INPUT)
             raise EOFError("there is no further answer to input()")
         self._output.row(asked + answer, INPUT)
         return answer
+
+    def _users_answer(self, asked: str) -> str | None:
+        session, steering = self._session, self._session.steering
+        if not steering.was_there(session, Answer):
+            if self._config.time_waits:
+                steering.stand_still_for(session, Answer, InputWanted(asked))
+            else:
+                session.channel.send(InputWanted(asked))
+        tick_ns = NS_PER_S // session.sim.spec.profile.tick_hz
+        while not steering.answers:
+            session.spend(tick_ns)
+        return steering.answers.popleft()

@@ -11,13 +11,13 @@ import sys
 import types
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim.core.field import Field
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S, Simulation
 from tuisim.datalog.records import SPEECH
-from tuisim.protocol import Spoke
+from tuisim.protocol import Reply, ReplyWanted, Spoke
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.halt import StopProgram
 from tuisim.runtime.output import Output
@@ -99,6 +99,8 @@ class Session:
         self._quick_ns = self._limit_ns
         """Up to here a wait needs nothing but ticks, as far as `slow` has no bits."""
         self._commands, self._commands_at = 0, -1
+        self.replies = False
+        """Whether the host replies to `messages`."""
         self.stop_reason: StopProgram | None = None
         self._stop_raised_at: int | None = None
         self.debugger: Debugger | None = None
@@ -177,6 +179,14 @@ class Session:
     def show(self, row: str, stream: int) -> None:
         """Write down what the brick shows."""
         self.output.row(row, stream)
+
+    def messages(self) -> list[Any]:
+        """Return what the host's responder has said so far; it is asked first, and no time passes meanwhile."""
+        self.command()
+        steering = self.steering
+        if not steering.was_there(self, Reply) and self.replies and self.stop_reason is None:
+            steering.stand_still_for(self, Reply, ReplyWanted())
+        return list(steering.messages)
 
     # Passing time
 

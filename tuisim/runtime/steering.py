@@ -11,12 +11,12 @@ import os
 from collections import deque
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim import protocol
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
-from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, ScriptedAction
+from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Answer, Message, Reply, ScriptedAction
 from tuisim.runtime import real
 from tuisim.runtime.channel import Channel
 
@@ -76,6 +76,8 @@ class Steering:
         self._stop_asked_at: float | None = None
         self.answers: deque[str | None] = deque()
         """Answers to input() that have come in."""
+        self.messages: list[Any] = []
+        """What the host's responder has said so far."""
 
     # Commands
 
@@ -194,6 +196,41 @@ class Steering:
         if not self._paused:
             self._channel.send(protocol.Resumed())
 
+    def was_there(self, session: Session, kind: type[Answer | Reply]) -> bool:
+        """Apply the next known action if it is of a kind, and came here when it was made: time stood still for it."""
+        if not self._script or self._script[0].tick > session.sim.tick:
+            return False
+        action = self._script[0].action
+        if not isinstance(action, kind) or (isinstance(action, Answer) and not action.at_once):
+            return False
+        self._script.popleft()
+        self.apply(session, action)
+        return True
+
+    def stand_still_for(self, session: Session, kind: type[Answer | Reply], question: Message) -> None:
+        """Ask the host, and let no simulated time pass until its answer is there and applied.
+
+        Args:
+            session: The run.
+            kind: Of the answer.
+            question: The event that asks for it.
+
+        Raises:
+            StopProgram: the run is to stop.
+        """
+        # Commands are taken here, not where the signal that announces them strikes.
+        self.holding = True
+        self._channel.send(question)
+        while not (here := [one for one in self._waiting if isinstance(one, kind)]) and session.stop_reason is None:
+            self._channel.wait(1.0)
+            self.receive(session)
+        self.holding = False
+        self._anchor = None
+        if here:
+            self._waiting.remove(here[0])
+            self.apply(session, here[0])
+        session.checkpoint()
+
     def _pace(self, session: Session, most: int) -> int:
         sim = session.sim
         while True:
@@ -245,6 +282,8 @@ class Steering:
                 session.pressed = frozenset(pressed)
             case protocol.Answer(text=text):
                 self.answers.append(text)
+            case protocol.Reply(messages=messages):
+                self.messages.extend(messages)
             case _:
                 raise TypeError(f"not a user action: {action!r}")
         sim.actions += 1

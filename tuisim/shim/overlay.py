@@ -62,9 +62,12 @@ def glue_module(session: Session) -> types.ModuleType:
         """Return the simulated seconds since the program started."""
         return session.sim.tick / session.sim.spec.profile.tick_hz
 
-    def pyState() -> dict[str, list[str]]:
-        """Return the answers of a notebook; without one there are none."""
-        return {"messages": []}
+    def pyState() -> dict[str, list[Any]]:
+        """Return all answers of a notebook's responder so far, oldest first; without one there are none.
+
+        It has answered every line printed for it by now, and no simulated time passes meanwhile.
+        """
+        return {"messages": session.messages()}
 
     vars(glue).update(get_clock=get_clock, pyState=pyState)
     return glue

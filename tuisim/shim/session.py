@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from tuisim.core.field import Field
 from tuisim.core.simulation import Simulation
@@ -38,6 +38,9 @@ class Session(Protocol):
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
         """Show what is heard; the program goes on after `wait_ns`. The others are as in `protocol.Spoke`."""
+
+    def messages(self) -> list[Any]:
+        """Return what the host's responder has said so far; it is asked first, and no time passes meanwhile."""
 
     def show(self, row: str, stream: int) -> None:
         """Write down what the brick shows; `stream` is one of `records`, `row` as `datalog.face` makes it."""

@@ -1,0 +1,93 @@
+"""The child process of a run as the host has it: how it is started, written to, and what one leaves that is gone."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+PATIENCE_S = 0.2
+"""How long a full command pipe is waited for: a child that listens empties it at once."""
+
+
+def start_child(folder: Path) -> tuple[subprocess.Popen[bytes], int, int, int]:
+    """Start the process that carries out the run of a folder.
+
+    Returns:
+        The process; write end of its commands, read end of its events, both without blocking; and its lifeline, at
+        whose end it dies.
+    """
+    command_read, command_fd = os.pipe()
+    event_fd, event_write = os.pipe()
+    lifeline_read, lifeline_fd = os.pipe()
+    inherited = (command_read, event_write, lifeline_read)
+    try:
+        with (folder / "child.log").open("wb") as log:
+            process = subprocess.Popen(
+                [sys.executable, "-s", "-P", "-m", "tuisim.runtime", str(folder), *map(str, inherited)],
+                pass_fds=inherited,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=log,
+                env=_environment(),
+                start_new_session=True,
+            )
+    finally:
+        for fd in inherited:
+            os.close(fd)
+    os.set_blocking(event_fd, False)
+    os.set_blocking(command_fd, False)
+    return process, command_fd, event_fd, lifeline_fd
+
+
+def _environment() -> dict[str, str]:
+    """The child's environment: no surprises from the user's, the same hashes every time."""
+    kept = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR") if name in os.environ}
+    package_folder = str(Path(__file__).parent.parent)
+    return {
+        **kept,
+        "PYTHONPATH": package_folder,
+        "PYTHONHASHSEED": "0",
+        "PYTHONUTF8": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "OMP_NUM_THREADS": "1",
+        "TZ": "UTC",
+        "LANG": "C.UTF-8",
+    }
+
+
+def write_command(fd: int, data: bytes) -> bool:
+    """Write a command, which may be larger than the pipe; return whether all of it could be written."""
+    while data:
+        try:
+            data = data[os.write(fd, data) :]
+        except BrokenPipeError:
+            return False
+        except BlockingIOError:
+            if not select.select([], [fd], [], PATIENCE_S)[1]:
+                return False
+    return True
+
+
+def stuck_line(folder: Path, program_file: str) -> int:
+    """Return the line of the program in the stack that a stuck child wrote, 0 if it wrote none."""
+    try:
+        stack = (folder / "stack.txt").read_text("utf-8", "replace")
+    except OSError:
+        return 0
+    for line in stack.splitlines():
+        if f'"{program_file}"' in line:
+            return int(line.partition(", line ")[2].partition(" ")[0] or 0)
+    return 0
+
+
+def what_ended(exit_status: int, folder: Path) -> str:
+    """Return what ended a child that went without a word: a signal, or its exit status and last complaint."""
+    if exit_status < 0:
+        return f"the program's process was ended by {signal.Signals(-exit_status).name}"
+    log = (folder / "child.log").read_text("utf-8", "replace").strip()
+    last = f": {log.splitlines()[-1]}" if log else ""
+    return f"the program's process ended with exit status {exit_status}{last}"
