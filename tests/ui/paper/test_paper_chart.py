@@ -15,7 +15,7 @@ from tuisim.datalog.opening import Log
 from tuisim.datalog.opening.layout import guessed
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.paper.chart import View, chart_of
-from tuisim.ui.paper.layout import Rule, Stroke, laid_out
+from tuisim.ui.paper.layout import COLORS, Rule, Stroke, laid_out
 from tuisim.ui.paper.png import image_of
 from tuisim.ui.paper.svg import svg_of
 from tuisim.ui.paper.text import text_of
@@ -99,3 +99,11 @@ def test_facets_stand_below_each_other() -> None:
     first, second = (shape.points[:, 1] for shape in drawing.shapes if isinstance(shape, Stroke))
     assert first.max() < second.min()
     assert any(isinstance(shape, Rule) and shape.faint for shape in drawing.shapes)
+
+
+@pytest.mark.parametrize("view", [View(), View(facets=True), View(against=("x_mm", "Colour"))], ids=str)
+def test_only_data_have_colours_for_any_ground(view: View) -> None:
+    text = text_of(chart_of(model_of(long_log()), view, 160, 96), 80, 24, colors=True)
+    styles = {str(span.style) for span in text.spans}
+    assert {f"#{bytes(rgb).hex()}" for rgb in COLORS[: 1 if view.against else 2]} <= styles
+    assert styles <= {"none", "bold", *(f"#{bytes(rgb).hex()}" for rgb in COLORS)}

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from tuisim.ui.analyser.model import Model
     from tuisim.ui.analyser.traces import LogTrace
 
-_UNITS = {"_mm": "mm", "_deg": "°", "_dps": "°/s", "_s": "s", "_ms": "ms"}
-"""Units by the end of a variable's name."""
 _MOST = 1e150
 """What is larger cannot be reckoned with: the distance between two such numbers may be infinite."""
 _DOTS_X, _DOTS_Y = 2, 4
@@ -96,10 +94,9 @@ def with_unit(name: str) -> str:
     return plain(f"{name} ({unit})" if unit else name)
 
 
-def unit_of(name: str) -> str:
+def unit_sign(name: str) -> str:
     """Return the unit of a variable that its name tells, empty if it tells none."""
-    plain = name.partition(" #")[0]
-    return next((unit for end, unit in _UNITS.items() if plain.endswith(end)), "")
+    return unit_of(name.partition(" #")[0]).sign
 
 
 def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:

@@ -17,7 +17,7 @@ COLORS: tuple[Rgb, ...] = (
     (31, 119, 180), (217, 95, 2), (27, 158, 119), (201, 60, 140), (117, 112, 199), (166, 118, 29), (214, 39, 40),
     (80, 150, 30), (23, 160, 190), (120, 120, 120),
 )  # fmt: skip
-"""Of the lines; to be told apart on white paper as well as on a dark screen."""
+"""Of the lines; to be told apart on white as well as on black."""
 
 FONT_PX = 13
 """Height of the letters."""
@@ -137,7 +137,7 @@ def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> D
     for at, (group, scale) in enumerate(zip(groups, scales, strict=True)):
         upper, lower = top + at * each, top + (at + 1) * each
         if chart.facets:
-            shapes.append(Words(left, upper + _LINE_PX / 2, group[0].label, rgb=_color(group[0]), strong=True))
+            shapes.append(Words(left, upper + _LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True))
             upper += _LINE_PX + 4
         last = at == len(groups) - 1
         lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
@@ -149,7 +149,8 @@ def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> D
     return Drawing(chart.title, width, height, tuple(shapes))
 
 
-def _color(line: Line) -> Rgb:
+def color_of(line: Line) -> Rgb:
+    """Return the colour of a line."""
     return COLORS[line.number % len(COLORS)]
 
 
@@ -169,7 +170,7 @@ def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape],
         if x > _PAD and x + taken > width - _PAD:
             x, row = float(_PAD), row + 1
         y = top + (row + 0.5) * _LINE_PX
-        shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), _color(line)))
+        shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), color_of(line)))
         shapes.append(Words(x + 28, y, text))
         x += taken + 14
     return shapes, row + 1 if lines else 0
@@ -264,7 +265,7 @@ def _strokes(chart: Chart, lines: Sequence[Line], scale: _Scales, frame: _Frame)
         own = frame.with_y(scale.right) if scale.right and line.other_scale else frame
         if len(line.xs):
             points = np.column_stack((own.xs(line.xs), own.ys(line.ys)))
-            shapes.append(Stroke(points, _color(line), dots=chart.marks or len(points) == 1))
+            shapes.append(Stroke(points, color_of(line), dots=chart.marks or len(points) == 1))
     if not shapes:
         shapes.append(
             Words((frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2, "no samples here", "middle")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from rich.style import Style
 from rich.text import Text
 
 from tuisim.ui.paper.chart import Chart, Line, plain
+from tuisim.ui.paper.layout import COLORS, color_of
 from tuisim.ui.render.chart import ChartPainter, ChartState, Run
 from tuisim.ui.render.plot import BRAILLE
 from tuisim.ui.render.traces import Trace, Traces
@@ -20,7 +22,7 @@ class _Drawn(Traces):
     def __init__(self, lines: tuple[Line, ...]) -> None:
         super().__init__()
         for line in lines:
-            trace = self._by_name[line.name] = Trace(plain(line.name), line.number)
+            trace = self._by_name[line.name] = _trace(line)
             trace.on, trace.other_scale = True, line.other_scale
             trace.add(line.xs.tolist(), line.ys.tolist())
 
@@ -36,7 +38,7 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
     shown: list[list[Run]] = []
     if chart.path:
         (line,) = chart.lines
-        trace = Trace(line.name, line.number)
+        trace = _trace(line)
         marker = trace.mark if chart.marks else BRAILLE
         names = chart.x_label.partition(" (")[0], plain(line.name)
         shown = xy_lines(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
@@ -47,11 +49,23 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
             grey = not colors and len(part) > 1
             state = ChartState(x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart))
             shown += ChartPainter().paint(_Drawn(part), state, width, rows).lines
-    lines = [Text(chart.title, "bold"), *(Text.assemble(*line) for line in shown)]
+    lines = [Text(chart.title, "bold"), *(Text.assemble(*map(_on_any_ground, line)) for line in shown)]
     for at in lines:
         at.rstrip()
         at.truncate(width)
     return Text("\n").join(lines)
+
+
+def _trace(line: Line) -> Trace:
+    trace = Trace(plain(line.name), line.number)
+    trace.rgb = color_of(line)
+    return trace
+
+
+def _on_any_ground(run: Run) -> Run:
+    """What is not data has the terminal's own colour: it may be dark on bright."""
+    text, style = run
+    return run if style.color and style.color.triplet in COLORS else (text, Style())
 
 
 def _unit(chart: Chart) -> str:
