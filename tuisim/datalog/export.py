@@ -15,6 +15,7 @@ from tuisim.core.spec import to_plain
 from tuisim.datalog.formats import EXPORTERS, METADATA_KEY, Metadata, companion_of
 from tuisim.datalog.frames import samples_frame, telemetry_frame
 from tuisim.datalog.runfile import StoredRun
+from tuisim.datalog.units import unit_of
 from tuisim.errors import ExportError, LogError
 
 if TYPE_CHECKING:
@@ -40,15 +41,6 @@ _UNITS: Mapping[str, str] = {
     "index": "time since the first sample of the run was printed",
     "value": "as printed",
     "time": "s, simulated",
-}
-_UNITS_BY_END: Mapping[str, str] = {
-    "_rate_dps": "degrees per second, clockwise",
-    "_dps": "degrees per second",
-    "_mm": "mm",
-    "_deg": "degrees",
-    "_red": "mean of 0 to 255",
-    "_green": "mean of 0 to 255",
-    "_blue": "mean of 0 to 255",
 }
 
 
@@ -225,6 +217,4 @@ def _allowed() -> str:
 
 
 def _unit(column: str) -> str:
-    if column in _UNITS:
-        return _UNITS[column]
-    return next((unit for end, unit in _UNITS_BY_END.items() if column.endswith(end)), "")
+    return _UNITS.get(column) or unit_of(column).words

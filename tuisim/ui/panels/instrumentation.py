@@ -11,6 +11,7 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 
 from tuisim.core.sensors.color import ColorReading
+from tuisim.datalog.units import unit_of
 from tuisim.ui.cellview import LinesView, Run
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.throttle import Throttle
@@ -102,7 +103,8 @@ def _further(column: str, value: float, width: int) -> Line:
     if what == "pressed":
         shown, unit = "pressed" if value else "released", ""
     else:
-        shown, unit = f"{value:.0f}", {"mm": " mm", "proximity": " %"}.get(what, "")
+        sign = unit_of(column).sign
+        shown, unit = f"{value:.0f}", sign if sign == "°" else f" {sign}".rstrip()
     label = name.capitalize()
     return _fit(
         width,

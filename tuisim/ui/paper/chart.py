@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tuisim.datalog import units
 from tuisim.errors import LogError
 from tuisim.ui.analyser.aligning import DISTANCE
 from tuisim.ui.render.axes import Limits, value_limits
@@ -94,9 +95,9 @@ def with_unit(name: str) -> str:
     return plain(f"{name} ({unit})" if unit else name)
 
 
-def unit_sign(name: str) -> str:
+def unit_of(name: str) -> str:
     """Return the unit of a variable that its name tells, empty if it tells none."""
-    return unit_of(name.partition(" #")[0]).sign
+    return units.unit_of(name.partition(" #")[0]).sign
 
 
 def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
