@@ -14,6 +14,9 @@ from tuisim.ui.panels import PANELS
 
 _ALWAYS = ("help", "quit")
 
+KeyWord = tuple[str, str]
+"""A key as people write it, and what it does."""
+
 
 def fitting(actions: list[Action], width: int) -> list[Action]:
     """Return the actions whose keys and words fit a footer, help and quit before any other.
@@ -52,17 +55,21 @@ class KeyFooter(Widget):
         self._situation = Situation("idle", False, False)
         self._status = ""
         self._on: frozenset[str] = frozenset()
+        self._typing: tuple[KeyWord, ...] = ()
 
-    def show(self, situation: Situation, status: str, panels_on: frozenset[str]) -> None:
+    def show(
+        self, situation: Situation, status: str, panels_on: frozenset[str], typing: tuple[KeyWord, ...] = ()
+    ) -> None:
         """Show the keys for a situation.
 
         Args:
             situation: Decides which keys work.
             status: State of the run, at the right.
             panels_on: Panels whose keys are shown as switched on.
+            typing: Keys of the field that has the focus; where letters go into it, they are no keys.
         """
-        if (situation, status, panels_on) != (self._situation, self._status, self._on):
-            self._situation, self._status, self._on = situation, status, panels_on
+        if (situation, status, panels_on, typing) != (self._situation, self._status, self._on, self._typing):
+            self._situation, self._status, self._on, self._typing = situation, status, panels_on, typing
             self.refresh()
 
     def render(self) -> Text:
@@ -71,7 +78,11 @@ class KeyFooter(Widget):
         status = f" {self._status} " if self._status else ""
         key_style = self.get_component_rich_style("footer--key", partial=True)
         line = Text(no_wrap=True, end="")
-        for action in fitting(working(self._situation), width - len(status)):
+        for key, word in self._typing:
+            if len(line) + len(key) + len(word) + 2 <= width - len(status):
+                line.append(f" {key}", key_style)
+                line.append(f" {word}")
+        for action in [] if self._typing else fitting(working(self._situation), width - len(status)):
             meta = Style(meta={ACT: action.id})
             line.append(f" {_key(action)}", key_style + meta)
             line.append(f" {action.footer}", self._word_style(action) + meta)

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from textual.widgets import Input
+
 from tuisim.ui.actions import IN_RUN, Situation
+from tuisim.ui.footer import KeyWord
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.verbs import end_label, speed_label
+
+FIELD_KEYS: tuple[KeyWord, ...] = (("⏎", "take it"), ("esc", "leave"), ("tab", "next"))
+TYPING_KEYS: tuple[KeyWord, ...] = (
+    ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("^g", "line"), ("^z", "undo"), ("^y", "redo"),
+    ("^/", "comment"),
+)  # fmt: skip
+"""While one types into the program."""
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
@@ -20,6 +30,15 @@ def situation(lab: Lab) -> Situation:
     )
 
 
+def _field_keys(lab: Lab) -> tuple[KeyWord, ...]:
+    """The keys of the field that letters go into; none if no such field has the focus."""
+    if isinstance(lab.focused, Input):
+        return FIELD_KEYS
+    code = lab.desk.code
+    typing = code is not None and code.typing and lab.focused is not None and code in lab.focused.ancestors
+    return TYPING_KEYS if typing else ()
+
+
 def show_footer(lab: Lab, snapshot: Snapshot) -> None:
     """Bring the footer up to date."""
     status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
@@ -28,4 +47,4 @@ def show_footer(lab: Lab, snapshot: Snapshot) -> None:
     if snapshot.state in IN_RUN or snapshot.speed != 1:
         status += f" {speed_label(snapshot.speed)}"
     shown = frozenset(panel for panel in lab.desk.panels if lab.desk.shown(panel))
-    lab.key_footer.show(situation(lab), status, shown)
+    lab.key_footer.show(situation(lab), status, shown, _field_keys(lab))

@@ -35,6 +35,14 @@ class Wishes(EditorWishes):
     desk: Desk
     loading: Loading
 
+    def on_descendant_focus(self) -> None:
+        """Other keys may work now."""
+        self.call_later(cast("Lab", self).situation_changed)
+
+    def on_descendant_blur(self) -> None:
+        """Other keys may work now."""
+        self.call_later(cast("Lab", self).situation_changed)
+
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """The robot was dragged with the mouse; in the past it is asked only at the end what is to come of that."""
         if message.done or not self.bridge.in_past:

@@ -24,7 +24,8 @@ class EditorWishes(App[None]):
     desk: Desk
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
-        """While one types, a panel of a few lines has the whole place."""
+        """While one types, a panel of a few lines has the whole place, and the footer tells the editor's keys."""
+        cast("Lab", self).situation_changed()
         if not message.typing:
             self.desk.give_all("")
         elif self.desk.code and self.desk.code.size.height < ROOMY_ROWS:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeAlias
 
 from rich.style import Style
@@ -100,7 +101,9 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
 
 
 def _where(view: DebugView, paused: Paused, width: int) -> Line:
-    at = f"{paused.file}:{paused.line}" if paused.file else f"line {paused.line}" if paused.line else "no line"
+    at = f"line {paused.line}" if paused.line else "no line"
+    if paused.file:
+        at += f" of {Path(paused.file).name}"
     text = f"{at} · {paused.time_ns / 1e9:.2f} s · tick {paused.tick}"
     tail = " …" if view.busy else " past" if view.past else ""
     return [(_cut(text, width - len(tail)), _HEAD), (tail, _CHANGED)]
@@ -128,8 +131,9 @@ def _stack(looked: Looked, width: int) -> list[Line]:
         return []
     lines: list[Line] = [[("Calls", _HEAD)]]
     for at, frame in enumerate(looked.stack):
-        where = f"{frame.file}:{frame.line}" if frame.file else f"{frame.line}"
-        name = "program" if frame.function == "<module>" else f"{frame.function}()"
+        where = f"{frame.line} of {Path(frame.file).name}" if frame.file else f"{frame.line}"
+        module = "module" if frame.file else "program"
+        name = module if frame.function == "<module>" else f"{frame.function}()"
         style = _CHOSEN if at == looked.frame else _PLAIN
         lines.append([(_cut(f"{'▸' if at == looked.frame else ' '} {name} line {where}", width), style)])
     return lines
