@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,14 +62,19 @@ class BandReport:
     total: int
 
 
-def band_report(log: Log, name: str) -> BandReport:
+def band_report(log: Log, name: str, search: Callable[[FloatArray], list[Plateau]] = plateaus) -> BandReport:
     """Return the bands of a variable.
+
+    Args:
+        log: Where it is.
+        name: Of the variable.
+        search: What finds its plateaus.
 
     Raises:
         LogError: there is no such variable.
     """
     series = log.series(name)
-    found = plateaus(series.values)
+    found = search(series.values)
     driven = driven_mm(log, series)
     scale, noise = light_scale(series.values), light_noise(log.metadata, series.run)
     bands = tuple(_band(series, number, plateau, driven, scale, noise) for number, plateau in enumerate(found, 1))

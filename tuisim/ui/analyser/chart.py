@@ -186,7 +186,7 @@ def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
         if stop_s > start_s:
             slope = (after - before) / (model.cursor_s - model.mark_s)
             line += [("  slope ", plain), (f"{slope:.4g}/{unit}", strong)]
-    figures = summary_of(trace.pyramid.between(start_s, stop_s)[1])
+    figures = summary_of(trace.pyramid.between(start_s, stop_s)[1], quantiles=())
     for word, value in (("n", figures.count), ("mean", figures.mean), ("std", figures.std), ("min", figures.min),
                         ("max", figures.max)):  # fmt: skip
         text = f"{value:.5g}"

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.datalog.analysis.logbands import Band, BandReport, band_report
+from tuisim.datalog.analysis.bands import Plateau, plateaus
+from tuisim.datalog.analysis.logbands import Band, BandReport, band_report, in_words
 from tuisim.datalog.analysis.signals import value_at
 from tuisim.datalog.analysis.statistics import Summary, summary_of
 from tuisim.datalog.arrays import FloatArray
@@ -58,6 +59,8 @@ class Model:
         self.alignment = TIME
         """How runs are laid over each other."""
         self._reports: dict[str, BandReport] = {}
+        self._words: dict[str, str] = {}
+        """What was found, in a sentence for each variable."""
         self._summaries: dict[str, Summary] = {}
         self._places = subject.notes_places()
         self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]
@@ -230,14 +233,19 @@ class Model:
         """Return the ticked variables whose bands have not been searched for."""
         return [trace.name for trace in self.traces.ticked() if trace.name not in self._reports]
 
-    def find_bands(self, names: Sequence[str]) -> None:
-        """Search variables for bands. Slow for a long log: call it in a thread."""
+    def find_bands(self, names: Sequence[str], search: Callable[[FloatArray], list[Plateau]] = plateaus) -> None:
+        """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
         for name in names:
-            self._reports[name] = band_report(self.log, name)
+            report = band_report(self.log, name, search)
+            self._words[name], self._reports[name] = in_words(report), report
 
     def reports(self) -> list[BandReport]:
         """Return what was found in the ticked variables."""
         return [self._reports[trace.name] for trace in self.traces.ticked() if trace.name in self._reports]
+
+    def bands_in_words(self) -> list[str]:
+        """Return what was found in the ticked variables, a sentence each."""
+        return [self._words[report.variable] for report in self.reports()]
 
     def bands(self) -> list[Band]:
         """Return the bands of the ticked variables, as far as they were searched for."""

@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from typing import overload
 
 from rich.style import Style
 
-from tuisim.datalog.analysis.logbands import in_words
+from tuisim.datalog.analysis.logbands import Band
 from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.cellview import Run
@@ -27,6 +28,8 @@ CHOSEN = Style(color="#ffd75f", bold=True)
 _WIDEST = 28
 _SAMPLED = 40
 """Rows of a table that decide how wide a column is, besides those that are seen."""
+_MEASURED = 1000
+"""In another pane of more rows, those that are seen decide it."""
 
 EMPTY = (
     "This log is empty. To log a value, print it with a name:",
@@ -52,18 +55,28 @@ def _figure(value: float, digits: str = ".4g") -> str:
     return f"{value:{digits}}" if isfinite(value) else "–"
 
 
-def _bands(model: Model) -> list[Cells]:
-    return [
-        (
-            band.variable, str(band.number), f"{band.true_level:.2f}", band.grey or "–", f"{band.start_s:.2f}",
-            f"{band.stop_s:.2f}", str(band.samples), _figure(band.width_mm, ".0f"), f"{band.spread:.2f}",
-        )
-        for band in model.bands()
-    ]  # fmt: skip
+class _Bands(Sequence[Cells]):
+    """The rows of bands, each made when it is looked at: a long log has a hundred thousand of them."""
+
+    def __init__(self, bands: Sequence[Band]) -> None:
+        self._bands = bands
+
+    def __len__(self) -> int:
+        return len(self._bands)
+
+    @overload
+    def __getitem__(self, at: int) -> Cells: ...
+    @overload
+    def __getitem__(self, at: slice) -> Sequence[Cells]: ...
+    def __getitem__(self, at: int | slice) -> Cells | Sequence[Cells]:
+        return _Bands(self._bands[at]) if isinstance(at, slice) else _band(self._bands[at])
 
 
-def _bands_in_words(model: Model) -> list[str]:
-    return [in_words(report) for report in model.reports()]
+def _band(band: Band) -> Cells:
+    return (
+        band.variable, str(band.number), f"{band.true_level:.2f}", band.grey or "–", f"{band.start_s:.2f}",
+        f"{band.stop_s:.2f}", str(band.samples), _figure(band.width_mm, ".0f"), f"{band.spread:.2f}",
+    )  # fmt: skip
 
 
 def _statistics(model: Model) -> list[Cells]:
@@ -103,8 +116,9 @@ def _runs(model: Model) -> list[Cells]:
 PANES: Mapping[str, Pane] = {
     "table": Pane("Table", lambda _: (), ()),
     "bands": Pane(
-        "Bands", _bands, ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
-        _bands_in_words, "No band: no ticked variable keeps a level",
+        "Bands", lambda model: _Bands(model.bands()),
+        ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
+        Model.bands_in_words, "No band: no ticked variable keeps a level",
     ),
     "statistics": Pane(
         "Statistics", _statistics,
@@ -145,8 +159,9 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     below = _wrapped(pane.below(model), width)[: max(0, height // 3)]
     room = max(height - 1 - len(below), 1)
     first = _first(chosen, len(rows), room)
-    widths = [max(map(len, column)) for column in zip(pane.heads, *rows, strict=True)]
-    used = [at for at in range(len(widths)) if any(row[at] for row in rows)]
+    measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
+    widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
+    used = [at for at in range(len(widths)) if any(row[at] for row in measured)]
     lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], HEAD)]
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN

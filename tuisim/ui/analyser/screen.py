@@ -15,7 +15,9 @@ from textual.binding import Binding, BindingType
 from textual.command import Provider
 from textual.containers import Horizontal, Vertical
 from textual.screen import ModalScreen
+from textual.worker import get_current_worker
 
+from tuisim.datalog.analysis.aside import plateaus_aside
 from tuisim.errors import TuisimError
 from tuisim.ui.analyser.actions import ACTIONS
 from tuisim.ui.analyser.beside import Beside
@@ -181,10 +183,16 @@ class Analyser(ModalScreen[None]):
             model.find_bands(names)
             return
         self._searching = model
-        self.run_worker(partial(self._search_bands, model, names), thread=True, group="bands")
+        self.run_worker(partial(self._search_bands, model, names), thread=True, group="bands", exclusive=True)
 
     def _search_bands(self, model: Model, names: list[str]) -> None:
-        model.find_bands(names)
+        worker = get_current_worker()
+        try:
+            model.find_bands(names, partial(plateaus_aside, stopped=lambda: worker.is_cancelled))
+        except TuisimError as error:
+            if not worker.is_cancelled:
+                self.app.call_from_thread(self.complain, error)
+            return
         self.app.call_from_thread(self._found_bands)
 
     def _found_bands(self) -> None:

@@ -1,0 +1,23 @@
+"""The search for bands in a process of its own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.datalog.analysis.aside import plateaus_aside
+from tuisim.datalog.analysis.bands import plateaus
+from tuisim.errors import LogError
+
+
+def test_finds_the_same_as_here() -> None:
+    rng = np.random.default_rng(4)
+    values = np.repeat(rng.uniform(0.0, 100.0, 30), 40) + rng.normal(0.0, 0.3, 1200)
+    values[[3, 700]] = np.nan, 500.0
+    assert plateaus_aside(values, lambda: False) == plateaus(values) != []
+
+
+def test_ends_when_nobody_waits_for_it() -> None:
+    values = np.random.default_rng(4).integers(0, 5, 2_000_000).astype(np.float64)
+    with pytest.raises(LogError, match="stopped"):
+        plateaus_aside(values, lambda: True)
