@@ -200,6 +200,8 @@ BAD = {
     "no such folder": (("{log}", "--out", "gone/x.html"), "there is no folder gone"),
     "no such variable": (("{log}", "--variable", "up"), "no variable 'up'"),
     "no numbers": (("{words}",), "no column of numbers"),
+    "telemetry of two": (("1", "2", "--telemetry"), "takes one run"),
+    "columns of a run": (("1", "--time", "x"), "are for files"),
     "as JSON": (("{log}", "--json"), "does not take --json"),
     "an option of another": (("{log}", "--facets"), "does not take --facets"),
 }

@@ -9,7 +9,6 @@ from xml.etree import ElementTree
 
 import pandas as pd
 import pytest
-from PIL import Image
 from textual.pilot import Pilot
 from textual.widgets import Input, Static
 
@@ -56,18 +55,16 @@ async def ready(pilot: Pilot[Any]) -> Analyser:
 
 BAD = (
     ("S", "c.gif", "a chart ends in .svg, .png, .txt"),
-    ("S", "", "which file?"),
-    ("E", "r.pdf", "a report ends in .html"),
     ("E", "gone/r.html", "there is no folder"),
 )
 
 
 async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) -> None:
-    svg, text, png, page, rows = (tmp_path / name for name in ("c.svg", "c.txt", "c.png", "r.html", "rows.jsonl"))
+    svg, text, page, rows = (tmp_path / name for name in ("c.svg", "c.txt", "r.html", "rows.jsonl"))
     async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
         screen = await ready(pilot)
         for key, name, wrong in BAD:
-            assert wrong in await answered(pilot, key, tmp_path / name if name else "")
+            assert wrong in await answered(pilot, key, tmp_path / name)
             await pilot.press("escape")
             await ready(pilot)
         assert list(tmp_path.iterdir()) == []
@@ -75,7 +72,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
         await answered(pilot, "e", rows)
         # Earlier halves of the time are zoomed away: the chart as shown begins later.
         await pilot.press("end", "z", "z")
-        for target in (svg, text, png):
+        for target in (svg, text):
             await answered(pilot, "S", target)
         assert screen.model is not None and screen.model.limits is not None
         first_s = screen.model.limits[0]
@@ -89,6 +86,4 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
     assert ticks and min(ticks) >= first_s > 1.0
     lines = text.read_text().splitlines()
     assert max(map(len, lines)) <= 80 and any("Colour" in line for line in lines)
-    with Image.open(png) as picture:
-        assert picture.size == (960, 420)
     assert "100.00 white" in page.read_text() and "<h2>Program prog.py</h2>" in page.read_text()

@@ -29,6 +29,8 @@ def report(arguments: Namespace) -> int:
     what = asked(arguments)
     if arguments.telemetry and len(what.runs) > 1:
         raise ConfigError("takes one run", f"got {len(what.runs)}", key="--telemetry")
+    if what.runs and (arguments.time is not None or arguments.value):
+        raise ConfigError("are for files", "what a run recorded is known", key="--time and --value")
     wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value))
     *_, subject = opening(wanted)
     names = names_of(subject.log, arguments) if arguments.variable else ()
