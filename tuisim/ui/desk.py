@@ -162,9 +162,9 @@ class Desk(Container):
 
     def show_plan(self, plan: Plan) -> None:
         """Let the panels that edit the plan of the next run show it, on the screen or not."""
-        for panel in ("settings", "obstacles"):
-            if widget := self.panels.get(panel):
-                cast(PlanPanel, widget).show_plan(plan)
+        for widget in self.panels.values():
+            if isinstance(widget, PlanPanel):
+                widget.show_plan(plan)
 
     def ensure(self, *panels: str) -> None:
         """Make panels that are to be fed from the start, shown or not."""

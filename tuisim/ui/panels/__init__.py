@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import ClassVar, Protocol, cast
+from typing import ClassVar, Protocol, cast, runtime_checkable
 
 from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import Snapshot
@@ -32,6 +32,7 @@ class Panel(Protocol):
         """Show a moment; nearly free if nothing changed."""
 
 
+@runtime_checkable
 class PlanPanel(Protocol):
     """What a panel has besides that edits the plan of the next run."""
 
