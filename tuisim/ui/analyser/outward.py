@@ -6,6 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from textual.worker import get_current_worker
+
 from tuisim.errors import LogError, TuisimError
 from tuisim.ui.analyser.asking import Asking
 
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
     from tuisim.ui.analyser.screen import Analyser
     from tuisim.ui.analyser.subject import Subject
 
+_MANY_ROWS = 20_000
+"""A search for bands in more of them would hold up the keys."""
 _CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it stands here"))
 _REPORTS = (("run-report.html", "program, world, chart, bands, statistics and notes on one page"),)
 
@@ -64,12 +68,18 @@ def _file(text: str, hint: str) -> Path:
 
 
 def _write(screen: Analyser, subject: Subject, target: Path, names: Sequence[str]) -> None:
-    """Write the report, beside the screen: the bands of a long log take a while."""
+    """Write the report, beside the screen."""
+    from tuisim.datalog.analysis.aside import plateaus_aside
+    from tuisim.datalog.analysis.bands import plateaus
     from tuisim.ui.paper.report import write_report
 
+    worker = get_current_worker()
+    aside = partial(plateaus_aside, stopped=lambda: worker.is_cancelled)
     try:
-        write_report(subject, target, names)
+        write_report(subject, target, names, aside if subject.log.rows > _MANY_ROWS else plateaus)
     except TuisimError as error:
+        if worker.is_cancelled:
+            return
         screen.app.call_from_thread(screen.complain, error)
     else:
         screen.app.call_from_thread(screen.say, f"The report is in {target}")

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim.datalog.analysis.logbands import in_words
+from tuisim.datalog.analysis.bands import Plateau, plateaus
 from tuisim.datalog.analysis.statistics import QUANTILES
+from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.export import check_place
 from tuisim.errors import ExportError, LogError
 from tuisim.ui.paper.chart import Chart, Span, View, chart_of
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from tuisim.ui.analyser.model import Model
     from tuisim.ui.analyser.subject import Subject
 
+Search = Callable[[FloatArray], list[Plateau]]
 SUFFIXES = (".html", ".htm")
 MOST_BANDS = 300
 """Rows of the table of bands; what has more of them has none that a reader could use."""
@@ -49,13 +51,14 @@ def check_report(path: Path) -> None:
     check_place(path)
 
 
-def write_report(subject: Subject, path: Path, names: Sequence[str] = ()) -> None:
+def write_report(subject: Subject, path: Path, names: Sequence[str] = (), search: Search = plateaus) -> None:
     """Write the report of a log; a file that is there is replaced.
 
     Args:
         subject: The log, and its runs if they are in the store.
         path: Where to.
         names: Variables of chart and bands, none for those that the analyser shows first.
+        search: Finds the bands; `analysis.aside` has one that leaves the other threads their time.
 
     Raises:
         ExportError: the file cannot be written; what was there is as it was.
@@ -63,14 +66,14 @@ def write_report(subject: Subject, path: Path, names: Sequence[str] = ()) -> Non
     """
     check_report(path)
     # A program may hold any characters, also halves of pairs, which `clean` has replaced.
-    write_whole(path, report_of(subject, names).encode())
+    write_whole(path, report_of(subject, names, search).encode())
 
 
-def report_of(subject: Subject, names: Sequence[str] = ()) -> str:
+def report_of(subject: Subject, names: Sequence[str] = (), search: Search = plateaus) -> str:
     """Return the page.
 
     Args:
-        subject, names: As for `write_report`.
+        subject, names, search: As for `write_report`.
 
     Raises:
         LogError: as `write_report`.
@@ -81,7 +84,7 @@ def report_of(subject: Subject, names: Sequence[str] = ()) -> str:
     model = Model(subject)
     for trace in model.traces:
         trace.on = trace.name in names if names else trace.on
-    model.find_bands(model.unsearched())
+    model.find_bands(model.unsearched(), search)
     log = subject.log
     runs = subject.runs
     body = [
@@ -151,7 +154,8 @@ def _number(value: float, how: str) -> str:
 
 def _bands(model: Model) -> list[str]:
     heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
-    parts = [paragraph(in_words(report)) for report in model.reports() if report.bands]
+    told = zip(model.reports(), model.bands_in_words(), strict=True)
+    parts = [paragraph(words) for report, words in told if report.bands]
     bands = model.bands()
     rows = [
         [
