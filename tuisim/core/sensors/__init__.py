@@ -1,8 +1,9 @@
 """Sensors: one file a kind, and the table of kinds.
 
-To add a sensor: write its file (a frozen spec in `core.spec`, a pure function from an
-`Instant` to values), and add a line to `SENSORS`. The telemetry frame, the panels and
-the contract test walk the table.
+To add a sensor: write its frozen spec (`core.parts`), say where a robot keeps it (`MOUNTS` in
+`core.spec`), write its file, pure functions from an `Instant` to values, and add a line to
+`SENSORS`; its device is a line in `shim.building.DEVICES`. Robot files, settings, breaks, the
+telemetry frame, the panels and the contract test walk these tables.
 """
 
 from __future__ import annotations
