@@ -59,6 +59,8 @@ class Model:
         self.alignment = TIME
         """How runs are laid over each other."""
         self._reports: dict[str, BandReport] = {}
+        self._reported: tuple[list[BandReport], list[Band]] = ([], [])
+        """The bands of the reports that were last asked for."""
         self._words: dict[str, str] = {}
         """What was found, in a sentence for each variable."""
         self._summaries: dict[str, Summary] = {}
@@ -247,9 +249,12 @@ class Model:
         """Return what was found in the ticked variables, a sentence each."""
         return [self._words[report.variable] for report in self.reports()]
 
-    def bands(self) -> list[Band]:
+    def bands(self) -> Sequence[Band]:
         """Return the bands of the ticked variables, as far as they were searched for."""
-        return [band for report in self.reports() for band in report.bands]
+        reports = self.reports()
+        if reports != self._reported[0]:
+            self._reported = reports, [band for report in reports for band in report.bands]
+        return self._reported[1]
 
     def summary(self, name: str) -> Summary:
         """Return the figures of a variable, reckoned once."""

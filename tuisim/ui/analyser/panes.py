@@ -156,7 +156,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     if not rows:
         searching = name == "bands" and model.unsearched()
         return [[("The bands are being searched for …" if searching else pane.empty, DIM)]]
-    below = _wrapped(pane.below(model), width)[: max(0, height // 3)]
+    below = _wrapped(pane.below(model), width, max(0, height // 3))
     room = max(height - 1 - len(below), 1)
     first = _first(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
@@ -185,10 +185,12 @@ def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:
     return [("  ".join(parts), style)]
 
 
-def _wrapped(texts: Sequence[str], width: int) -> list[str]:
+def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
+    """The first lines of texts; only as much of each is wrapped as can be seen."""
     from textwrap import wrap
 
-    return [line for text in texts for line in wrap(text, max(width, 10), subsequent_indent="  ")]
+    seen = (text[: (most + 1) * max(width, 10)] for text in texts)
+    return [line for text in seen for line in wrap(text, max(width, 10), subsequent_indent="  ")][:most]
 
 
 def table_lines(model: Model, width: int, height: int) -> list[Line]:
