@@ -16,7 +16,7 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tuisim.cli import run_command
-from tuisim.commands.log import SUBCOMMANDS
+from tuisim.commands.log import OPTIONS, SUBCOMMANDS, Subcommand
 
 FIVE = (100.0, 86.27450980392157, 82.74509803921568, 50.19607843137255, 0.0)
 ORDER = ("white", "pale grey", "white", "light grey", "white", "grey", "white", "black")
@@ -135,6 +135,16 @@ def test_help_lists_every_subcommand(capsys: pytest.CaptureFixture[str]) -> None
         run_command(["log", "--help"])
     said = capsys.readouterr().out
     assert all(f"  {name} " in said for name in SUBCOMMANDS)
+
+
+@pytest.mark.parametrize("entry", SUBCOMMANDS.values(), ids=SUBCOMMANDS)
+def test_a_subcommand_is_there_and_its_options_are_declared(entry: Subcommand) -> None:
+    assert (entry.load().__doc__ or "").strip()
+    assert set(entry.options) <= set(OPTIONS)
+
+
+def test_no_option_is_declared_for_nothing() -> None:
+    assert {option for entry in SUBCOMMANDS.values() for option in entry.options} == set(OPTIONS)
 
 
 def test_empty_run_says_how_to_log(here: Command, tmp_path: Path) -> None:

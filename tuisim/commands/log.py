@@ -6,9 +6,10 @@ To add a subcommand: write its function in `commands/logs/` and add a line to `S
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
+from typing import Any, cast
 
 from tuisim.errors import ConfigError
 from tuisim.switches import SwitchParser, nearest
@@ -25,7 +26,12 @@ class Subcommand:
     path: str
     """Module in `commands/logs`, and function; imported when it is asked for."""
     options: tuple[str, ...] = ()
-    """Its options besides `COMMON`."""
+    """Its options besides `COMMON`, from `OPTIONS`."""
+
+    def load(self) -> Callable[[Namespace], int]:
+        """Import the function."""
+        module, _, function = self.path.partition(":")
+        return cast("Callable[[Namespace], int]", getattr(import_module(f"tuisim.commands.logs.{module}"), function))
 
 
 SUBCOMMANDS: Mapping[str, Subcommand] = {
@@ -45,10 +51,21 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
 }
 """What `tuisim log` does, by name."""
 
-_DEFAULTS: Mapping[str, object] = {
-    "at": None, "hysteresis": 0.0, "between": "hold", "width": 5, "period": None, "expression": "",
-    "facets": False, "marks": False, "from": None, "to": None, "against": "", "size": "",
-}  # fmt: skip
+OPTIONS: Mapping[str, Mapping[str, Any]] = {
+    "at": {"type": float, "metavar": "VALUE", "help": "threshold of events"},
+    "hysteresis": {"type": float, "default": 0.0, "metavar": "VALUE", "help": "events: how far beyond counts"},
+    "between": {"choices": ("hold", "linear"), "default": "hold", "help": "what a signal is between samples"},
+    "width": {"type": int, "default": 5, "metavar": "N", "help": "samples of an average, odd"},
+    "period": {"type": float, "metavar": "S", "help": "seconds between rows of resample"},
+    "expression": {"default": "", "metavar": "TEXT", "help": "such as '(left + right) / 2', see README"},
+    "facets": {"action": "store_true", "default": False, "help": "plot: a chart for each variable"},
+    "marks": {"action": "store_true", "default": False, "help": "plot: points instead of lines"},
+    "from": {"type": float, "metavar": "S", "help": "plot: first second shown"},
+    "to": {"type": float, "metavar": "S", "help": "plot: last second shown"},
+    "against": {"default": "", "metavar": "NAME", "help": "plot: over this variable or column, not time"},
+    "size": {"default": "", "metavar": "WxH", "help": "plot: in pixels, of text in characters"},
+}
+"""Options that only some subcommands take, by name: how they are declared."""
 
 
 def add_arguments(parser: SwitchParser) -> None:
@@ -83,20 +100,8 @@ def add_arguments(parser: SwitchParser) -> None:
         metavar="FILE",
         help="write the result: .csv, .parquet, .jsonl, .arrow; of plot .svg, .png, .txt; of report .html",
     )
-    parser.add_argument("--at", type=float, metavar="VALUE", help="threshold of events")
-    parser.add_argument("--hysteresis", type=float, default=0.0, metavar="VALUE", help="events: how far beyond counts")
-    parser.add_argument(
-        "--between", choices=("hold", "linear"), default="hold", help="what a signal is between samples"
-    )
-    parser.add_argument("--width", type=int, default=5, metavar="N", help="samples of an average, odd")
-    parser.add_argument("--period", type=float, metavar="S", help="seconds between rows of resample")
-    parser.add_argument("--expression", default="", metavar="TEXT", help="such as '(left + right) / 2', see README")
-    parser.add_argument("--facets", action="store_true", help="plot: a chart for each variable")
-    parser.add_argument("--marks", action="store_true", help="plot: points instead of lines")
-    parser.add_argument("--from", type=float, metavar="S", help="plot: first second shown")
-    parser.add_argument("--to", type=float, metavar="S", help="plot: last second shown")
-    parser.add_argument("--against", default="", metavar="NAME", help="plot: over this variable or column, not time")
-    parser.add_argument("--size", default="", metavar="WxH", help="plot: in pixels, of text in characters")
+    for option, declared in OPTIONS.items():
+        parser.add_argument(f"--{option}", **declared)
 
 
 def execute(arguments: Namespace) -> int:
@@ -110,9 +115,8 @@ def execute(arguments: Namespace) -> int:
     entry = SUBCOMMANDS.get(arguments.action)
     if entry is None:
         raise ConfigError(f"no such subcommand {arguments.action!r}", nearest(arguments.action, SUBCOMMANDS), key="log")
-    for option, default in _DEFAULTS.items():
-        if option not in entry.options and getattr(arguments, option) != default:
+    for option, declared in OPTIONS.items():
+        if option not in entry.options and getattr(arguments, option) != declared.get("default"):
             takes = " ".join(f"--{name}" for name in (*entry.options, *COMMON))
             raise ConfigError(f"does not take --{option}", f"it takes {takes}", key=arguments.action)
-    module, _, function = entry.path.partition(":")
-    return int(getattr(import_module(f"tuisim.commands.logs.{module}"), function)(arguments))
+    return entry.load()(arguments)
