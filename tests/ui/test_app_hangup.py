@@ -52,9 +52,13 @@ class Broken(io.StringIO):
 def test_more_than_the_queue_holds_is_written_to_a_terminal_that_is_gone() -> None:
     writer = WriterThread(cast(TextIO, Outlasting(Broken())))
     writer.start()
-    done = Thread(
-        target=lambda: [writer.write("x") for _ in range(2 * MAX_QUEUED_WRITES)] and writer.stop(), daemon=True
-    )
+
+    def fill() -> None:
+        for _ in range(2 * MAX_QUEUED_WRITES):
+            writer.write("x")
+        writer.stop()
+
+    done = Thread(target=fill, daemon=True)
     done.start()
     done.join(PATIENCE_S)
     assert not done.is_alive()
