@@ -7,10 +7,14 @@ import select
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 PATIENCE_S = 0.2
 """How long a full command pipe is waited for: a child that listens empties it at once."""
+
+STACK_WRITTEN_WITHIN_S, LOOK_AGAIN_S = 0.1, 0.003
+"""How long a stuck child may take to write its stack on a busy machine, and how often it is looked for."""
 
 
 def start_child(folder: Path) -> tuple[subprocess.Popen[bytes], int, int, int]:
@@ -70,6 +74,16 @@ def write_command(fd: int, data: bytes) -> bool:
             if not select.select([], [fd], [], PATIENCE_S)[1]:
                 return False
     return True
+
+
+def await_stack(folder: Path) -> None:
+    """Wait until a stuck child has written its stack; not long, for one that is beyond that never will."""
+    give_up, size, path = time.monotonic() + STACK_WRITTEN_WITHIN_S, 0, folder / "stack.txt"
+    while time.monotonic() < give_up:
+        time.sleep(LOOK_AGAIN_S)
+        before, size = size, path.stat().st_size if path.exists() else 0
+        if size and size == before:
+            return
 
 
 def stuck_line(folder: Path, program_file: str) -> int:

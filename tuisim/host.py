@@ -16,7 +16,7 @@ from typing import Any
 
 from tuisim import assets
 from tuisim.breaks import parse_breaks
-from tuisim.child import start_child, stuck_line, what_ended, write_command
+from tuisim.child import await_stack, start_child, stuck_line, what_ended, write_command
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView
@@ -308,7 +308,7 @@ class RunHandle:
             # faulthandler writes the stack even from inside a C call, within this one signal.
             self._stack_asked = self._stop_at is None
             self._signal(signal.SIGUSR2)
-            time.sleep(0.005)
+            await_stack(self.folder)
         self._kill_group()
 
     def _signal(self, number: int) -> None:

@@ -51,17 +51,17 @@ class Broken(io.StringIO):
 
 def test_more_than_the_queue_holds_is_written_to_a_terminal_that_is_gone() -> None:
     writer = WriterThread(cast(TextIO, Outlasting(Broken())))
-    writer.start()
 
-    def fill() -> None:
+    def leave() -> None:
         for _ in range(2 * MAX_QUEUED_WRITES):
             writer.write("x")
         writer.stop()
 
-    done = Thread(target=fill, daemon=True)
-    done.start()
-    done.join(PATIENCE_S)
-    assert not done.is_alive()
+    writer.start()
+    leaving = Thread(target=leave, daemon=True)
+    leaving.start()
+    leaving.join(PATIENCE_S)
+    assert not leaving.is_alive()
     assert not writer.is_alive()
 
 
