@@ -11,7 +11,6 @@ from tuisim.config import build_run_spec
 from tuisim.datalog.records import STDOUT
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
-from tuisim.datalog.views import TickRecord
 from tuisim.errors import ConfigError
 from tuisim.host import Program, RunOptions, start_run
 from tuisim.programfile import ProgramSource, program_of_text, read_program
@@ -67,16 +66,21 @@ class SimulatedRun:
 
     def picture(self) -> Image:
         """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
-        from tuisim.datalog.mats import mat_files
-        from tuisim.fields import mat_pixels
-        from tuisim.figures import world_picture
-
-        return world_picture(self.stored.spec, mat_pixels(mat_files(self.stored)), records_of(self.stored))
+        return world_at_end(self.stored)
 
 
-def records_of(run: StoredRun) -> list[TickRecord]:
-    """Return the telemetry of a run so far."""
-    return [TickRecord(*row) for row in run.telemetry.array().tolist()]
+def world_at_end(run: StoredRun) -> Image:
+    """Return the world as a run left it, or as it is by now, as a Pillow image.
+
+    Raises:
+        LogError: the recording is damaged, or the mat cannot be found any more.
+    """
+    from tuisim.datalog.mats import mat_files
+    from tuisim.fields import mat_pixels
+    from tuisim.figures import pen_trace, world_picture
+
+    last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
+    return world_picture(run.spec, mat_pixels(mat_files(run)), last.pose if last else None, (trace,))
 
 
 def _by_name() -> dict[str, Switch]:

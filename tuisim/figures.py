@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
+from dataclasses import dataclass
 from math import cos, radians, sin
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim.core.css import css_rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RunSpec
 from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.datalog.samples import Sample
-from tuisim.datalog.views import TickRecord
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,15 +44,54 @@ def _box(pose: Pose, left: float, back: float, right: float, front: float) -> li
     return [_at(*world_point(pose, x_mm, y_mm)) for x_mm, y_mm in corners]
 
 
+@dataclass(frozen=True, slots=True)
+class PenTrace:
+    """What the pen of a run has drawn."""
+
+    color: str
+    width_px: int
+    lines: tuple[tuple[Point, ...], ...]
+    """In pixels of the world's picture."""
+
+
+def pen_trace(spec: RunSpec, telemetry: NDArray[Any]) -> PenTrace:
+    """Return what the pen has drawn.
+
+    Args:
+        spec: What the run is made of.
+        telemetry: As from `datalog.views.TelemetryView.array`.
+    """
+    import numpy as np
+
+    pen = spec.robot.pen
+    # As `core.geometry.world_point`, for all ticks at once.
+    turn = np.radians(telemetry["heading_deg"] - 90.0)
+    x_mm = telemetry["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
+    y_mm = telemetry["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
+    points = np.stack([x_mm, FIELD_HEIGHT_MM - y_mm], axis=1) / MM_PER_PX
+    down = np.concatenate([[False], (telemetry["flags"] & FLAG_PEN_DOWN) != 0, [False]])
+    starts, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(~down[1:] & down[:-1])
+    lines = []
+    for start, end in zip(starts, ends, strict=True):
+        line = points[start:end]
+        moved = np.any(np.diff(np.round(line * 2), axis=0) != 0, axis=1)
+        # Most ticks bring the pen less than half a pixel on.
+        lines.append(tuple(map(tuple, line[np.concatenate([[True], moved])].tolist())))
+    width_px = max(1, round(pen.width_mm / MM_PER_PX))
+    return PenTrace(pen.color, width_px, tuple(line for line in lines if len(line) > 1))
+
+
 def world_picture(
-    spec: RunSpec, mat: NDArray[np.uint8], records: Sequence[TickRecord] = (), *, rays: bool = False
-) -> Image:
-    """Return mat, obstacles, pen trace and robot.
+    spec: RunSpec, mat: NDArray[np.uint8], pose: Pose | None = None, traces: Sequence[PenTrace] = (), *,
+    rays: bool = False,
+) -> Image:  # fmt: skip
+    """Return mat, obstacles, pen traces and robot.
 
     Args:
         spec: What the run is made of.
         mat: Shape (height, width, 3), rows from the top.
-        records: The run's telemetry until the moment that is shown; none: the robot at its start.
+        pose: Where the robot is, by default at its start.
+        traces: What pens have drawn.
         rays: Whether the ultrasonic sensor's rays are drawn.
     """
     from PIL import Image, ImageDraw
@@ -65,21 +103,14 @@ def world_picture(
         low = _at(box.x_mm, box.y_mm)
         high = _at(box.x_mm + box.width_mm, box.y_mm + box.height_mm)
         draw.rectangle((low[0], high[1], high[0], low[1]), fill=_OBSTACLE, outline=_WHEEL)
-    _draw_trace(draw, spec, records)
-    pose = records[-1].pose if records else spec.world.start
+    for trace in traces:
+        for line in trace.lines:
+            draw.line(line, fill=css_rgb(trace.color), width=trace.width_px)
+    pose = pose or spec.world.start
     if rays and spec.robot.ultrasonic is not None:
         _draw_rays(draw, spec, pose)
     _draw_robot(draw, spec, pose)
     return picture
-
-
-def _draw_trace(draw: ImageDraw, spec: RunSpec, records: Sequence[TickRecord]) -> None:
-    pen = spec.robot.pen
-    width_px = max(1, round(pen.width_mm / MM_PER_PX))
-    for before, after in pairwise(records):
-        if before.flags & after.flags & FLAG_PEN_DOWN:
-            ends = [_at(*world_point(record.pose, pen.x_mm, pen.y_mm)) for record in (before, after)]
-            draw.line(ends, fill=css_rgb(pen.color), width=width_px)
 
 
 def _draw_rays(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:

@@ -10,6 +10,10 @@ import pytest
 from IPython.core.displaypub import CapturingDisplayPublisher
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
+from jupyter_client.blocking.client import BlockingKernelClient
+from jupyter_client.manager import KernelManager, start_new_kernel
+
+from tests.conftest import ROOT
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,3 +63,43 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Cell]:
 
     yield run
     InteractiveShell.clear_instance()
+
+
+class Kernel:
+    """A real kernel, as Jupyter starts it."""
+
+    def __init__(self, manager: KernelManager, client: BlockingKernelClient) -> None:
+        self.manager, self.client = manager, client
+
+    def begin(self, text: str) -> str:
+        return str(self.client.execute(text))
+
+    def message(self, parent: str, wanted: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+        """Wait for a message of a cell."""
+        while True:
+            message: dict[str, Any] = self.client.get_iopub_msg(timeout=20)
+            if message["parent_header"].get("msg_id") == parent and wanted(message):
+                return message
+
+    def idle(self, parent: str) -> dict[str, Any]:
+        return self.message(parent, lambda m: m["content"].get("execution_state") == "idle")
+
+    def text(self, source: str) -> str:
+        """Run a cell and return what it printed."""
+        parent, text = str(self.client.execute(source, allow_stdin=False)), ""
+        while True:
+            message = self.message(parent, lambda _: True)
+            text += str(message["content"].get("text", ""))
+            if message["content"].get("execution_state") == "idle":
+                return text
+
+
+@pytest.fixture(scope="session")
+def kernel() -> Iterator[Kernel]:
+    manager, client = start_new_kernel(cwd=str(ROOT))
+    kernel = Kernel(manager, client)
+    kernel.idle(kernel.begin("%load_ext tuisim\n%sim_magic -b Grey_bands"))
+    kernel.idle(kernel.begin("%%sim_magic -RW\nprint('Colour: 1')"))
+    yield kernel
+    client.stop_channels()
+    manager.shutdown_kernel(now=True)

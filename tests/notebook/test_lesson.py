@@ -8,7 +8,6 @@ from nbclient import NotebookClient
 from nbformat.notebooknode import NotebookNode
 
 from tests.conftest import ROOT
-from tests.notebook.conftest import Cell
 
 LOGGER = """\
 import time
@@ -82,18 +81,6 @@ def test_the_lesson_runs_from_top_to_bottom() -> None:
     assert "Colour" in done["head"].outputs[0].data["text/plain"]
     assert stream(done["lineplot"]).strip() != "0"
     assert stream(done["grid"]) == "(1, 1)\n"
-
-
-def test_an_interrupt_stops_the_program_and_keeps_the_rest(cell: Cell) -> None:
-    # Jupyter interrupts with this signal; here it comes while the program runs, not before.
-    cell("from tuisim.notebook.magics import roboSim\nimport signal, time")
-    cell("def strike(text):\n    global struck\n    struck = time.monotonic()\n    signal.raise_signal(signal.SIGINT)")
-    cell("roboSim.responder = strike")
-    shown = cell("%%sim_magic_preloaded -RWL --speed 1\nprint('Colour: 1')\nprint('PY::now')\nwhile True:\n    pass\n")
-    assert cell("time.monotonic() - struck").result < 0.5
-    assert "stopped" in shown.plain
-    assert len(cell("%sim_data").result) == 1
-    assert cell("%%sim_magic -RW\nprint('next')\n").out == "next\n"
 
 
 @pytest.mark.slow

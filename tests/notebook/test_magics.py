@@ -182,12 +182,3 @@ def test_pixel_arrays_are_frames_and_pictures(cell: Cell) -> None:
     dark = cell("%sim_bw_image_data -i 0").result
     # The disc lies on the black band: its 305 pixels are dark, the corners are not.
     assert (dark.shape, int(dark.to_numpy().sum())) == ((20, 20), 305)
-
-
-def test_a_responder_hears_what_is_meant_for_it(cell: Cell) -> None:
-    cell("from tuisim.notebook.magics import roboSim\nheard = []\nroboSim.responder = heard.append")
-    text = "print('PY::hello')\nprint('other')\nprint('IMG_DATA left')"
-    cell(program("-RW", text))
-    assert cell("heard").result == []
-    cell(program("-RWL", text))
-    assert cell("heard").result == ["hello", "IMG_DATA left"]

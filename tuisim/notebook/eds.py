@@ -1,4 +1,7 @@
-"""What the runs of a notebook logged, as frames and pictures."""
+"""What the runs of a notebook logged, as frames and pictures.
+
+What these functions need is imported in them: a notebook loads this module whether it uses it or not.
+"""
 
 from __future__ import annotations
 
@@ -6,18 +9,16 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from tuisim.core.field import Field
-from tuisim.core.sensors.color import pixel_array
-from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
-from tuisim.datalog.mats import open_mat
-from tuisim.datalog.records import STDOUT
-from tuisim.datalog.runfile import StoredRun
-from tuisim.datalog.views import TickRecord, instant_of
 from tuisim.errors import LogError
 
 if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
+
+    from tuisim.core.field import Field
+    from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
+    from tuisim.datalog.runfile import StoredRun
+    from tuisim.datalog.views import TickRecord
 
 _IMAGE_LINE = re.compile(r"(?:IMG_DATA|image_data):?\s+(left|right|both)\s*")
 
@@ -52,6 +53,9 @@ def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
 
 
 def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, float]]:
+    from tuisim.datalog.mats import open_mat
+    from tuisim.datalog.records import STDOUT
+
     field: Field | None = None
     for row in run.output.rows():
         asked = _IMAGE_LINE.fullmatch(row.text) if row.stream == STDOUT else None
@@ -66,6 +70,9 @@ def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, flo
 
 def arrays_at(spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return what the colour sensors saw at a tick: RGB bytes, row by row."""
+    from tuisim.core.sensors.color import pixel_array
+    from tuisim.datalog.views import instant_of
+
     instant = instant_of(record, spec, noise)
     return [(sensor, pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors]
 

@@ -1,39 +1,27 @@
-"""The simulator of a notebook: the world that its cells set, the program, the runs and their log."""
+"""The simulator of a notebook: the world that its cells set, the program, the runs and their log.
+
+What runs and draws is imported by the first cell that needs it: a notebook loads all of this at once.
+"""
 
 from __future__ import annotations
 
-import sys
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tuisim.api import records_of
-from tuisim.config import build_run_spec
-from tuisim.core.spec import RunSpec
-from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
-from tuisim.datalog.runfile import StoredRun
-from tuisim.datalog.samples import samples_of
-from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
-from tuisim.fields import FieldFiles
-from tuisim.host import Program, RunHandle, RunOptions, field_files, start_run
-from tuisim.notebook import eds
-from tuisim.notebook.showing import Scene, Stage
-from tuisim.notebook.words import MagicWords, lasting_after
-from tuisim.protocol import Answer
-from tuisim.switches import Settings, settings_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-POLL_S = 0.02
-"""How long a printed line may wait before it is in the cell."""
-
-STOP_WAIT_S = 1.0
-FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
-"""What the lines begin with that are meant for the responder."""
-_SHOWN = {STDOUT, STDERR, SPEECH}
+    from tuisim.core.spec import RunSpec
+    from tuisim.datalog.runfile import StoredRun
+    from tuisim.fields import FieldFiles
+    from tuisim.figures import PenTrace
+    from tuisim.host import Program
+    from tuisim.notebook.showing import Scene, Stage
+    from tuisim.notebook.words import MagicWords
+    from tuisim.switches import Settings
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +45,17 @@ class Lab:
         self.autorun = False
         """Whether a program runs as soon as its cell is there, as with `-R`."""
         self.responder: Callable[[str], object] | None = None
-        """In collaborative mode: called with each line that a program prints for the notebook, `PY::` left out."""
+        """In collaborative mode: called with each line that a program prints for the notebook, `PY::` left out.
+
+        What it returns is an answer, unless it is None; `pyState()` in the program gets all of them.
+        """
         self._lasting: Mapping[str, Any] = {}
         self._program: Program | None = None
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
+        self._traces: tuple[PenTrace, ...] = ()
+        """What pens have drawn on the mat, until it is cleared or another one."""
 
     # The log
 
@@ -77,10 +70,14 @@ class Lab:
 
     def data(self) -> pd.DataFrame:
         """Return the samples of all runs since the log was cleared."""
+        from tuisim.notebook import eds
+
         return eds.get_dataframe_from_datalog(self._runs)
 
     def image_data(self) -> pd.DataFrame:
         """Return the pixel arrays that were logged since the log was cleared."""
+        from tuisim.notebook import eds
+
         return eds.get_image_data_from_datalog(self._runs)
 
     # The world
@@ -88,6 +85,9 @@ class Lab:
     @property
     def spec(self) -> RunSpec:
         """Robot, world, profile and seed as the cells have set them."""
+        from tuisim.config import build_run_spec
+        from tuisim.switches import settings_of
+
         return self._spec or build_run_spec(settings_of(self._lasting))
 
     @property
@@ -126,24 +126,33 @@ class Lab:
         Raises:
             ConfigError: a mat, robot, value or so is wrong, or there is no program to run.
         """
+        from tuisim.notebook.showing import Stage
+
         plan = self._checked(words, text, prelude)
         runs = plan.settings.autorun or (self.autorun and text is not None)
         if runs and plan.program is None:
             raise ConfigError("there is no program to run", "put one into a cell below %%sim_magic_preloaded", key="-R")
+        if words.collaborative and not (self.responder is None or callable(self.responder)):
+            raise ConfigError(f"must be a function, got {self.responder!r}", key="roboSim.responder")
         if plan.spec != self._spec or words.move_back:
             self._last = None
+        before = self._spec.world if self._spec else plan.spec.world
+        same_mat = (before.background, before.background_fit) == (
+            plan.spec.world.background, plan.spec.world.background_fit)  # fmt: skip
+        self._traces = self._traces if same_mat and not plan.settings.clear_trace else ()
         self._lasting, self._program, self._spec = plan.lasting, plan.program, plan.spec
         stage = Stage(plan.settings)
         if runs:
             self._run(plan, stage, words)
-            return
-        records = records_of(self._last) if self._last else ()
-        output = self._last.output.all_rows() if self._last else ()
-        loaded = plan.program.text if plan.program else ""
-        state = self._last.state if self._last else "ready: -R runs the program" if loaded else "ready"
-        stage.show(Scene(plan.spec, plan.files, loaded, records, output), state)
+        else:
+            stage.show(*self._scene(plan))
 
     def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _Plan:
+        from tuisim.config import build_run_spec
+        from tuisim.host import Program, field_files
+        from tuisim.notebook.words import lasting_after
+        from tuisim.switches import settings_of
+
         lasting = lasting_after(self._lasting, words.settings)
         settings = settings_of(lasting, words.settings)
         spec = build_run_spec(settings)
@@ -154,84 +163,39 @@ class Lab:
         return _Plan(lasting, settings, spec, field_files(spec), program)
 
     def _run(self, plan: _Plan, stage: Stage, words: MagicWords) -> None:
-        """Run to the end, or until the kernel is interrupted."""
+        from tuisim.figures import pen_trace
+        from tuisim.notebook.running import CellRun, run_cell
+
         assert plan.program is not None
-        speed = plan.settings.speed or 0.0
-        store = RunStore()
-        # Answers are taken in live runs only.
-        asks = "input" in plan.program.text
-        options = RunOptions(live=speed > 0 or asks, speed=speed, asks_user=asks)
-        handle = start_run(plan.program, plan.spec, options, store)
-        run = store.load_run(handle.run_id)
-        try:
-            self._follow(handle, _Screen(plan, stage, run, words.refresh_s), words.collaborative)
-        except KeyboardInterrupt:
-            # A second one must not leave a child behind; `close` kills it.
-            handle.stop()
-            handle.wait(STOP_WAIT_S)
-        finally:
-            handle.close()
-            self._last = store.load_run(handle.run_id)
-            self._runs.append(self._last)
-        _print_rows(handle.output.new_rows())
-        end = self._last.end
-        if end and end.error and not any(row.stream == STDERR for row in self._last.output.rows()):
-            print(end.error.rstrip("\n"), file=sys.stderr)
-        what = f": {end.summary}" if end and end.summary else ""
-        samples = sum(1 for _ in samples_of(self._last.output.rows()))
-        time_s = end.time_ns / 1e9 if end else 0.0
-        _Screen(plan, stage, self._last, 0.0).draw(f"{self._last.state}{what} · {time_s:.3f} s · {samples} samples")
+        responder = self.responder if words.collaborative else None
+        wanted = CellRun(
+            plan.program, plan.spec, plan.files, plan.settings.speed or 0.0, words.refresh_s, self._traces, responder,
+            plan.settings.quiet,
+        )  # fmt: skip
+        logged = len(self._runs)
 
-    def _follow(self, handle: RunHandle, screen: _Screen, collaborative: bool) -> None:
-        while handle.ended is None:
-            handle.wait_for_event(POLL_S)
-            handle.pump()
-            rows = handle.output.new_rows()
-            _print_rows(rows)
-            if collaborative and self.responder is not None:
-                for row in rows:
-                    if row.stream == STDOUT and row.text.startswith(FOR_THE_NOTEBOOK):
-                        self.responder(row.text.removeprefix(FOR_THE_NOTEBOOK[0]))
-            if handle.waiting_for_input is not None:
-                handle.send(Answer(_answer(handle.waiting_for_input)))
-            screen.draw_now_and_then()
+        def note(run: StoredRun) -> None:
+            # The log has it from its start, for a responder.
+            self._last, self._runs[logged:] = run, [run]
 
+        run = run_cell(wanted, stage, note)
+        self._traces = (*self._traces, pen_trace(run.spec, run.telemetry.array()))
 
-class _Screen:
-    """Draws a run while it goes on."""
+    def _scene(self, plan: _Plan) -> tuple[Scene, str]:
+        """What there is to show while nothing runs, and the line about it."""
+        from tuisim.datalog.records import TEXT_STREAMS, line_of
+        from tuisim.datalog.samples import samples_of
+        from tuisim.notebook.running import told_end
+        from tuisim.notebook.showing import Scene, start_record
 
-    def __init__(self, plan: _Plan, stage: Stage, run: StoredRun, refresh_s: float) -> None:
-        self._plan, self._stage, self._run, self._refresh_s = plan, stage, run, refresh_s
-        self._due = time.monotonic() + refresh_s
-
-    def draw_now_and_then(self) -> None:
-        """Draw if the last drawing is old."""
-        if time.monotonic() < self._due:
-            return
-        self.draw(f"running · {self._run.telemetry.count / self._run.spec.profile.tick_hz:.2f} s")
-        self._due = time.monotonic() + self._refresh_s
-
-    def draw(self, status: str) -> None:
-        """Draw the run as it is now."""
-        output = self._run.output.all_rows()
-        scene = Scene(self._plan.spec, self._plan.files, self._run.program.text, records_of(self._run), output)
-        self._stage.show(scene, status)
-
-
-def _print_rows(rows: list[OutputRow]) -> None:
-    for row in rows:
-        if row.stream in _SHOWN:
-            print(line_of(row), file=sys.stderr if row.stream == STDERR else sys.stdout)
-
-
-def _answer(prompt: str) -> str | None:
-    """Ask the person at the notebook; None where nobody can answer."""
-    from IPython.core.error import StdinNotImplementedError
-
-    try:
-        return input(prompt)
-    except (EOFError, StdinNotImplementedError):
-        return None
+        text, start = plan.program.text if plan.program else "", start_record(plan.spec)
+        if self._last is None:
+            return Scene(plan.spec, plan.files, text, start, self._traces, printed=()), (
+                "ready: -R runs the program" if text else "ready")  # fmt: skip
+        rows = self._last.output.all_rows()
+        printed = [line_of(row) for row in rows if row.stream in TEXT_STREAMS]
+        last, samples = self._last.telemetry.last() or start, list(samples_of(rows))
+        return Scene(plan.spec, plan.files, text, last, self._traces, samples, printed), told_end(self._last)
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so

@@ -1,4 +1,7 @@
-"""The magics of `%load_ext tuisim`: words in, one clear line if they are wrong."""
+"""The magics of `%load_ext tuisim`: words in, one clear line if they are wrong.
+
+Loading them is to cost next to nothing: what they need is imported by the first cell that needs it.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +12,11 @@ from functools import partial
 from typing import Any
 
 from IPython.core.interactiveshell import InteractiveShell
-from IPython.display import display
 
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds
 from tuisim.notebook.lab import Lab, roboSim
-from tuisim.notebook.showing import picture_bundle, table_bundle
-from tuisim.notebook.words import parse_line
 from tuisim.programfile import PRELUDES
-from tuisim.switches import SwitchParser, whole
 
 MAX_INDEX = 1_000_000
 
@@ -32,7 +31,10 @@ def _guarded(act: Handler) -> Callable[..., Any]:
             return act(line, cell)
         except TuisimError as error:
             print("tuisim:", " ".join(str(error).split("\n")), file=sys.stderr)
-            return None
+        except KeyboardInterrupt:
+            # One that comes during a run stops that run; this is one between two.
+            print("tuisim: interrupted; no program was running", file=sys.stderr)
+        return None
 
     return magic
 
@@ -51,6 +53,8 @@ def _lab(shell: InteractiveShell, name: str | None) -> Lab:
 
 def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
     def act(line: str, cell: str | None) -> None:
+        from tuisim.notebook.words import parse_line
+
         words = parse_line(line, magic)
         if words.help:
             print(words.help)
@@ -64,11 +68,15 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
 
 
 def _whole(flag: str, low: int, high: int, text: str) -> int:
+    from tuisim.switches import whole
+
     return whole(low, high)(text, flag)
 
 
 def _parsed(magic: str, line: str, *options: tuple[str, str, int, int]) -> Any:
     """Parse the words of a magic that reads the log: `--clear` or whole numbers, as (flag, long flag, least, most)."""
+    from tuisim.switches import SwitchParser
+
     parser = SwitchParser(prog=f"%{magic}", add_help=False, allow_abbrev=False)
     if not options:
         parser.add_argument("-c", "--clear", action="store_true")
@@ -91,6 +99,10 @@ def _sim_data(line: str, cell: str | None) -> Any:
 
 
 def _sim_robot_state(line: str, cell: str | None) -> dict[str, Any]:
+    from IPython.display import display
+
+    from tuisim.notebook.showing import table_bundle
+
     if line.split():
         raise ConfigError(f"takes no words, got {line.strip()!r}", key="%sim_robot_state")
     state = roboSim.state
@@ -99,6 +111,10 @@ def _sim_robot_state(line: str, cell: str | None) -> dict[str, Any]:
 
 
 def _sim_image_pair(line: str, cell: str | None) -> None:
+    from IPython.display import display
+
+    from tuisim.notebook.showing import picture_bundle
+
     index = _parsed("sim_image_pair", line, _INDEX).index
     for picture in eds.image_pair(roboSim.image_data(), -1 if index is None else index):
         display(picture_bundle(picture.resize((160, 160), 0), "sensor"), raw=True)

@@ -13,11 +13,10 @@ from IPython.display import DisplayHandle, display
 from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
-from tuisim.datalog.records import OutputRow
-from tuisim.datalog.samples import samples_of
+from tuisim.datalog.samples import Sample
 from tuisim.datalog.views import TickRecord, instant_of
 from tuisim.fields import FieldFiles, mat_pixels, open_field
-from tuisim.figures import arrays_picture, chart_picture, world_picture
+from tuisim.figures import PenTrace, arrays_picture, chart_picture, world_picture
 from tuisim.notebook.eds import arrays_at
 from tuisim.switches import Settings
 
@@ -56,17 +55,19 @@ class Scene:
     files: FieldFiles
     text: str
     """The program."""
-    records: Sequence[TickRecord] = ()
-    """The telemetry so far; none: nothing has run yet."""
-    output: Sequence[OutputRow] = ()
+    last: TickRecord
+    """The moment that is shown."""
+    traces: Sequence[PenTrace] = ()
+    """What pens have drawn on the mat by then."""
+    samples: Sequence[Sample] = ()
+    printed: Sequence[str] | None = None
+    """The lines of the last run, where they are not in the cell already."""
 
-    @property
-    def last(self) -> TickRecord:
-        """The moment that is shown."""
-        start = self.spec.world.start
-        return (
-            self.records[-1] if self.records else TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, *[0] * 7)
-        )
+
+def start_record(spec: RunSpec) -> TickRecord:
+    """Return the moment before anything has run."""
+    start = spec.world.start
+    return TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, *[0] * 7)
 
 
 def instrumentation(scene: Scene) -> list[Row]:
@@ -145,13 +146,16 @@ class Stage:
         """
         on, off, spec = self._settings.panels_on, self._settings.panels_off, scene.spec
         if "world" not in off:
-            picture = world_picture(spec, mat_pixels(scene.files), scene.records, rays=self._settings.rays)
+            mat, pose = mat_pixels(scene.files), scene.last.pose
+            picture = world_picture(spec, mat, pose, scene.traces, rays=self._settings.rays)
             self._put("world", picture_bundle(picture, "world"))
         if "arrays" in on:
             arrays = arrays_at(spec, scene.last, spec.world.noise, open_field(scene.files))
             self._put("arrays", picture_bundle(arrays_picture(arrays), "sensor arrays"))
         if "chart" in on:
-            self._put("chart", picture_bundle(chart_picture(samples_of(scene.output)), "chart"))
+            self._put("chart", picture_bundle(chart_picture(scene.samples), "chart"))
+        if "output" in on and scene.printed is not None:
+            self._put("output", {"text/plain": "\n".join(scene.printed) or "nothing was printed"})
         for panel, rows in _TABLES.items():
             if panel in on:
                 self._put(panel, table_bundle(panel.capitalize(), rows(scene)))

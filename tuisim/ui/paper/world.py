@@ -6,12 +6,10 @@ import base64
 import io
 from typing import TYPE_CHECKING
 
-from tuisim.api import records_of
+from tuisim.api import world_at_end
 from tuisim.core.spec import FIELD_HEIGHT_MM
 from tuisim.core.state import FLAG_PEN_DOWN
-from tuisim.datalog.mats import mat_files
-from tuisim.fields import mat_pixels
-from tuisim.figures import MM_PER_PX, world_picture
+from tuisim.figures import MM_PER_PX
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -29,7 +27,7 @@ def way_picture(run: StoredRun) -> Image:
     """
     from PIL import ImageDraw
 
-    picture = world_picture(run.spec, mat_pixels(mat_files(run)), records_of(run))
+    picture = world_at_end(run)
     records = run.telemetry.array()
     xs, ys = records["x_mm"] / MM_PER_PX, (FIELD_HEIGHT_MM - records["y_mm"]) / MM_PER_PX
     way = list(zip(xs.tolist(), ys.tolist(), strict=True))

@@ -1,0 +1,98 @@
+"""The kernel's interrupt, wherever it comes: the program stops, nothing is lost, the next cell works."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.notebook.conftest import Cell, Kernel
+from tuisim.notebook import running
+from tuisim.notebook.showing import Stage
+
+ENDLESS = "%%sim_magic_preloaded -RW --speed 1\nprint('Colour: 1')\nwhile True:\n    pass\n"
+
+
+def striking(act: Callable[..., Any]) -> Callable[..., Any]:
+    """Interrupt as Jupyter does, with its signal, right after a call."""
+
+    def acting(*words: Any, **named: Any) -> Any:
+        done = act(*words, **named)
+        signal.raise_signal(signal.SIGINT)
+        return done
+
+    return acting
+
+
+def check_that_all_is_well(cell: Cell) -> None:
+    frame = cell("%sim_data").result
+    assert list(frame[frame.run == 1].value) == [1.0]
+    assert cell("%%sim_magic -RW\nprint('next')\n").out == "next\n"
+    assert cell("%sim_robot_state").result["x_mm"] == 700
+
+
+@pytest.mark.parametrize(
+    ("holder", "name"),
+    [
+        pytest.param(running, "start_run", id="as it starts"),
+        pytest.param(running, "show_rows", id="among its lines"),
+        pytest.param(Stage, "show", id="in the display"),
+    ],
+)
+def test_an_interrupt_stops_the_program(holder: Any, name: str, cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+    cell("%sim_magic -b Grey_bands -x 700 -W")
+    cell("%%sim_magic -RW\nprint('Colour: 1')\n")
+    with monkeypatch.context() as patch:
+        patch.setattr(holder, name, striking(getattr(holder, name)))
+        shown = cell(f"{ENDLESS.replace('-RW', '-RWF 0.02')}")
+    assert "stopped · " in shown.plain
+    check_that_all_is_well(cell)
+
+
+def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
+    cell("%sim_magic -b Grey_bands -x 700 -W")
+    cell("import signal, time\ndef strike(text):\n    global struck\n    struck = time.monotonic()\n"
+         "    signal.raise_signal(signal.SIGINT)\n    time.sleep(60)\nroboSim.responder = strike")  # fmt: skip
+    shown = cell(ENDLESS.replace("-RW", "-RWL").replace("while", "print('PY::now')\nwhile"))
+    assert cell("time.monotonic() - struck").result < 0.5
+    assert "stopped" in shown.plain
+    check_that_all_is_well(cell)
+
+
+def test_an_interrupt_before_the_run_leaves_everything_as_it_was(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+    import tuisim.host
+
+    cell("%sim_magic -b Grey_bands -x 700 -W")
+    cell("%%sim_magic -RW\nprint('Colour: 1')\n")
+    with monkeypatch.context() as patch:
+        patch.setattr(tuisim.host, "field_files", striking(tuisim.host.field_files))
+        shown = cell("%%sim_magic -RW -x 900\nprint('never')\n")
+    assert (shown.out, shown.err) == ("", "tuisim: interrupted; no program was running\n")
+    check_that_all_is_well(cell)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(ENDLESS, id="in real time"),
+        pytest.param(ENDLESS.replace(" --speed 1", ""), id="at full speed"),
+        pytest.param(ENDLESS.replace("-RW", "-RAciXpF 0.02"), id="while everything is drawn"),
+        pytest.param(ENDLESS.replace("    pass", "    print('Flood: 1')").replace(" --speed 1", ""), id="in a flood"),
+        pytest.param(
+            ENDLESS.replace("    pass", "    try:\n        pass\n    except BaseException: pass"), id="stubborn"
+        ),
+    ],
+)
+def test_a_kernel_is_interrupted_within_half_a_second(text: str, kernel: Kernel) -> None:
+    parent = kernel.begin(text)
+    kernel.message(parent, lambda m: "Colour: 1" in str(m["content"].get("text")))
+    asked = time.monotonic()
+    kernel.manager.interrupt_kernel()
+    kernel.idle(parent)
+    assert time.monotonic() - asked < 0.5
+    assert kernel.text("%%sim_magic -RW\nprint('next')") == "next\n"
+    assert kernel.text("print(roboSim.results_log[-2].state)") in ("stopped\n", "killed\n")

@@ -1,0 +1,141 @@
+"""Collaborative mode: a program talks with a function of the notebook, and asks the person at it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.notebook.conftest import Cell, Kernel
+
+TALK = """\
+%%sim_magic_preloaded -b Grey_bands -x 300 -RWL
+from ev3dev2_glue import pyState, get_clock
+for grey in (220, 211):
+    print('PY::' + str(grey))
+    print('Answers:', len(pyState()['messages']))
+    time.sleep(0.1)
+print(pyState(), get_clock())
+""".replace("from ev3", "import time\nfrom ev3")
+
+
+def test_a_responder_hears_what_is_meant_for_it(cell: Cell) -> None:
+    cell("heard = []\nroboSim.responder = heard.append")
+    text = "%%sim_magic_preloaded -RW{}\nprint('PY::hello')\nprint('other')\nprint('IMG_DATA left')"
+    cell(text.format(""))
+    assert cell("heard").result == []
+    cell(text.format("L"))
+    assert cell("heard").result == ["hello", "IMG_DATA left"]
+
+
+def test_the_program_gets_what_the_responder_returned(cell: Cell) -> None:
+    cell("roboSim.responder = lambda text: {'half': int(text) / 2}")
+    first = cell(TALK).out.splitlines()
+    assert first == ["PY::220", "Answers: 1", "PY::211", "Answers: 2",
+                     "{'messages': [{'half': 110.0}, {'half': 105.5}]} 0.2"]  # fmt: skip
+    slow = "import time\ndef slow(text):\n    time.sleep(0.1)\n    return {'half': int(text) / 2}\n"
+    cell(slow + "roboSim.responder = slow")
+    assert cell(TALK).out.splitlines() == first
+    bits = [(run.folder / "telemetry.bin").read_bytes() for run in cell("roboSim.results_log").result]
+    assert bits[0] == bits[1]
+
+
+ANSWERS = [
+    ("None", "[]"),
+    ("'text'", "['text']"),
+    ("[1, (2, 'three')]", "[[1, [2, 'three']]]"),
+    ("__import__('numpy').int64(7)", "[7]"),
+    ("{'grey': __import__('numpy').eye(2)}", "[{'grey': [[1.0, 0.0], [0.0, 1.0]]}]"),
+]
+
+
+@pytest.mark.parametrize(("answer", "got"), ANSWERS, ids=[answer for answer, _ in ANSWERS])
+def test_an_answer_is_what_json_can_hold(answer: str, got: str, cell: Cell) -> None:
+    cell(f"roboSim.responder = lambda text: {answer}")
+    text = "%%sim_magic -RWL\nfrom ev3dev2_glue import pyState\nprint('PY::?')\nprint(pyState()['messages'])"
+    assert cell(text).out == f"PY::?\n{got}\n"
+
+
+def test_without_collaboration_there_are_no_messages(cell: Cell) -> None:
+    cell("roboSim.responder = lambda text: 1 / 0")
+    text = "%%sim_magic -RW\nfrom ev3dev2_glue import pyState\nprint('PY::?')\nprint(pyState())"
+    assert cell(text).out == "PY::?\n{'messages': []}\n"
+
+
+def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
+    cell("def dark(line):\n    frame = roboSim.image_data()\n    assert list(frame.side) == ['left'], line\n"
+         "    return int(eds.bw_image_data(frame).to_numpy().sum())\nroboSim.responder = dark")  # fmt: skip
+    text = "from ev3dev2_glue import pyState\nprint('IMG_DATA left')\nprint(pyState()['messages'])"
+    out = cell(f"%%sim_magic_preloaded -b Grey_bands -x 1520 -RWL\n{text}").out
+    # The disc lies on the black band.
+    assert out.splitlines()[-1] == "[305]"
+
+
+MISTAKES = [
+    ("lambda text: object()", "roboSim.responder: the program cannot get a object"),
+    ("lambda text: {1j: 2}", "roboSim.responder: the program cannot get keys must be str"),
+    ("'no function'", "roboSim.responder: must be a function, got 'no function'"),
+]
+
+
+@pytest.mark.parametrize(("responder", "told"), MISTAKES, ids=[responder for responder, _ in MISTAKES])
+def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) -> None:
+    cell(f"roboSim.responder = {responder}")
+    shown = cell("%%sim_magic -RWL --speed 1\nprint('PY::?')\nwhile True:\n    pass\n")
+    assert shown.err.startswith(f"tuisim: {told}")
+    assert shown.err.count("\n") == 1
+    assert cell("%%sim_magic -RW\nprint('next')").out == "next\n"
+
+
+def test_an_error_of_the_responder_is_the_users_own(cell: Cell) -> None:
+    cell("roboSim.responder = lambda text: 1 / 0")
+    with pytest.raises(ZeroDivisionError):
+        cell("%%sim_magic -RWL\nprint('PY::?')\nwhile True:\n    pass\n")
+    assert cell("roboSim.results_log[-1].state").result == "stopped"
+    assert cell("%%sim_magic -RW\nprint('next')").out == "next\n"
+
+
+ASKS = "%%sim_magic -RW\nfrom ev3dev2_glue import get_clock\nprint('Hello', input('Name? '), get_clock())"
+
+
+def test_an_answer_takes_no_simulated_time(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def answer(prompt: str) -> str:
+        asked.append(prompt)
+        return "Ada"
+
+    monkeypatch.setattr("builtins.input", answer)
+    assert (cell(ASKS).out, asked) == ("Hello Ada 0.0\n", ["Name? "])
+
+
+def failing(error: type[Exception]) -> Callable[[str], str]:
+    def ask(prompt: str) -> str:
+        raise error
+
+    return ask
+
+
+@pytest.mark.parametrize("error", [EOFError, OSError])
+def test_where_nobody_can_answer_it_is_said(
+    error: type[Exception], cell: Cell, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("builtins.input", failing(error))
+    shown = cell(ASKS)
+    assert shown.err.startswith("tuisim: the program waits in input(), but nobody can be asked here\n")
+    assert "EOFError: there is no further answer to input()" in shown.err
+
+
+@pytest.mark.slow
+def test_a_kernel_asks_its_user(kernel: Kernel) -> None:
+    parent = kernel.client.execute(ASKS, allow_stdin=True)
+    question = kernel.client.get_stdin_msg(timeout=20)
+    assert question["content"]["prompt"] == "Name? "
+    kernel.client.input("Ada")
+    kernel.message(parent, lambda message: message["content"].get("text") == "Hello Ada 0.0\n")
+    kernel.idle(parent)
+
+
+@pytest.mark.slow
+def test_a_kernel_without_stdin_says_so(kernel: Kernel) -> None:
+    assert "nobody can be asked here" in kernel.text(ASKS)

@@ -1,0 +1,233 @@
+"""The run of one cell: its lines, its pictures, the responder's answers, and the kernel's interrupt."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import groupby
+from typing import Any
+
+from tuisim.core.spec import RunSpec
+from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.datalog.runfile import StoredRun
+from tuisim.datalog.samples import Sample, samples_of
+from tuisim.datalog.store import RunStore
+from tuisim.errors import ConfigError
+from tuisim.fields import FieldFiles
+from tuisim.figures import PenTrace, pen_trace
+from tuisim.host import Program, RunHandle, RunOptions, start_run
+from tuisim.notebook.interruption import Interruption
+from tuisim.notebook.showing import Scene, Stage, start_record
+from tuisim.protocol import Answer, Reply
+
+POLL_S = 0.02
+"""How long a printed line may wait before it is in the cell."""
+
+STOP_WAIT_S = 1.0
+ROWS_AT_ONCE = 2000
+"""So many lines are shown before the next look at the interrupt."""
+
+ROWS_AFTER_INTERRUPT = 1000
+"""So many lines of an interrupted run are still shown; its log has them all."""
+
+FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
+"""What the lines begin with that are meant for the responder."""
+
+Responder = Callable[[str], object]
+_SHOWN = {STDOUT, STDERR, SPEECH}
+
+
+@dataclass(frozen=True, slots=True)
+class CellRun:
+    """What a cell wants to be run."""
+
+    program: Program
+    spec: RunSpec
+    files: FieldFiles
+    speed: float
+    """As in `RunOptions`."""
+    refresh_s: float
+    traces: tuple[PenTrace, ...]
+    """What former runs have drawn on the mat."""
+    responder: Responder | None
+    """Who answers the program, in collaborative mode."""
+    quiet: bool
+    """Whether what is spoken is not even shown."""
+
+
+def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) -> StoredRun:
+    """Run a program to its end, or until the kernel is interrupted, and show it.
+
+    Args:
+        wanted: The run.
+        stage: Where it is shown.
+        begun: Called with the run as soon as its recording is there.
+
+    Raises:
+        ConfigError: the responder has returned what a program cannot get; the run has been stopped.
+    """
+    store = RunStore()
+    paced = wanted.speed > 0
+    options = RunOptions(
+        live=paced, speed=wanted.speed, asks_user=True, time_waits=not paced, replies=wanted.responder is not None
+    )
+    with Interruption() as interruption:
+        handle = start_run(wanted.program, wanted.spec, options, store)
+        try:
+            run = store.load_run(handle.run_id)
+            begun(run)
+            _Follower(wanted, handle, _Screen(wanted, stage, run), interruption).to_the_end()
+        except BaseException:  # whatever a responder raises: its program must not outlive the cell
+            handle.stop()
+            handle.wait(STOP_WAIT_S)
+            raise
+        finally:
+            handle.close()
+            done = store.load_run(handle.run_id)
+            begun(done)
+        _Screen(wanted, stage, done).draw(told_end(done))
+    return done
+
+
+def told_end(run: StoredRun) -> str:
+    """Return one line on a run that is over: how it ended, simulated time, samples."""
+    what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
+    samples = sum(1 for _ in samples_of(run.output.rows()))
+    return f"{run.state}{what} · {run.end.time_ns / 1e9 if run.end else 0.0:.3f} s · {samples} samples"
+
+
+class _Follower:
+    """Follows one run.
+
+    Args:
+        wanted: What it is.
+        handle: Its process.
+        screen: Draws it.
+        interruption: Tells when it is to be stopped.
+    """
+
+    def __init__(self, wanted: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
+        self._wanted, self._handle, self._screen, self._interruption = wanted, handle, screen, interruption
+        self._said: list[Any] = []
+        """What the responder has said, and the program has not got yet."""
+        self._stopping = False
+
+    def to_the_end(self) -> None:
+        """Wait until the run is over, and pass everything on meanwhile."""
+        handle, interruption = self._handle, self._interruption
+        more = False
+        while handle.ended is None:
+            if interruption.count > 1:
+                handle.kill()
+            elif interruption.count and not self._stopping:
+                self._stopping = True
+                handle.stop()
+            handle.wait_for_event(0.0 if more else POLL_S)
+            handle.pump()
+            more = self._pass_on()
+            # An answer is one to all that was printed before the question.
+            if not more and not interruption.count:
+                self._reply()
+            self._screen.draw_now_and_then()
+        self._finish()
+
+    def _pass_on(self) -> bool:
+        """Show what was printed, let the responder hear what is meant for it, and return whether there is more."""
+        rows = self._handle.output.new_rows(ROWS_AT_ONCE)
+        show_rows(rows, quiet=self._wanted.quiet)
+        if self._wanted.responder is not None:
+            for row in rows:
+                if row.stream == STDOUT and row.text.startswith(FOR_THE_NOTEBOOK):
+                    heard = row.text.removeprefix(FOR_THE_NOTEBOOK[0])
+                    answer = self._interruption.call(partial(self._wanted.responder, heard))
+                    self._said += [] if answer is None else [_message(answer)]
+        return len(rows) == ROWS_AT_ONCE
+
+    def _reply(self) -> None:
+        handle = self._handle
+        if handle.waiting_for_reply:
+            said, self._said = self._said, []
+            handle.send(Reply(tuple(said)))
+        prompt = handle.waiting_for_input
+        if prompt is not None:
+            answer = self._interruption.call(partial(_ask, prompt))
+            if not self._interruption.count:
+                handle.send(Answer(answer, at_once=self._wanted.speed == 0))
+
+    def _finish(self) -> None:
+        shown = 0
+        while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._pass_on():
+            shown += ROWS_AT_ONCE
+        rest = sum(row.stream in _SHOWN for row in self._handle.output.new_rows())
+        if rest:
+            print(f"… and {rest} more lines, which are in the log", file=sys.stderr)
+        ended = self._handle.ended
+        if ended and ended.error and not any(row.stream == STDERR for row in self._handle.output.rows()):
+            print(ended.error.rstrip("\n"), file=sys.stderr)
+
+
+class _Screen:
+    """Draws a run while it goes on."""
+
+    def __init__(self, wanted: CellRun, stage: Stage, run: StoredRun) -> None:
+        self._wanted, self._stage, self._run = wanted, stage, run
+        self._due = time.monotonic() + wanted.refresh_s
+        self._samples: list[Sample] = []
+        self._position = 0
+        """Up to where the output has been searched for samples."""
+
+    def draw_now_and_then(self) -> None:
+        """Draw if the last drawing is old."""
+        if time.monotonic() < self._due:
+            return
+        self.draw(f"running · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
+        # Counted from the end of the drawing: what is slow to draw must not be all that is done.
+        self._due = time.monotonic() + self._wanted.refresh_s
+
+    def draw(self, status: str) -> None:
+        """Draw the run as it is now."""
+        wanted, run = self._wanted, self._run
+        for row, after in run.output.rows_from(self._position):
+            self._samples += samples_of((row,))
+            self._position = after
+        last = run.telemetry.last() or start_record(wanted.spec)
+        traces = (*wanted.traces, pen_trace(wanted.spec, run.telemetry.array()))
+        self._stage.show(Scene(wanted.spec, wanted.files, wanted.program.text, last, traces, self._samples), status)
+
+
+def show_rows(rows: Sequence[OutputRow], *, quiet: bool = False) -> None:
+    """Print rows in the order in which they came, many of one stream at once."""
+    shown = _SHOWN - {SPEECH} if quiet else _SHOWN
+    for is_error, group in groupby((row for row in rows if row.stream in shown), key=lambda row: row.stream == STDERR):
+        print("\n".join(line_of(row) for row in group), file=sys.stderr if is_error else sys.stdout)
+
+
+def _plain(value: Any) -> Any:
+    """Return numbers and arrays of other libraries as Python's own."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__}")
+
+
+def _message(answer: object) -> Any:
+    try:
+        return json.loads(json.dumps(answer, default=_plain))
+    except (TypeError, ValueError, RecursionError) as error:
+        hint = "text, numbers, True, None, lists and dicts; None is no answer"
+        raise ConfigError(f"the program cannot get {error}", hint, key="roboSim.responder") from None
+
+
+def _ask(prompt: str) -> str | None:
+    """Ask the person at the notebook; None where nobody can answer."""
+    from IPython.core.error import StdinNotImplementedError
+
+    try:
+        return input(prompt)
+    # A kernel says the first, a shell at its end the second, one without any stdin the third.
+    except (StdinNotImplementedError, EOFError, OSError):
+        print("tuisim: the program waits in input(), but nobody can be asked here", file=sys.stderr)
+        return None
