@@ -182,9 +182,9 @@ class Lab(Wishes):
             self.desk.output.clear()
         if self.desk.chart:
             self.desk.chart.clear()
-        if self.desk.code:
-            self.desk.code.mark_error(error_line)
         self.work.run_changed()
+        if self.desk.code:
+            self.desk.code.mark_run_error(error_line)
         self.debugging.run_changed()
         self.situation_changed()
 
@@ -249,7 +249,7 @@ class Lab(Wishes):
         words = ended.summary or end_label(ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
         if self.desk.code:
-            self.desk.code.mark_error(ended.error_line)
+            self.desk.code.mark_run_error(ended.error_line)
         # What was wrong is among the rows already, as a traceback.
         known = ended.end in ("finished", "raised")
         self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
-from tuisim.breaks import Break, LineBreak, break_lines, parse_break
+from tuisim.breaks import Break, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.errors import TuisimError
 from tuisim.protocol import UNKNOWN_ORDINAL, Looked, Message, Paused
 from tuisim.ui import breakstore
@@ -89,9 +89,19 @@ class Debugging:
     def set_breaks(self, breaks: tuple[Break, ...]) -> None:
         """From now on these breaks hold the run."""
         self.breaks = breaks
-        self._lab.bridge.debug(protocol.SetBreaks(self.texts))
+        self._tell_breaks()
         self._keep()
         self.mark()
+
+    def _tell_breaks(self) -> None:
+        """Tell the run at work its breaks, each on its line of the text that runs."""
+        lines, texts = self._lab.work.lines(), []
+        for one in self.breaks:
+            shown = break_line_of(one)
+            runs = lines.to_run(shown)
+            if runs or not shown:
+                texts.append(moved(one, runs).written())
+        self._lab.bridge.debug(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
         """From now on these expressions are watched."""
@@ -137,7 +147,7 @@ class Debugging:
         """The run stands still, goes on, or has told what it looks like."""
         if self._untold:
             self._untold = False
-            self._lab.bridge.debug(protocol.SetBreaks(self.texts))
+            self._tell_breaks()
         match event:
             case Paused():
                 self._stands(event)
@@ -299,7 +309,12 @@ class Debugging:
 
     def run_to(self, line: int) -> None:
         """Go on until a line is about to run."""
-        self.go_on(protocol.RunToLine(line))
+        bridge = self._lab.bridge
+        runs = self._lab.work.lines().to_run(line) if bridge.in_run or self.is_away else line
+        if runs:
+            self.go_on(protocol.RunToLine(runs))
+        else:
+            self._lab.say("This line is not in the text that runs")
 
     def go_on(self, command: Message) -> None:
         """Carry out a command that lets the program go on and stand still again."""

@@ -32,10 +32,12 @@ def situation(lab: Lab) -> Situation:
 
 def _field_keys(lab: Lab) -> tuple[KeyWord, ...]:
     """The keys of the field that letters go into; none if no such field has the focus."""
-    if isinstance(lab.focused, Input):
+    # When the app ends the focus goes last.
+    focused = lab.focused if lab.screen_stack else None
+    if isinstance(focused, Input):
         return FIELD_KEYS
     code = lab.desk.code
-    typing = code is not None and code.typing and lab.focused is not None and code in lab.focused.ancestors
+    typing = code is not None and code.typing and focused is not None and code in focused.ancestors
     return TYPING_KEYS if typing else ()
 
 

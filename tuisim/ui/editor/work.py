@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.ui.editor.drafts import Draft, drop_draft, find_draft, keep_draft
+from tuisim.ui.editor.linemap import LineMap
 from tuisim.ui.editor.textfile import Form, is_protected, read_text, write_text
 
 if TYPE_CHECKING:
     from tuisim.host import Program
     from tuisim.ui.app import Lab
     from tuisim.ui.editor.check import Mistake
+    from tuisim.ui.recording import Recording
 
 DRAFT_AFTER_S = 1.0
 """So long after a key unsaved text is kept for the case of a crash."""
@@ -45,7 +47,7 @@ class Work:
         self._is_file = False
         """Whether the text is that of the file, so that it may be saved there without a question."""
         self._keeping = self._asking = False
-        self._ran: tuple[object, str] | None = None
+        self._ran: tuple[Recording, str] | None = None
         """A recording, and the text that it ran, as it was in the editor."""
 
     @property
@@ -113,15 +115,20 @@ class Work:
     def run_changed(self) -> None:
         """Tell the code panel which text the run has that is looked at."""
         code, recording = self._lab.desk.code, self._lab.bridge.timeline.recording
-        if code is None:
-            return
         if recording is None:
-            code.set_running(None)
-            return
-        if self._ran is None or self._ran[0] is not recording:
+            self._ran = None
+        elif self._ran is None or self._ran[0] is not recording:
             as_run = recording.program.text
             self._ran = recording, self._applied if self._runnable(self._applied) == as_run else as_run
-        code.set_running(self._ran[1], recording.program.name == self._name)
+        if code is not None and self._ran is not None:
+            code.set_running(self._ran[1], self._ran[0].program.name == self._name)
+        elif code is not None:
+            code.set_running(None)
+
+    def lines(self) -> LineMap:
+        """Return which lines of the program as it stands are which of the run at hand."""
+        now = self._text.split("\n")
+        return LineMap(now if self._ran is None else self._ran[1].split("\n"), now)
 
     # Editing
 

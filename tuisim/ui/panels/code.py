@@ -17,6 +17,7 @@ from textual.widgets.text_area import Selection
 from tuisim.ui.editor.area import CodeArea
 from tuisim.ui.editor.editing import places
 from tuisim.ui.editor.findbar import FIND, LINE, FindBar
+from tuisim.ui.editor.linemap import LineMap
 from tuisim.ui.snapshot import ENDED, IDLE, RUNNING, Snapshot
 
 LIT_GAP_S = 0.1
@@ -74,6 +75,8 @@ class Code(Vertical):
         self._shown = ""
         """The text as it was last given or told of."""
         self._run_lines: list[str] | None = None
+        self._mapped: tuple[list[str], LineMap] | None = None
+        """The lines that were shown when the run's were last looked for among them."""
         self._tells_run = self._in_run = False
         self._lit_at_s = 0.0
         self._line = 0
@@ -107,7 +110,7 @@ class Code(Vertical):
         """
         key = key or name
         if key != self._key:
-            self._key, self._run_lines, self._line = key, None, 0
+            self._key, self._run_lines, self._mapped, self._line = key, None, None, 0
             self._area.light(0)
             self._area.set_error(0)
             self._area.placeholder = "" if name else NOTHING_OPEN
@@ -141,13 +144,17 @@ class Code(Vertical):
             text: None without a run.
             tells: Whether it is a run of this program, so that it is told when the two texts differ.
         """
-        self._run_lines = text.split("\n") if text is not None else None
+        self._run_lines, self._mapped = text.split("\n") if text is not None else None, None
         self._tells_run = tells
         self._say()
 
     def set_marks(self, breaks: Mapping[int, str]) -> None:
         """Put marks before lines: `●` a breakpoint, `○` one switched off, `◆` one with a condition."""
         self._area.set_breaks(breaks)
+
+    def mark_run_error(self, line: int) -> None:
+        """Mark the line of the run's text at which it ended with an error, as far as it is there; 0 for none."""
+        self.mark_error(self._line_shown(line))
 
     def mark_error(self, line: int) -> None:
         """Mark the line of an error; 0 takes the mark away."""
@@ -171,20 +178,21 @@ class Code(Vertical):
         self.show_line(line)
 
     def show_line(self, line: int) -> None:
-        """Light a line of the run's text, 0 for none, if it is still the same in the text that is shown."""
+        """Light a line of the run's text, 0 for none, where it is in the text that is shown."""
         self._line = line
-        lit = line if self._is_the_same(line) else 0
+        lit = self._line_shown(line)
         self._area.light(lit)
         if lit and not self.typing:
             self._area.scroll_to_line(lit)
 
-    def _is_the_same(self, line: int) -> bool:
+    def _line_shown(self, line: int) -> int:
+        """Where a line of the run's text is in the text that is shown, 0 if it is not there any more."""
         if self._run_lines is None:
-            return True
+            return line
         lines = self._area.document.lines
-        if not 1 <= line <= min(len(lines), len(self._run_lines)):
-            return False
-        return bool(lines[line - 1] == self._run_lines[line - 1])
+        if self._mapped is None or self._mapped[0] != lines:
+            self._mapped = list(lines), LineMap(self._run_lines, lines)
+        return self._mapped[1].to_shown(line)
 
     # Typing
 
