@@ -108,6 +108,12 @@ def test_level_of_equal_samples_is_exact() -> None:
     ]
 
 
+def test_what_rounding_leaves_is_no_step() -> None:
+    level = 38.98
+    (found,) = plateaus(np.repeat([level, np.nextafter(level, 99.0), level], 9))
+    assert (found.start, found.stop) == (0, 27)
+
+
 def test_long_log_is_cut_as_a_short_one() -> None:
     rng = np.random.default_rng(4)
     levels = np.cumsum(rng.uniform(5.0, 20.0, 300)) % 100.0

@@ -41,6 +41,9 @@ _FEW_SAMPLES = 100
 _STEP_OF_RANGE = 0.005
 """A step below this part of the range is no step, whatever the noise."""
 
+_DUST = 1e-9
+"""A step below this part of the values is what reckoning has left of them, if all are one."""
+
 _SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
 """A piece that drifts by more than these parts of the log's range and of its own highest value is no plateau."""
 
@@ -102,9 +105,9 @@ def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
     noise = noise_of(clean) if noise is None else noise
     scale = float(np.ptp(clean))
     # Without noise the price of a cut is what the smallest step that counts is worth.
-    sigma = max(noise, scale * _STEP_OF_RANGE / _CERTAINTY, 1e-12)
+    least_step = max(scale * _STEP_OF_RANGE, _DUST * float(np.max(np.abs(clean))), 1e-12)
+    sigma = max(noise, least_step / _CERTAINTY)
     pieces = _cut(clean, sigma)
-    least_step = max(scale * _STEP_OF_RANGE, 1e-12)
     # Twice: what a drift has cut into short pieces can hide a stray between them.
     for _ in range(2):
         pieces = _without_strays(clean, pieces, least_step, sigma)
