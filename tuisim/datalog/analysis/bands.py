@@ -131,7 +131,9 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
     """Cut the log into pieces of about one level each."""
     pieces: Pieces = []
     for first in range(0, len(values), _BLOCK):
-        block = values[first : first + _BLOCK] / sigma
+        block = values[first : first + _BLOCK]
+        # Around their mean, as sums of squares of large values have no digits left for small steps.
+        block = (block - block.mean()) / sigma
         places = _places(block)
         pieces += [(first + start, first + stop) for start, stop in _partition(block, places)]
     return pieces
