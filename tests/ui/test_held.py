@@ -11,10 +11,11 @@ from textual.widgets import Input
 
 from tests.ui.app_help import press_and_stand, ready, screen_text, settings, until
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec
+from tuisim.core.spec import NoiseSpec, Obstacle
 from tuisim.datalog.store import RunStore
 from tuisim.rerun import rerun, same
 from tuisim.ui.app import Lab
+from tuisim.ui.plan import with_obstacles
 from tuisim.ui.screens.branch import BranchQuestion
 from tuisim.ui.slider import Slider
 from tuisim.ui.snapshot import ENDED, PAUSED, RUNNING, WAITING
@@ -179,3 +180,14 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
 
 def at_line(app: Lab, line: int) -> bool:
     return app.debugging.standing is not None and app.debugging.standing.paused.line == line
+
+
+async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> None:
+    async with Lab(settings(LINES + "tank_drive.on_for_seconds(50, 50, 1)\n", speed=0.0)).run_test() as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        to_tick(app, 10)
+        assert app.bridge.in_past
+        assert app.loading.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
+        assert app.bridge.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)

@@ -199,7 +199,11 @@ class Bridge(Shown):
         self._start_at(plan.spec.world.start)
 
     def change(self, plan: Plan) -> None:
-        """Take a plan that differs in other things than the start; the robot stays where it is. Not during a run."""
+        """Take a plan that differs in other things than the start; the robot stays where it is. Not during a run.
+
+        What was changed is seen now, not in the past.
+        """
+        self.timeline.go(None)
         self.plan = plan
         self._still = replace(self._still, noise=plan.spec.world.noise, seed=plan.spec.seed)
 
