@@ -15,12 +15,12 @@ from tuisim.cli import run_command
 from tuisim.config import build_run_spec
 from tuisim.datalog.diff import diff_runs
 from tuisim.datalog.face import Face, face_after
-from tuisim.datalog.records import MOTORS
+from tuisim.datalog.records import MOTORS, STOP_FILE
 from tuisim.datalog.store import RunStore
 from tuisim.errors import LogError
 from tuisim.host import Program, RunOptions, start_run
 from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
-from tuisim.rerun import STOP_FILE, rerun, same
+from tuisim.rerun import rerun, same
 from tuisim.switches import Settings
 
 LOOP = """

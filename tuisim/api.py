@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config import build_run_spec
+from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import STDOUT
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
@@ -19,8 +20,6 @@ from tuisim.switches import SWITCHES, Switch, nearest, settings_of
 if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
-
-NS_PER_S = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tuisim.datalog.diff import RunDiff, diff_runs
+from tuisim.datalog.records import STOP_FILE
 from tuisim.errors import LogError
 from tuisim.host import Program, RunHandle, RunOptions, start_run
 from tuisim.protocol import ScriptedAction, Stop
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
 
 CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled"})
 """Ends that did not come out of the program and its limits: such a run is a piece of the one that is run again."""
-
-STOP_FILE = "stop.json"
-"""Written by the run: right before which tick the user's stop reached the program."""
 
 
 def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.datalog.records import STDOUT, OutputWriter, TelemetryWriter
-from tuisim.datalog.runfile import ACTIONS_FILE, RunEnd, StoredProgram, StoredRun
+from tuisim.datalog.records import ACTIONS_FILE, STDOUT, OutputWriter, TelemetryWriter
+from tuisim.datalog.runfile import RunEnd, StoredProgram, StoredRun
 from tuisim.datalog.store import NewRun, RunStore
 
 PROGRAM = StoredProgram("log.py", "/somewhere/log.py", "print('Colour: 100.0')\n", "preloaded")

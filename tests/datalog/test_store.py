@@ -17,8 +17,8 @@ from tests.datalog.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.datalog.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.datalog.lock import hold, is_held
-from tuisim.datalog.records import OUTPUT_FILE
-from tuisim.datalog.runfile import ACTIONS_FILE, INTERRUPTED, RUN_FILE, RUNNING, Action, RunEnd, StoredRun, noise_at
+from tuisim.datalog.records import ACTIONS_FILE, OUTPUT_FILE
+from tuisim.datalog.runfile import INTERRUPTED, RUN_FILE, RUNNING, Action, RunEnd, StoredRun, noise_at
 from tuisim.datalog.store import RunStore, home_folder, load_run
 from tuisim.errors import LogError
 

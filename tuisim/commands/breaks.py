@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.breaks import parse_breaks
+from tuisim.core.simulation import NS_PER_S
 from tuisim.host import RunHandle
 from tuisim.protocol import Look, Looked, Message, Paused, Resume
 
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from tuisim.commands.prepare import Prepared
     from tuisim.switches import SwitchParser
 
-NS_PER_S = 1_000_000_000
 MOST_CHARACTERS = 200
 GO, STOP = "go", "stop"
 

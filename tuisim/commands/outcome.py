@@ -6,6 +6,7 @@ import json
 import sys
 from typing import Any
 
+from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import STDERR, STDOUT
 from tuisim.datalog.runfile import RunEnd, StoredRun
 from tuisim.datalog.samples import parse_sample
@@ -18,8 +19,6 @@ SIGNALLED = 128
 """Exit codes above it mean that somebody wants no more, and so no further program either."""
 LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit"})
 """The ends of a run that a limit brought about."""
-
-NS_PER_S = 1_000_000_000
 
 
 def exit_code_of(ended: Ended | RunEnd) -> int:

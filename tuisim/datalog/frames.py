@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.field import Field
+from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.mats import open_mat
 from tuisim.datalog.runfile import StoredRun
@@ -31,7 +32,6 @@ MOTION_COLUMNS = (
 """Columns of the telemetry frame that are recorded as they are."""
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
-_NS_PER_S = 1_000_000_000
 
 
 def samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
@@ -109,5 +109,5 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
 def tick_times_s(records: np.ndarray[Any, Any], spec: RunSpec) -> np.ndarray[Any, Any]:
     """Return when each tick fell due, in simulated seconds, shape (n,)."""
     ticks = records["tick"].astype("i8")
-    times: np.ndarray[Any, Any] = -(-ticks * _NS_PER_S // spec.profile.tick_hz) / _NS_PER_S
+    times: np.ndarray[Any, Any] = -(-ticks * NS_PER_S // spec.profile.tick_hz) / NS_PER_S
     return times

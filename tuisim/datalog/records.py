@@ -20,6 +20,12 @@ from struct import Struct
 from tuisim.core.state import TICK_RECORD
 from tuisim.errors import LogError
 
+ACTIONS_FILE = "actions.jsonl"
+"""What the user did during the run, a JSON object a line."""
+
+STOP_FILE = "stop.json"
+"""Right before which tick the user's stop reached the program; missing if it came elsewhere."""
+
 HEADER_BYTES = 64
 _HEADER = Struct("<8sIIQ")
 """Magic, format version, record size (0: variable), published length."""

@@ -14,11 +14,11 @@ from typing import Any, Protocol
 from tuisim.atomic import replacing
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
 from tuisim.datalog.lock import is_held
+from tuisim.datalog.records import ACTIONS_FILE
 from tuisim.datalog.views import OutputView, TelemetryView, TickRecord
 from tuisim.errors import LogError, TuisimError
 
 RUN_FILE = "run.json"
-ACTIONS_FILE = "actions.jsonl"
 RUN_FORMAT = 1
 
 RUNNING, INTERRUPTED = "running", "interrupted"

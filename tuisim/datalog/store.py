@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.datalog.catalogue import HOME_HINT, Catalogue, RunInfo, locked
 from tuisim.datalog.compact import compact
@@ -38,7 +39,6 @@ RUNS_FOLDER = "runs"
 LAST = "last"
 _COUNT_AT_ONCE_BYTES = 1 << 20
 """Longer outputs are counted when the run is first listed, so that the end of a run is not held up."""
-_NS_PER_S = 1_000_000_000
 
 COMPACT_TICKS = 6000
 """A run of so many ticks or more is compacted as soon as it is over; for shorter ones that takes too much of the time
@@ -151,7 +151,7 @@ class RunStore:
             run_id,
             end=end.end,
             ticks=end.tick,
-            time_s=end.time_ns / _NS_PER_S,
+            time_s=end.time_ns / NS_PER_S,
             samples=samples,
             summary=end.summary,
         )
@@ -293,7 +293,7 @@ class RunStore:
         end = run.end
         if end is None:
             return info
-        return replace(info, end=end.end, ticks=end.tick, time_s=end.time_ns / _NS_PER_S, summary=end.summary)
+        return replace(info, end=end.end, ticks=end.tick, time_s=end.time_ns / NS_PER_S, summary=end.summary)
 
     def _completed(self, info: RunInfo) -> RunInfo:
         """Fill in what the catalogue does not know yet, and remember what can no longer change."""
@@ -385,4 +385,4 @@ def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
         tick_hz = int(read_run_file(folder)["spec"]["profile"]["tick_hz"])
     except (LogError, KeyError, TypeError):
         return replace(info, ticks=last.tick)
-    return replace(info, ticks=last.tick, time_s=-(-last.tick * _NS_PER_S // tick_hz) / _NS_PER_S)
+    return replace(info, ticks=last.tick, time_s=-(-last.tick * NS_PER_S // tick_hz) / NS_PER_S)

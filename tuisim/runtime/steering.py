@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim import protocol
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
+from tuisim.datalog.records import ACTIONS_FILE, STOP_FILE
 from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Answer, Message, Reply, ScriptedAction
 from tuisim.runtime import real
 from tuisim.runtime.channel import Channel
@@ -27,9 +28,6 @@ LIVE = 1
 """Bit of `Session.slow`: the steering is asked before ticks."""
 STOPPED = "stopped"
 """Why a run ends that the user stops."""
-ACTIONS_FILE = "actions.jsonl"
-STOP_FILE = "stop.json"
-"""Says right before which tick the user's stop reached the program; missing if it came elsewhere."""
 SLICE_S = 0.02
 """Longest uninterrupted real wait."""
 BEHIND_S = 0.25

@@ -12,10 +12,8 @@ from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.core.geometry import Pose
+from tuisim.switches import MAX_ANGLE_DEG, MAX_POSITION_MM
 from tuisim.ui.snapshot import Snapshot
-
-MAX_POSITION_MM = 10_000
-MAX_ANGLE_DEG = 36_000
 
 _FIELDS = {"x": ("X", "mm", MAX_POSITION_MM), "y": ("Y", "mm", MAX_POSITION_MM), "angle": ("Angle", "°", MAX_ANGLE_DEG)}
 """By id: name, unit, and the largest value either way."""

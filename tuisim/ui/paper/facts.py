@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from tuisim.core.simulation import NS_PER_S
+
 if TYPE_CHECKING:
     from tuisim.datalog.opening import Log
     from tuisim.datalog.runfile import StoredRun
 
 Fact = tuple[str, ...]
 """What it is, and what it is for each run."""
-
-_NS_PER_S = 1_000_000_000
 
 
 def run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
@@ -67,7 +67,7 @@ def _end(run: StoredRun) -> str:
 def _time_s(run: StoredRun) -> str:
     last = run.telemetry.last()
     if run.end:
-        return f"{run.end.time_ns / _NS_PER_S:.3f} s, tick {run.end.tick}"
+        return f"{run.end.time_ns / NS_PER_S:.3f} s, tick {run.end.tick}"
     return f"{last.tick / run.spec.profile.tick_hz:.3f} s, tick {last.tick}" if last else ""
 
 
