@@ -119,6 +119,10 @@ def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
         # Two samples that noise has brought together are no level, but for the ends of a log.
         found = [p for p in found if p.samples > MIN_SAMPLES or p.start == 0 or p.stop == len(clean)]
     found = _grown(clean, found, sigma)
+    # Grown, two may have no more than a stray between them.
+    whole = {(p.start, p.stop): p for p in found}
+    spans = _joined(clean, list(whole), least_step, sigma)
+    found = [whole.get(span) or _plateau(clean, *span, sigma) for span in spans]
     return [
         Plateau(int(finite[p.start]), int(finite[p.stop - 1]) + 1, p.level, p.spread, p.drift, p.strays) for p in found
     ]
@@ -211,13 +215,13 @@ def _without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma
 
 
 def _joined(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
-    """Join neighbours that drift into each other."""
+    """Join neighbours that drift into each other; at most a stray may be between them."""
     done: Pieces = []
     for piece in pieces:
         if done:
             left = done[-1]
-            long_enough = min(left[1] - left[0], piece[1] - piece[0]) > _STRAY_SAMPLES
-            if long_enough and _goes_on(values, left, piece, least_step, sigma):
+            near = piece[0] - left[1] <= _STRAY_SAMPLES < min(left[1] - left[0], piece[1] - piece[0])
+            if near and _goes_on(values, left, piece, least_step, sigma):
                 done[-1] = (left[0], piece[1])
                 continue
         done.append(piece)
