@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeAlias
 
 import numpy as np
 from rich.segment import Segment
@@ -13,12 +12,10 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tuisim.ui.render.cells import Cells, changed_runs, to_cells
+from tuisim.ui.render.kinds import Run
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.palette import TRUECOLOR, ColorMode, reduce_pixels
 from tuisim.ui.strips import CellStrip, TextStrip, color_depth
-
-Run: TypeAlias = tuple[str, Style]
-"""A piece of a line in one style."""
 
 _TEXT_GAP = 8
 """Unchanged characters that cost less than a new cursor position and style."""

@@ -10,9 +10,10 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from tuisim.ui.analyser.moments import Place, place_of
-from tuisim.ui.cellview import LinesView, Run
+from tuisim.ui.cellview import LinesView
 from tuisim.ui.panels.arrays import Arrays
 from tuisim.ui.panels.world import WorldView
+from tuisim.ui.render.kinds import Run
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.model import Model

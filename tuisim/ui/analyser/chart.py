@@ -12,9 +12,10 @@ from textual.widget import Widget
 
 from tuisim.datalog.analysis.statistics import summary_of
 from tuisim.ui.analyser.aligning import DISTANCE
-from tuisim.ui.cellview import LinesView, Run
+from tuisim.ui.cellview import LinesView
 from tuisim.ui.render import axes
 from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState
+from tuisim.ui.render.kinds import Run
 from tuisim.ui.render.plot import BRAILLE
 from tuisim.ui.render.traces import Traces
 from tuisim.ui.render.xy import xy_lines

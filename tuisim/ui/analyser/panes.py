@@ -15,10 +15,9 @@ from rich.style import Style
 from tuisim.datalog.analysis.logbands import Band
 from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.ui.analyser.model import Model
-from tuisim.ui.cellview import Run
+from tuisim.ui.render.kinds import Line
 from tuisim.ui.verbs import end_label
 
-Line = list[Run]
 Cells = tuple[str, ...]
 
 PLAIN, DIM = Style(color="#d8dee6"), Style(color="#9fb0c3")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.datalog.analysis.signals import value_at
+from tuisim.datalog.arrays import FloatArray
 from tuisim.ui.render.axes import Limits
 from tuisim.ui.render.pyramid import Pyramid
-from tuisim.ui.render.reduce import FloatArray
 from tuisim.ui.render.traces import Trace, Traces
 
 if TYPE_CHECKING:

@@ -9,8 +9,9 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 
 from tuisim.core.sensors.color import pixel_array
-from tuisim.ui.cellview import LinesView, PixelView, Run
+from tuisim.ui.cellview import LinesView, PixelView
 from tuisim.ui.render.disc import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
+from tuisim.ui.render.kinds import Run
 from tuisim.ui.render.palette import PALETTE_16
 from tuisim.ui.snapshot import Snapshot
 from tuisim.ui.throttle import Throttle

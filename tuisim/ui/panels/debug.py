@@ -10,7 +10,8 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.ui.cellview import LinesView
-from tuisim.ui.render.debug import DebugView, Line, debug_lines
+from tuisim.ui.render.debug import DebugView, debug_lines
+from tuisim.ui.render.kinds import Line
 from tuisim.ui.snapshot import IDLE, Snapshot
 
 if TYPE_CHECKING:

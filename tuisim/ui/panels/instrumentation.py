@@ -12,7 +12,8 @@ from textual.widget import Widget
 
 from tuisim.core.sensors.color import ColorReading
 from tuisim.datalog.units import unit_of
-from tuisim.ui.cellview import LinesView, Run
+from tuisim.ui.cellview import LinesView
+from tuisim.ui.render.kinds import Line, Run
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.throttle import Throttle
 from tuisim.ui.verbs import end_label
@@ -26,8 +27,6 @@ _UNIT = Style(color="#a8a8a8")
 _WARNING = Style(color="#ff6e6e", bold=True)
 _COLUMN = 12
 """Width of the labels where there is room."""
-
-Line = list[Run]
 
 
 class Instrumentation(Widget):

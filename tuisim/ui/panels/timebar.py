@@ -9,8 +9,9 @@ from rich.style import Style
 from textual import events
 from textual.message import Message
 
-from tuisim.ui.cellview import LinesView, Run
+from tuisim.ui.cellview import LinesView
 from tuisim.ui.render.axes import time_limits
+from tuisim.ui.render.kinds import Run
 from tuisim.ui.rows import ERROR, SAMPLE
 from tuisim.ui.snapshot import ENDED, IDLE, Snapshot
 from tuisim.ui.timeline import ACTION, BREAK

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.datalog import units
+from tuisim.datalog.arrays import FloatArray
 from tuisim.errors import LogError
 from tuisim.ui.analyser.aligning import DISTANCE
 from tuisim.ui.render.axes import Limits, value_limits
-from tuisim.ui.render.reduce import FloatArray, min_max
+from tuisim.ui.render.reduce import min_max
 from tuisim.ui.render.xy import seen_points
 
 if TYPE_CHECKING:

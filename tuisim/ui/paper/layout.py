@@ -8,10 +8,10 @@ from typing import TypeAlias
 
 import numpy as np
 
+from tuisim.datalog.arrays import FloatArray
 from tuisim.ui.paper.chart import Chart, Line, unit_of
 from tuisim.ui.render.axes import Limits, label, ticks, value_limits
-from tuisim.ui.render.plot import Rgb
-from tuisim.ui.render.reduce import FloatArray
+from tuisim.ui.render.kinds import Rgb
 
 COLORS: tuple[Rgb, ...] = (
     (31, 119, 180), (217, 95, 2), (27, 158, 119), (201, 60, 140), (117, 112, 199), (166, 118, 29), (214, 39, 40),

@@ -6,7 +6,7 @@ import re
 from html import escape
 
 from tuisim.ui.paper.layout import FONT_PX, Drawing, Rule, Shade, Shape, Stroke, Words
-from tuisim.ui.render.plot import Rgb
+from tuisim.ui.render.kinds import Rgb
 
 _INK, _PAPER = "#222", "#fff"
 _FONT = "system-ui, sans-serif"

@@ -7,7 +7,8 @@ from rich.text import Text
 
 from tuisim.ui.paper.chart import Chart, Line, plain
 from tuisim.ui.paper.layout import COLORS, color_of
-from tuisim.ui.render.chart import ChartPainter, ChartState, Run
+from tuisim.ui.render.chart import ChartPainter, ChartState
+from tuisim.ui.render.kinds import Run
 from tuisim.ui.render.plot import BRAILLE
 from tuisim.ui.render.traces import Trace, Traces
 from tuisim.ui.render.xy import xy_lines

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +12,7 @@ from rich.color import Color
 from rich.style import Style
 
 from tuisim.datalog.face import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, Face, TextScreen
-
-Run: TypeAlias = tuple[str, Style]
-Rgb: TypeAlias = tuple[int, int, int]
+from tuisim.ui.render.kinds import Rgb, Run
 
 _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)
 _PAPER = Style(color=Color.from_rgb(*_INK_RGB), bgcolor=Color.from_rgb(*_PAPER_RGB))

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
 
 from rich.color import Color
 from rich.style import Style
 
 from tuisim.ui.render import axes
 from tuisim.ui.render.axes import Limits
+from tuisim.ui.render.kinds import Run
 from tuisim.ui.render.plot import BRAILLE, Curve, TextRun, canvas
 from tuisim.ui.render.traces import Trace, Traces
-
-Run: TypeAlias = tuple[str, Style]
 
 _AXIS = Style(color="#a8a8a8")
 _PLAIN = Style(color="#d8dee6")

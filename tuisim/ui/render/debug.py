@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
 
 from rich.style import Style
 
 from tuisim.held import FrameState, Variable
 from tuisim.protocol import Looked, Paused
-
-Run: TypeAlias = tuple[str, Style]
-Line: TypeAlias = list[Run]
+from tuisim.ui.render.kinds import Line
 
 _PLAIN = Style(color="#d8dee6")
 _NAME = Style(color="#9fd3ff")

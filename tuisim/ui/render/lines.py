@@ -6,13 +6,11 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
+from tuisim.datalog.arrays import FloatArray
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.viewport import Viewport
-
-FloatArray = npt.NDArray[np.float64]
 
 OBSTACLE_RGB = (175, 95, 0)
 OBSTACLE_EDGE_RGB = (135, 0, 0)

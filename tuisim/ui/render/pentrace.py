@@ -10,9 +10,8 @@ import numpy as np
 
 from tuisim.core.css import css_rgb
 from tuisim.core.spec import PenSpec
-from tuisim.ui.render.lines import FloatArray
-
-Rgb = tuple[int, int, int]
+from tuisim.datalog.arrays import FloatArray
+from tuisim.ui.render.kinds import Rgb
 
 _FALLBACK = "red"
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from tuisim.datalog.arrays import FloatArray
 from tuisim.ui.render.axes import Limits
-from tuisim.ui.render.reduce import FloatArray, min_max
+from tuisim.ui.render.kinds import Rgb
+from tuisim.ui.render.reduce import min_max
 
-Rgb = tuple[int, int, int]
 TextRun = tuple[str, Rgb | None]
 """A piece of a row in one colour, None where nothing is drawn."""
 

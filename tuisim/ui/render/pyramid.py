@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.ui.render.reduce import FloatArray
+from tuisim.datalog.arrays import FloatArray
 
 _BLOCK = 16
 """Each level has this many times fewer blocks than the one below."""

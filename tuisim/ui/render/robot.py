@@ -12,6 +12,7 @@ import numpy.typing as npt
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import TouchSpec
 from tuisim.core.spec import RobotSpec, UltrasonicSpec
+from tuisim.ui.render.kinds import Rgb
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.viewport import Viewport
 
@@ -28,8 +29,6 @@ _SPOT_MM = 10.0
 """Radius of a further sensor."""
 
 _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
-
-Rgb = tuple[int, int, int]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from tuisim.ui.render.plot import Rgb
-from tuisim.ui.render.reduce import FloatArray
+from tuisim.datalog.arrays import FloatArray
+from tuisim.ui.render.kinds import Rgb
 
 _COLORS: tuple[Rgb, ...] = (
     (255, 215, 0), (95, 215, 255), (255, 95, 135), (95, 215, 95), (215, 135, 255), (255, 135, 0), (95, 135, 255),

@@ -8,11 +8,10 @@ import numpy as np
 from rich.color import Color
 from rich.style import Style
 
+from tuisim.datalog.arrays import FloatArray
 from tuisim.ui.render import axes
-from tuisim.ui.render.plot import Curve, Rgb, canvas
-from tuisim.ui.render.reduce import FloatArray
-
-Run = tuple[str, Style]
+from tuisim.ui.render.kinds import Rgb, Run
+from tuisim.ui.render.plot import Curve, canvas
 
 _AXIS, _WORDS = Style(color="#a8a8a8"), Style(color="#d8dee6")
 _HERE = Style(color="#000000", bgcolor="#ffffff", bold=True)

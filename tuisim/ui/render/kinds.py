@@ -1,0 +1,16 @@
+"""What drawings are made of."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from rich.style import Style
+
+Rgb: TypeAlias = tuple[int, int, int]
+"""A colour, 0 to 255 each."""
+
+Run: TypeAlias = tuple[str, Style]
+"""A piece of a line in one style."""
+
+Line: TypeAlias = list[Run]
+"""A line of text."""
