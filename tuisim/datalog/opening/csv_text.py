@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -86,11 +85,11 @@ class CsvReader:
 
     def _parsed(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
         """All cells by the library's parser, None if a row is not like the others or a cell not of its kind."""
-        if not block.text.strip():
+        if block.text.isspace() or not block.text:
             return [pa.nulls(0, pa.string()) for _ in self._names]
         try:
             table = pa_csv.read_csv(
-                io.BytesIO(block.text),
+                pa.BufferReader(block.text),
                 pa_csv.ReadOptions(column_names=self._names, use_threads=False, block_size=len(block.text) + 1),
                 pa_csv.ParseOptions(delimiter=self._separator, newlines_in_values=False),
                 pa_csv.ConvertOptions(

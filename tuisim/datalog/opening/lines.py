@@ -66,11 +66,12 @@ class LineCutter:
             data = data[:-1].replace(b"\r", b"\n") + b"\r" if held and data else data.replace(b"\r", b"\n")
         if self._rest.endswith(b"\r") and data:
             self._rest = self._rest[:-1] + (b"" if data.startswith(b"\n") else b"\n")
-        whole, newline, rest = data.rpartition(b"\n")
-        if not newline:
-            self._keep(rest)
+        end = data.rfind(b"\n") + 1
+        if not end:
+            self._keep(data)
             return None
-        text, self._rest = self._rest + whole + newline, b""
+        # Blocks are large: each is copied only once.
+        text, self._rest, rest = b"".join((self._rest, memoryview(data)[:end])), b"", data[end:]
         if self._dropping:
             text = text.partition(b"\n")[2]
             self._dropping = False
