@@ -52,3 +52,20 @@ def test_a_break_may_end_the_run(program: str, capsys: pytest.CaptureFixture[str
 def test_a_break_for_another_robot_is_refused(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["run", program, "--break", "middle.red < 3"]) == 2
     assert "this robot has no 'middle.red' (one of left.red," in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--watch", "total"], "watch: is told at breaks only (give one with --break"),
+        (["--break", "6", "--watch", "total["], "watch: 'total[' is no expression: '[' was never closed"),
+    ],
+    ids=["no break", "no expression"],
+)
+def test_a_watch_that_would_tell_nothing_is_refused(
+    words: list[str], said: str, program: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["run", program, *words]) == 2
+    out, err = capsys.readouterr()
+    assert said in err
+    assert out == ""

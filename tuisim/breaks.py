@@ -207,12 +207,30 @@ def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
     if condition is None:
         return LineBreak(line)
     condition = condition.strip()
-    try:
-        ast.parse(condition, mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        reason = getattr(error, "msg", None) or str(error)
-        raise _refuse(text, f"{condition!r} is no expression: {reason}", "such as: 12 if x > 3") from error
+    if why := _why_no_expression(condition):
+        raise _refuse(text, why, "such as: 12 if x > 3")
     return LineBreak(line, condition)
+
+
+def _why_no_expression(text: str) -> str:
+    """Say why Python cannot read an expression, empty if it can."""
+    try:
+        ast.parse(text, mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        return f"{text!r} is no expression: {getattr(error, 'msg', None) or error}"
+    return ""
+
+
+def parse_watch(text: str) -> str:
+    """Return an expression to look at, without blanks around it.
+
+    Raises:
+        ConfigError: Python cannot read it.
+    """
+    text = text.strip()
+    if why := _why_no_expression(text):
+        raise ConfigError(why, "such as len(values)", key="watch")
+    return text
 
 
 def _print_rule(text: str, rest: str) -> PrintBreak:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tuisim.breaks import parse_breaks
+from tuisim.breaks import parse_breaks, parse_watch
 from tuisim.core.simulation import NS_PER_S
+from tuisim.errors import ConfigError
 from tuisim.host import RunHandle
 from tuisim.protocol import Look, Looked, Message, Paused, Resume
 
@@ -42,14 +43,19 @@ def add_break_arguments(parser: SwitchParser) -> None:
     add("--break-then", choices=(GO, STOP), default=GO, help="what follows a break (go); stop ends with exit code 3")
 
 
-def check_breaks(texts: Iterable[str], prepared: Iterable[Prepared]) -> None:
-    """Check breaks before anything is run.
+def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]) -> None:
+    """Check breaks and watches before anything is run.
 
     Raises:
-        ConfigError: a text is no break, or not one for the robot of one of the programs.
+        ConfigError: a text is no break, or not one for the robot of one of the programs; a watch is no expression,
+            or there is no break at which it would be told.
     """
     for one in prepared:
         parse_breaks(texts, one.spec.robot)
+    for watch in watches:
+        parse_watch(watch)
+    if watches and not texts:
+        raise ConfigError("is told at breaks only", "give one with --break, such as --break 'time 1'", key="watch")
 
 
 class BreakTeller:

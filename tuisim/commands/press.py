@@ -37,7 +37,8 @@ def parse_press(text: str) -> Press:
     if name not in BUTTONS:
         raise ConfigError(f"the brick has no button {name!r}", nearest(name, BUTTONS), key=FLAG)
     seconds = number(0.0, MAX_PRESS_S)
-    begin, to, end = times.partition("-")
+    # A minus at the start is a sign, and no time is below 0.
+    begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
     from_s = seconds(begin, FLAG)
     until_s = seconds(end, FLAG) if to else from_s + DEFAULT_PRESS_S
     if until_s <= from_s:

@@ -71,7 +71,7 @@ def execute(arguments: Namespace) -> int:
         # A damaged picture shows only when it is read; the catalogue's are whole, and are read when they are needed.
         if os.path.isabs(one.spec.world.background):
             field_files(one.spec)
-    check_breaks(arguments.breaks, prepared)
+    check_breaks(arguments.breaks, arguments.watches, prepared)
     telemetry = arguments.telemetry
     for target in (*arguments.export, telemetry):
         if target is not None:

@@ -159,7 +159,7 @@ def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
         print(json.dumps({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after}))
     else:
         each = f", {after / ticks:.2f} bytes a tick" if ticks else ""
-        print(f"{len(names)} runs: {before:,} → {after:,} bytes{each}")
+        print(f"{len(names)} run{'s' if len(names) != 1 else ''}: {before:,} → {after:,} bytes{each}")
     return code
 
 

@@ -14,9 +14,9 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.breaks import Break, parse_break
+from tuisim.breaks import Break, parse_break, parse_watch
 from tuisim.core.spec import RobotSpec
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.errors import TuisimError
 from tuisim.ui.screens.dialog import Dialog
 
 Entry = TypeVar("Entry")
@@ -184,12 +184,7 @@ class WatchesDialog(_Listed[str]):
 
     def parse(self, text: str) -> str:
         """Return an expression that Python can read."""
-        try:
-            compile(text.strip(), "watch", "eval")
-        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-            reason = getattr(error, "msg", None) or str(error)
-            raise ConfigError(f"{text!r} is no expression: {reason}", "such as len(values)") from error
-        return text.strip()
+        return parse_watch(text)
 
     def written(self, entry: str) -> str:
         """Return the expression."""
