@@ -2,94 +2,168 @@
 
 from __future__ import annotations
 
+import ast
+from collections import Counter
+
 import nbformat
+import numpy as np
 import pytest
-from nbclient import NotebookClient
 from nbformat.notebooknode import NotebookNode
+from PIL import Image
 
 from tests.conftest import ROOT
+from tests.notebook.lesson import CELLS, COLOURS, GREYS, execute, kinds, pictures, result, stream, texts
 
-LOGGER = """\
-import time
-tank_drive.on(SpeedPercent(50), SpeedPercent(50))
-while colorLeft.reflected_light_intensity_pc > 0:
-    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
-    time.sleep(0.1)
-tank_drive.off()
-"""
-SET_UP = """\
-from ev3dev2.motor import MoveTank, SpeedPercent, OUTPUT_B, OUTPUT_C
-from ev3dev2.sensor import INPUT_2
-from ev3dev2.sensor.lego import ColorSensor
-tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)
-colorLeft = ColorSensor(INPUT_2)
-"""
-READ_ALL = """\
-%%sim_magic_preloaded -b Grey_bands -x 300 -R -O
-print(colorLeft.reflected_light_intensity, colorLeft.reflected_light_intensity_pc,
-      colorLeft.full_reflected_light_intensity, colorLeft.color, colorLeft.rgb)
-"""
-CELLS = {
-    "load": "import matplotlib\nmatplotlib.use('agg')\n%load_ext tuisim",
-    "instruments": "%%sim_magic_preloaded -b Rainbow_bands -iHR\nprint(colorLeft.color_name)\n",
-    "arrays": "%sim_magic -b Testcard -A -H",
-    "until black": "%%sim_magic_preloaded -b Grey_bands -R\n" + LOGGER.replace("    time.sleep(0.1)\n", ""),
-    "clear": "%sim_data --clear",
-    "read all": READ_ALL,
-    "colours": "\n".join(["%%sim_magic_preloaded -b Coloured_bands -x 1500 -RW", "print(colorLeft.color_name)"]),
-    "logger": f"%%sim_magic_preloaded -b Grey_bands -x 100 --autorun -W\n{LOGGER}",
-    "logger with set-up": f"%%sim_magic -x 100 --autorun -W\n{SET_UP}{LOGGER}",
-    "frame": "data_df = %sim_data\nprint(len(data_df), sorted(set(data_df.run)))",
-    "head": "data_df.head()",
-    "lineplot": "import seaborn as sns\nax = sns.lineplot(x='index', y='value', hue='variable', data=data_df)\n"
-    "print(len(ax.get_lines()))",
-    "grid": "import matplotlib.pyplot as plt\ng = sns.FacetGrid(data_df, row='variable')\n"
-    "g = g.map(plt.plot, 'index', 'value', marker='x')\nprint(g.axes.shape)",
-}
+pytestmark = pytest.mark.slow
+
+Done = dict[str, NotebookNode]
+
+PLATEAUS = [100.0, 86.27450980392157, 82.74509803921568, 50.19607843137255, 0.0]
+WORLD = "<world, 787 × 381 pixels>"
+WORLD_SIZE = (787, 381)
 
 
-def execute(cells: dict[str, str]) -> dict[str, NotebookNode]:
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells.values()])
-    client = NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(ROOT)}})
-    client.execute()
-    return dict(zip(cells, notebook.cells, strict=True))
+def colours_of(picture: Image.Image) -> Counter[tuple[int, ...]]:
+    return Counter(map(tuple, np.asarray(picture).reshape(-1, 3).tolist()))
 
 
-def stream(cell: NotebookNode, name: str = "stdout") -> str:
-    return "".join(output.text for output in cell.outputs if output.output_type == "stream" and output.name == name)
+@pytest.fixture(scope="module")
+def done() -> Done:
+    return execute(CELLS)
 
 
-def kinds(cell: NotebookNode) -> list[str]:
-    return [next(iter(sorted(output.data))) for output in cell.outputs if "data" in output]
+def levels(cell: NotebookNode) -> list[float]:
+    lines = stream(cell).splitlines()
+    assert all(line.startswith("Colour: ") for line in lines)
+    return [float(line.removeprefix("Colour: ")) for line in lines]
 
 
-@pytest.mark.slow
-def test_the_lesson_runs_from_top_to_bottom() -> None:
-    done = execute(CELLS)
-    assert [stream(cell, "stderr") for cell in done.values()] == [""] * len(done)
-    assert kinds(done["load"]) == kinds(done["clear"]) == []
+def test_nothing_goes_wrong(done: Done) -> None:
+    assert [stream(cell, "stderr") for cell in done.values()] == [""] * len(CELLS)
+    assert [name for name in ("load", "clear", "clear again") if done[name].outputs] == []
+
+
+def test_instruments_and_world_are_shown(done: Done) -> None:
     assert kinds(done["instruments"]) == ["image/png", "text/html"]
-    assert kinds(done["arrays"]) == ["image/png", "image/png"]
-    assert stream(done["until black"]).count("Colour: ") == 265
-    assert stream(done["read all"]) == "220 86.27450980392157 86.27450980392157 6 (220, 220, 220)\n"
-    assert stream(done["colours"]).strip() in ("White", "Red", "Green", "Blue", "Yellow", "Black")
-    assert kinds(done["logger"]) == ["text/plain"]
-    assert stream(done["logger"]) == stream(done["logger with set-up"])
-    lines = stream(done["logger"]).splitlines()
-    assert (lines[0], len(lines)) == ("Colour: 100.0", 46)
-    assert stream(done["frame"]).split(" ", 1)[0] == str(2 * len(lines))
-    assert "Colour" in done["head"].outputs[0].data["text/plain"]
-    assert stream(done["lineplot"]).strip() != "0"
-    assert stream(done["grid"]) == "(1, 1)\n"
+    assert texts(done["instruments"]) == [
+        WORLD,
+        "Instrumentation\n"
+        "  LeftMotor        736 counts, 420 °/s\n"
+        "  RightMotor       736 counts, 420 °/s\n"
+        "  Sensor1 (left)   red 0.0 %, mean 33.3 %, rgb (0, 255, 0), Green\n"
+        "  Sensor2 (right)  red 0.0 %, mean 33.3 %, rgb (0, 255, 0), Green\n"
+        "  Ultrasonic       1882 mm\n"
+        "  Gyro             0°, 0 °/s\n"
+        "  Clock            2.00 s",
+    ]
+    (world,) = pictures(done["instruments"])
+    assert world.size == WORLD_SIZE
+    # The red, green and blue band, and the white around them.
+    places = ((100, 200), (167, 200), (234, 200), (5, 5))
+    assert [world.getpixel(place) for place in places] == [(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)]
+    # The robot stands on two bands: its wheels are black there.
+    assert {world.getpixel((152, row)) for row in (84, 144)} == {(20, 20, 20)}
 
 
-@pytest.mark.slow
+def test_arrays_show_what_the_sensors_see(done: Done) -> None:
+    assert texts(done["arrays"]) == [WORLD, "<sensor arrays, 264 × 120 pixels>"]
+    world, arrays = pictures(done["arrays"])
+    assert (world.size, arrays.size) == (WORLD_SIZE, (264, 120))
+    assert len(colours_of(world)) > 100
+    # Middle and corner of the left array, the gap, middle of the right one: black, no pixel, paper, white.
+    places = ((60, 60), (2, 2), (126, 60), (192, 60))
+    rim = (245, 226, 225)
+    assert [arrays.getpixel(place) for place in places] == [(0, 0, 0), rim, (255, 255, 255), (254, 254, 254)]
+
+
+def test_the_loop_reads_until_black(done: Done) -> None:
+    read = levels(done["until black"])
+    assert (len(read), read[0], read[-1]) == (530, 100.0, 0.0)
+    assert set(PLATEAUS) <= set(read)
+    assert texts(done["until black"]) == [WORLD, "finished · 5.300 s · 530 samples"]
+    (world,) = pictures(done["until black"])
+    greys = [world.getpixel((place // 3, 120)) for place in (100, 360, 760, 1160, 1560)]
+    assert greys == [(grey,) * 3 for grey in (255, *list(GREYS.values())[1:])]
+
+
+@pytest.mark.parametrize("x", GREYS)
+def test_every_property_tells_the_grey(x: int, done: Done) -> None:
+    grey = GREYS[x]
+    name = "1 Black" if grey == 0 else "6 White"
+    percent = dict(zip(GREYS.values(), PLATEAUS, strict=True))[grey]
+    assert stream(done[f"grey {x}"]) == f"{grey} {percent}\n{percent} {name} ({grey}, {grey}, {grey})\n"
+    assert texts(done[f"grey {x}"]) == [WORLD]
+
+
+@pytest.mark.parametrize("x", COLOURS)
+def test_a_colour_is_told_at_each_place(x: int, done: Done) -> None:
+    assert stream(done[f"colour {x}"]) == f"{COLOURS[x]}\n"
+    assert kinds(done[f"colour {x}"]) == []
+
+
+def test_loggers_with_and_without_set_up_log_the_same(done: Done) -> None:
+    assert result(done["none"]) == "0"
+    for name in ("logger", "logger with set-up"):
+        assert levels(done[name])[0::50] == [100.0, 0.0]
+        assert texts(done[name]) == ["finished · 5.610 s · 51 samples"]
+    # Both runs are in the frame; the robot stands where the figures of the old simulator have it.
+    assert ast.literal_eval(result(done["both"]).replace("np.float64", "")) == (True, 51, 102, 1435.16)
+
+
+def test_a_cleared_log_has_the_last_run_only(done: Done) -> None:
+    assert texts(done["the last"]) == []
+    assert stream(done["frame"]) == "51 [1]\n"
+    frame = ast.literal_eval(result(done["columns"]))
+    assert list(frame) == ["index", "variable", "value", "time", "run", "x_mm", "y_mm", "heading_deg", "line"]
+    assert (frame["index"], frame["value"], frame["run"]) == ("timedelta64[ns]", "float64", "int64")
+
+
+def test_the_plateaus_are_exact(done: Done) -> None:
+    found = ast.literal_eval(result(done["plateaus"]))
+    # Between two of them is what a disc on an edge sees.
+    assert set(PLATEAUS) <= set(found)
+    assert sorted(set(levels(done["the last"]))) == found
+    repeated = {level for level in found if levels(done["the last"]).count(level) > 1}
+    assert repeated | {0.0} == set(PLATEAUS)
+
+
+def test_the_head_is_the_first_five_rows(done: Done) -> None:
+    rows = [line.split() for line in result(done["head"]).splitlines()[1:6]]
+    assert [row[:6] for row in rows] == [
+        [str(at), "0", "days", time, "Colour", "100.0"]
+        for at, time in enumerate(("00:00:00.000000", "00:00:00.110000", "00:00:00.220000", "00:00:00.330000",
+                                   "00:00:00.440000"))
+    ]  # fmt: skip
+    assert kinds(done["head"]) == ["text/html"]
+
+
+@pytest.mark.parametrize("name", ["lineplot", "grid"])
+def test_a_chart_is_drawn(name: str, done: Done) -> None:
+    (chart,) = pictures(done[name])
+    assert min(chart.size) > 200
+    # seaborn's and matplotlib's first colour: the line itself.
+    assert colours_of(chart)[31, 119, 180] > 100
+
+
+def test_the_charts_hold_the_data(done: Done) -> None:
+    assert result(done["line"]) == "True"
+    assert result(done["marks"]) == "((1, 1), 'x', 51)"
+
+
+def test_a_lesson_that_is_repeated_comes_out_the_same(done: Done) -> None:
+    noisy = levels(done["noisy"])
+    assert ast.literal_eval(result(done["noisy frame"])) == noisy
+    assert len(set(noisy)) > 5
+    again = execute(CELLS)
+    assert {name: cell.outputs for name, cell in again.items()} == {name: cell.outputs for name, cell in done.items()}
+
+
 def test_the_example_notebook_shows_chart_and_bands() -> None:
     notebook = nbformat.read(ROOT / "programs" / "sensor_to_chart.ipynb", as_version=4)
     cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
-    done = list(execute({text: text for text in cells}).values())
-    assert [stream(cell, "stderr") for cell in done] == [""] * len(done)
-    assert stream(done[1]) == "86.27450980392157\n"
-    assert kinds(done[2]) == ["image/png", "text/plain"]
-    bands = done[4].outputs[0].data["text/plain"]
+    ran = list(execute({text: text for text in cells}).values())
+    assert [stream(cell, "stderr") for cell in ran] == [""] * len(ran)
+    assert stream(ran[1]) == "86.27450980392157\n"
+    assert kinds(ran[2]) == ["image/png", "text/plain"]
+    bands = ran[4].outputs[0].data["text/plain"]
     assert all(level in bands for level in ("100.0", "86.3", "82.7", "50.2"))

@@ -22,6 +22,9 @@ from tuisim.switches import Settings
 
 _LEFT_RIGHT = ("left", "right")
 
+_UNITS = (("_mm", " ", "mm"), ("_dps", " ", "°/s"), ("_deg", "", "°"))
+"""By the end of a column's name, what stands between number and unit, and the unit."""
+
 Row = tuple[str, str]
 
 
@@ -44,7 +47,11 @@ def _reading(name: str, values: dict[str, float]) -> str:
     if f"{name}_red" in values:
         seen = ColorReading(*(values[f"{name}_{channel}"] for channel in ("red", "green", "blue")))
         return f"red {seen.red_percent:.1f} %, mean {seen.mean_percent:.1f} %, rgb {seen.rgb}, {seen.name}"
-    return ", ".join(f"{value:g}" for column, value in values.items() if column.startswith(name))
+    return ", ".join(f"{value:g}{_unit(column)}" for column, value in values.items() if column.startswith(name))
+
+
+def _unit(column: str) -> str:
+    return next((f"{space}{unit}" for end, space, unit in _UNITS if column.endswith(end)), "")
 
 
 @dataclass(frozen=True, slots=True)
