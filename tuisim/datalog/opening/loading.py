@@ -28,7 +28,7 @@ STDIN = "-"
 FIRST_BYTES = 1 << 18
 """Read and shown first."""
 _GZIP_MAGIC, _GZIP_BITS = b"\x1f\x8b", 31
-_SHOW_EVERY_S = 0.5
+_SHOW_EVERY_S = 1.0
 _SHOW_SELDOM = 5.0
 """Times as long as showing took, reading goes on before the next time."""
 _TABLES = (".csv", ".tsv")
