@@ -21,10 +21,18 @@ _TEXT_GAP = 8
 """Unchanged characters that cost less than a new cursor position and style."""
 
 
-class PixelView(Widget):
-    """Shows a picture as half blocks: one column a pixel, one row two."""
+class RowsView(Widget):
+    """A widget that keeps its own rows."""
 
     ALLOW_SELECT = False
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return the rows of a region, without Textual's cache, which would rebuild whole rows."""
+        return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
+
+
+class PixelView(RowsView):
+    """Shows a picture as half blocks: one column a pixel, one row two."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -96,15 +104,9 @@ class PixelView(Widget):
             strip = strip.apply_filter(line_filter, self.background_colors[1])
         return strip
 
-    def render_lines(self, crop: Region) -> list[Strip]:
-        """Return the rows of a region, without Textual's cache, which would rebuild whole rows."""
-        return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
 
-
-class LinesView(Widget):
+class LinesView(RowsView):
     """Shows lines of styled text; only characters that differ are repainted."""
-
-    ALLOW_SELECT = False
 
     def __init__(self) -> None:
         super().__init__()
@@ -148,10 +150,6 @@ class LinesView(Widget):
         for line_filter in self.app.get_line_filters():
             segments = line_filter.apply(segments, self.background_colors[1])
         return TextStrip(segments, self.size.width)
-
-    def render_lines(self, crop: Region) -> list[Strip]:
-        """Return the rows of a region, without Textual's cache, which would rebuild whole rows."""
-        return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
 
 
 def _cut(strips: list[Strip], crop: Region, width: int, style: Style) -> list[Strip]:

@@ -29,7 +29,7 @@ from tuisim.core.spec import (
 )
 from tuisim.errors import RobotError
 from tuisim.switches import MAX_PEN_MM, MIN_PEN_MM, number, pen_color
-from tuisim.ui.form import reason
+from tuisim.ui.form import reason, typed_number
 from tuisim.ui.plan import Plan, with_profile, with_robot, with_robot_edited, with_values
 
 ON, OFF = "on", "off"
@@ -81,10 +81,7 @@ def _shown(value: float) -> str:
 
 
 def _number(text: str) -> float:
-    try:
-        return float(text.strip().replace(",", "."))
-    except ValueError:
-        raise RobotError(f"must be a number, got {text.strip()[:20]!r}") from None
+    return typed_number(text, RobotError)
 
 
 def _whole(text: str) -> int:

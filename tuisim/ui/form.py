@@ -25,6 +25,18 @@ def reason(error: TuisimError) -> str:
     return f"{message} ({error.hint})" if error.hint else message
 
 
+def typed_number(text: str, error: type[ConfigError]) -> float:
+    """Return a number that was typed, with a point or a comma.
+
+    Raises:
+        ConfigError: of the class `error`: it is none.
+    """
+    try:
+        return float(text.strip().replace(",", "."))
+    except ValueError:
+        raise error(f"must be a number, got {text.strip()[:20]!r}") from None
+
+
 class Choice(Widget, can_focus=True):
     """One of several words, changed by ← → or a click."""
 

@@ -16,7 +16,7 @@ from textual.widgets.option_list import Option
 
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
 from tuisim.errors import ConfigError, ObstacleError
-from tuisim.ui.form import reason
+from tuisim.ui.form import reason, typed_number
 from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import Snapshot
 
@@ -147,7 +147,8 @@ class Obstacles(Vertical):
             entry.remove_class("wrong")
             return
         try:
-            box = _changed(self._boxes[self.at], entry.id or "", entry.value)
+            changed = {entry.id or "": typed_number(entry.value, ObstacleError)}
+            box = replace(self._boxes[self.at], **changed)
         except ConfigError as error:
             entry.add_class("wrong")
             self._say(f"{_FIELDS[entry.id or '']} {reason(error)}")
@@ -175,19 +176,3 @@ class Obstacles(Vertical):
     def _say(self, wrong: str) -> None:
         self.query_one("#message", Static).update(wrong or _USE)
         self.set_class(bool(wrong), "-wrong")
-
-
-def _changed(box: Obstacle, field: str, text: str) -> Obstacle:
-    try:
-        value = float(text.strip().replace(",", "."))
-    except ValueError:
-        raise ObstacleError(f"must be a number, got {text.strip()[:20]!r}") from None
-    match field:
-        case "x_mm":
-            return replace(box, x_mm=value)
-        case "y_mm":
-            return replace(box, y_mm=value)
-        case "width_mm":
-            return replace(box, width_mm=value)
-        case _:
-            return replace(box, height_mm=value)
