@@ -7,6 +7,7 @@ import json
 from tests.ui.app_help import notices, ready, settings, until
 from tuisim.ui.app import Lab
 from tuisim.ui.panels.brick import Brick
+from tuisim.ui.snapshot import PAUSED, RUNNING
 
 WATCHES = """\
 from ev3dev2.button import Button
@@ -126,3 +127,24 @@ async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
         await pilot.press("plus", "W")
         await pilot.pause()
         assert app.desk.shown("world")
+
+
+async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
+    app = Lab(settings(WATCHES, speed=4.0, panels_on=frozenset({"brick"})))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: "ready" in printed(app))
+        assert app.desk.brick is not None
+        app.desk.brick.focus()
+        await pilot.press("shift+up")
+        await until(pilot, lambda: "up" in printed(app))
+        assert actions(app) == [["up"]]
+        await pilot.press("comma")
+        await until(pilot, lambda: app.bridge.snapshot().past)
+        await pilot.press("enter")
+        await until(pilot, lambda: any("not in the past" in text for text in notices(app)))
+        assert app.bridge.pressed == {"up"}
+        await pilot.press("y", "y")
+        await until(pilot, lambda: app.bridge.state in (RUNNING, PAUSED) and actions(app) == [["up"], []])
+        assert (app.bridge.pressed, app.desk.brick.held) == (frozenset(), frozenset())

@@ -182,6 +182,8 @@ class Lab(Wishes):
             self.desk.output.clear()
         if self.desk.chart:
             self.desk.chart.clear()
+        if self.desk.brick:
+            self.desk.brick.release_all()
         self.work.run_changed()
         if self.desk.code:
             self.desk.code.mark_run_error(error_line)

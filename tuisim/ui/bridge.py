@@ -93,6 +93,9 @@ class Bridge(Shown):
         if branch is not None and held is not None:
             early = held.tick < branch.tick
             self._send(protocol.SetSpeed(self.speed))
+            if branch.of.pressed_at(branch.tick + 1) and not early:
+                # Whoever held them then has let go meanwhile.
+                self._send(protocol.SetButtons(()))
             if branch.then is not None and not early:
                 self._send(branch.then)
             if early or (branch.goes_on and not self.in_past):
@@ -108,6 +111,7 @@ class Bridge(Shown):
     def _look_at(self, recording: Recording) -> None:
         self.timeline.take(recording)
         self._pending.forget()
+        self.pressed = frozenset()
         self._moved = False
 
     def stop(self) -> None:
@@ -155,6 +159,8 @@ class Bridge(Shown):
 
     def press(self, buttons: frozenset[str]) -> None:
         """Hold these of the brick's buttons down, and no others."""
+        if buttons == self.pressed:
+            return
         self.pressed = buttons
         self._send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
 

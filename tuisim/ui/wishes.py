@@ -109,8 +109,10 @@ class Wishes(EditorWishes):
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
         """The user presses the brick's buttons, or lets them go."""
-        if self.bridge.in_run or not message.buttons:
+        if message.buttons <= self.bridge.pressed or (self.bridge.in_run and not self.bridge.in_past):
             self.bridge.press(message.buttons)
+        elif self.bridge.in_run:
+            self.notify("The brick's buttons work now, not in the past: end comes back", timeout=3)
         else:
             self.notify("The brick's buttons work while a program runs: R runs it", timeout=3)
 

@@ -116,8 +116,8 @@ class Brick(Widget, can_focus=True):
         return frozenset((*self._tapped, *self._latched, *filter(None, [self._clicked])))
 
     def _works(self, name: str) -> bool:
-        """Whether there is a program to press a button for."""
-        if self._snapshot is not None and self._snapshot.state in IN_RUN:
+        """Whether there is a program to press a button for, and it is looked at now."""
+        if self._snapshot is not None and self._snapshot.state in IN_RUN and not self._snapshot.past:
             return True
         self.post_message(self.Pressed(frozenset({name})))
         return False
