@@ -45,7 +45,6 @@ class Snapshot:
     pen_down: bool
     further: Mapping[str, float] = dataclasses.field(default_factory=dict)
     """What the sensors measure that not every robot has, by telemetry column, such as `bumper_pressed`."""
-    notice: str = ""
     stalled: tuple[bool, bool] = (False, False)
     """Whether the left and the right motor are told to run but cannot turn."""
     next_spec: RunSpec | None = None

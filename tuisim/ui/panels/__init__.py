@@ -1,6 +1,6 @@
 """Panels: one file a panel, and the table of them.
 
-To add a panel: write its file, a `Widget` with `PANEL_ID`, `TITLE` and
+To add a panel: write its file, a `Widget` with `TITLE` and
 `show(snapshot)`, and add a line to `PANELS`. Its key, its place on the screen, the help
 and the command palette follow from the line.
 """
@@ -25,7 +25,6 @@ MAIN, BOTTOM, SIDE = "main", "bottom", "side"
 class Panel(Protocol):
     """What every panel has besides being a `Widget`."""
 
-    PANEL_ID: ClassVar[str]
     TITLE: ClassVar[str]
 
     def show(self, snapshot: Snapshot) -> None:

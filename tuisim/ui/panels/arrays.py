@@ -25,7 +25,6 @@ _LABEL = Style(color="#a8a8a8")
 class Arrays(Widget):
     """The panel: a line of names above the discs where there is room for it."""
 
-    PANEL_ID: ClassVar[str] = "arrays"
     TITLE: ClassVar[str] = "Sensor arrays"
 
     DEFAULT_CSS = """

@@ -26,7 +26,6 @@ _PERIOD_S = 0.33
 class Chart(Widget, can_focus=True):
     """The panel. Data that comes while it is hidden is kept."""
 
-    PANEL_ID: ClassVar[str] = "chart"
     TITLE: ClassVar[str] = "Chart"
     FROZEN: ClassVar[str] = "frozen: f follows again"
 

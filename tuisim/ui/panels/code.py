@@ -30,7 +30,6 @@ _TYPING_KEYS = "esc done  ^s save  ^r run  ^f find"
 class Code(Vertical):
     """The program's text."""
 
-    PANEL_ID: ClassVar[str] = "code"
     TITLE: ClassVar[str] = "Code"
 
     BINDINGS: ClassVar[list[BindingType]] = [

@@ -20,7 +20,6 @@ _LABEL_CELLS = 9
 class Controls(Widget, can_focus=False):
     """Run, Stop and Pause, speed, program, mat, profile, seed, pen and state."""
 
-    PANEL_ID: ClassVar[str] = "controls"
     TITLE: ClassVar[str] = "Simulator controls"
     ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {"controls--button", "controls--off", "controls--label"}

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 class Debug(Widget, can_focus=True):
     """The panel."""
 
-    PANEL_ID: ClassVar[str] = "debug"
     TITLE: ClassVar[str] = "Debug"
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [

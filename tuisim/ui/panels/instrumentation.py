@@ -32,7 +32,6 @@ _COLUMN = 12
 class Instrumentation(Widget):
     """The panel. It has three forms, by height: 11 lines, 9 lines, 6 lines."""
 
-    PANEL_ID: ClassVar[str] = "instrumentation"
     TITLE: ClassVar[str] = "Instrumentation"
 
     DEFAULT_CSS = """

@@ -25,7 +25,6 @@ _USE = "At once; seed at next run"
 class Noise(Vertical):
     """Two sliders with a field each, and the seed."""
 
-    PANEL_ID: ClassVar[str] = "noise"
     TITLE: ClassVar[str] = "Noise"
 
     @dataclass

@@ -34,7 +34,6 @@ def box_label(number: int, box: Obstacle) -> str:
 class Obstacles(Vertical):
     """The list, the four numbers of the box at hand, and what can be done."""
 
-    PANEL_ID: ClassVar[str] = "obstacles"
     TITLE: ClassVar[str] = "Obstacles"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("plus,insert", "add", "Add", show=False),

@@ -35,7 +35,6 @@ class Answer(Input):
 class Output(Vertical):
     """What the program prints."""
 
-    PANEL_ID: ClassVar[str] = "output"
     TITLE: ClassVar[str] = "Output"
 
     class Answered(Message):

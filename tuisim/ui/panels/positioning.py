@@ -39,7 +39,6 @@ def parse_field(field: str, text: str) -> float:
 class Positioning(Vertical):
     """X, Y and angle of the robot."""
 
-    PANEL_ID: ClassVar[str] = "positioning"
     TITLE: ClassVar[str] = "Positioning"
 
     class Applied(Message):

@@ -26,7 +26,6 @@ _LINKS = (
 class Settings(VerticalScroll, can_focus=False):
     """A form as long as it takes, scrolled."""
 
-    PANEL_ID: ClassVar[str] = "settings"
     TITLE: ClassVar[str] = "Settings"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("down", "app.focus_next", "Next field", show=False),

@@ -52,7 +52,6 @@ class _Grip:
 class World(Widget, can_focus=True):
     """The panel: a frame around the picture."""
 
-    PANEL_ID: ClassVar[str] = "world"
     TITLE: ClassVar[str] = "World"
 
     DEFAULT_CSS = """
