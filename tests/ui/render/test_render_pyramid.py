@@ -1,8 +1,11 @@
 from __future__ import annotations
 
+from dataclasses import astuple
+
 import numpy as np
 import pytest
 
+from tuisim.datalog.analysis.statistics import summary_of
 from tuisim.ui.render.pyramid import Pyramid
 from tuisim.ui.render.xy import seen_points, xy_lines
 
@@ -26,6 +29,19 @@ def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
     assert pyramid.times_s.tolist() == [1.0, 3.0, 5.0]
     assert [pyramid.nearest(time_s) for time_s in (-9.0, 1.9, 2.1, 4.1, 99.0)] == [1, 1, 0, 3, 3]
     assert pyramid.between(1.0, 3.0)[1].tolist() == [10.0, 30.0]
+
+
+@pytest.mark.parametrize("span", [(0.0, 200.0), (3.0011, 171.9), (5.008, 5.02), (90.0, 80.0)], ids=str)
+def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
+    values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
+    inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]
+    found, expected = Pyramid(TIMES, values).figures(*span), summary_of(inside, quantiles=())
+    assert astuple(found)[:6] == pytest.approx(astuple(expected)[:6], rel=1e-9, nan_ok=True)
+
+
+def test_equal_values_have_no_spread() -> None:
+    found = Pyramid(TIMES, np.full(len(TIMES), 0.1)).figures(0.0, 150.0)
+    assert (found.mean, found.std) == (0.1, 0.0)
 
 
 def test_no_points_at_all() -> None:

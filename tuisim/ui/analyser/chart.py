@@ -10,7 +10,6 @@ from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.datalog.analysis.statistics import summary_of
 from tuisim.ui.analyser.aligning import DISTANCE
 from tuisim.ui.cellview import LinesView
 from tuisim.ui.render import axes
@@ -187,7 +186,7 @@ def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
         if stop_s > start_s:
             slope = (after - before) / (model.cursor_s - model.mark_s)
             line += [("  slope ", plain), (f"{slope:.4g}/{unit}", strong)]
-    figures = summary_of(trace.pyramid.between(start_s, stop_s)[1], quantiles=())
+    figures = trace.pyramid.figures(start_s, stop_s)
     for word, value in (("n", figures.count), ("mean", figures.mean), ("std", figures.std), ("min", figures.min),
                         ("max", figures.max)):  # fmt: skip
         text = f"{value:.5g}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from tuisim.datalog.analysis.statistics import Summary, summary_of
 from tuisim.datalog.arrays import FloatArray
 
 _BLOCK = 16
@@ -12,6 +13,8 @@ _BLOCK = 16
 _ENOUGH = 4
 """Blocks for each column of the chart: with fewer, edges would be seen at the wrong column."""
 
+_SUMMED_AT_ONCE = 10_000
+"""Points whose figures are reckoned one by one."""
 
 _MOST = 1e150
 """What is larger cannot be reckoned with: the distance between two such numbers may be infinite."""
@@ -37,6 +40,7 @@ class Pyramid:
             times_s, values = times_s[order], values[order]
             self._index = order if self._index is None else self._index[order]
         self.times_s, self.values = times_s, values
+        self._sums: tuple[FloatArray, FloatArray] | None = None
         self._levels: list[tuple[FloatArray, FloatArray]] = []
         while len(self._levels[-1][0] if self._levels else values) > _BLOCK:
             self._add_level()
@@ -79,9 +83,42 @@ class Pyramid:
 
     def between(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
         """Return the points of a span, both ends included."""
-        first = int(np.searchsorted(self.times_s, start_s, "left"))
-        last = int(np.searchsorted(self.times_s, stop_s, "right"))
+        first, last = self._span(start_s, stop_s)
         return self.times_s[first:last], self.values[first:last]
+
+    def _span(self, start_s: float, stop_s: float) -> tuple[int, int]:
+        first, last = np.searchsorted(self.times_s, start_s, "left"), np.searchsorted(self.times_s, stop_s, "right")
+        return int(first), int(last)
+
+    def figures(self, start_s: float, stop_s: float) -> Summary:
+        """Return the figures of the points of a span, both ends included, without quantiles."""
+        first, last = self._span(start_s, stop_s)
+        if last - first <= _SUMMED_AT_ONCE:
+            return summary_of(self.values[first:last], quantiles=())
+        # Whole blocks are known, only what is left of those at both ends is looked at.
+        begin, end = -(-first // _BLOCK), last // _BLOCK
+        ends = np.concatenate((self.values[first : begin * _BLOCK], self.values[end * _BLOCK : last]))
+        means, squares = (part[begin:end] for part in self._moments())
+        least, greatest = (part[begin:end] for part in self._levels[0])
+        low = float(np.minimum.reduce(ends, initial=float(least.min())))
+        high = float(np.maximum.reduce(ends, initial=float(greatest.max())))
+        count = last - first
+        mean = low if low == high else float(means.sum() * _BLOCK + ends.sum()) / count
+        off = squares.sum() + _BLOCK * np.square(means - mean).sum() + np.square(ends - mean).sum()
+        return Summary(count, 0, low, mean, high, float(np.sqrt(off / (count - 1))) if low != high else 0.0, ())
+
+    def _moments(self) -> tuple[FloatArray, FloatArray]:
+        """Mean of each whole block, and the sum of its squared distances from that; reckoned once."""
+        if self._sums is None:
+            whole = self.values[: len(self.values) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+            means, squares = np.empty(len(whole)), np.empty(len(whole))
+            # Bit by bit, so that a long log needs no second place for all its values.
+            for at in range(0, len(whole), _SUMMED_AT_ONCE):
+                part = slice(at, at + _SUMMED_AT_ONCE)
+                means[part] = whole[part].mean(axis=1)
+                squares[part] = np.square(whole[part] - means[part, np.newaxis]).sum(axis=1)
+            self._sums = means, squares
+        return self._sums
 
 
 def _measurable(numbers: FloatArray) -> bool:
