@@ -113,9 +113,17 @@ class Slider(Widget, can_focus=True):
         """Let go of the knob."""
         if self.dragging:
             event.stop()
-            self.dragging = False
+            self._let_go()
             self.release_mouse()
-            self.post_message(self.Changed(self, self._value))
+
+    def on_mouse_release(self) -> None:
+        """Let go: a dialog has taken the mouse."""
+        if self.dragging:
+            self._let_go()
+
+    def _let_go(self) -> None:
+        self.dragging = False
+        self.post_message(self.Changed(self, self._value))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         """Go up a step."""

@@ -196,7 +196,14 @@ class Brick(Widget, can_focus=True):
     def on_mouse_up(self, event: events.MouseUp) -> None:
         """Let go."""
         if self._clicked:
-            before = self.held
-            self._clicked = ""
+            self._unclick()
             self.release_mouse()
-            self._changed(before)
+
+    def on_mouse_release(self) -> None:
+        """Let go: a dialog has taken the mouse."""
+        if self._clicked:
+            self._unclick()
+
+    def _unclick(self) -> None:
+        before, self._clicked = self.held, ""
+        self._changed(before)

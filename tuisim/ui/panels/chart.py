@@ -221,5 +221,9 @@ class Chart(Widget, can_focus=True):
             self._dragging = False
             self.release_mouse()
 
+    def on_mouse_release(self) -> None:
+        """Let go: a dialog has taken the mouse."""
+        self._dragging = False
+
     def _cursor_to(self, column: int, picture: ChartPicture) -> None:
         self._put_cursor(axes.at_column(column - picture.left, picture.x_limits, picture.columns))

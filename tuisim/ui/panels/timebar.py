@@ -174,3 +174,7 @@ class TimeBar(LinesView):
             event.stop()
             self._dragging = False
             self.release_mouse()
+
+    def on_mouse_release(self) -> None:
+        """Stay there: a dialog has taken the mouse."""
+        self._dragging = False

@@ -334,6 +334,14 @@ class WorldView(PixelView):
         if self._held is not None:
             self._tell(self._held, True)
 
+    def on_mouse_release(self) -> None:
+        """Give up a drag: a dialog has taken the mouse."""
+        if self._grip is not None:
+            self._grip, self._held_shows = None, _SHOWS_UNTIL_TAKEN
+        if self._box_grip is not None:
+            self._draft = self._box_grip = None
+            self._draw()
+
     def _drop_box(self, grip: BoxGrip) -> None:
         draft, self._draft, self._box_grip = self._draft, None, None
         if draft is not None:
