@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import groupby
+from itertools import groupby, islice
 from typing import Any
 
 from tuisim.core.spec import RunSpec
@@ -34,8 +34,16 @@ ROWS_AT_ONCE = 2000
 ROWS_AFTER_INTERRUPT = 1000
 """So many lines of an interrupted run are still shown; its log has them all."""
 
+ROWS_A_DRAWING = 20_000
+"""So many lines are searched for samples between two looks at the interrupt."""
+
+BYTES_IN_A_HURRY = 1 << 20
+"""So much output is counted at once."""
+
 FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
 """What the lines begin with that are meant for the responder."""
+
+RUNNING = "running"
 
 Responder = Callable[[str], object]
 _SHOWN = {STDOUT, STDERR, SPEECH}
@@ -89,15 +97,24 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
             handle.close()
             done = store.load_run(handle.run_id)
             begun(done)
-        _Screen(wanted, stage, done).draw(told_end(done))
+        # The user who has interrupted a flood of lines does not wait for all of them to be read.
+        hurry = interruption.count > 0
+        _Screen(wanted, stage, done).draw(told_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
     return done
 
 
-def told_end(run: StoredRun) -> str:
-    """Return one line on a run that is over: how it ended, simulated time, samples."""
+def told_end(run: StoredRun, *, hurry: bool = False) -> str:
+    """Return one line on a run that is over: how it ended, simulated time, samples.
+
+    Args:
+        run: The run.
+        hurry: Leave out the samples, if they would take long to count.
+    """
     what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
-    samples = sum(1 for _ in samples_of(run.output.rows()))
-    return f"{run.state}{what} · {run.end.time_ns / 1e9 if run.end else 0.0:.3f} s · {samples} samples"
+    told = f"{run.state}{what} · {run.end.time_ns / 1e9 if run.end else 0.0:.3f} s"
+    if hurry and run.output.length > BYTES_IN_A_HURRY:
+        return told
+    return f"{told} · {sum(1 for _ in samples_of(run.output.rows()))} samples"
 
 
 class _Follower:
@@ -119,6 +136,8 @@ class _Follower:
     def to_the_end(self) -> None:
         """Wait until the run is over, and pass everything on meanwhile."""
         handle, interruption = self._handle, self._interruption
+        # Before anything is printed: what a cell shows stands in the same order however fast the program is.
+        self._screen.draw(RUNNING)
         more = False
         while handle.ended is None:
             if interruption.count > 1:
@@ -162,9 +181,8 @@ class _Follower:
         shown = 0
         while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._pass_on():
             shown += ROWS_AT_ONCE
-        rest = sum(row.stream in _SHOWN for row in self._handle.output.new_rows())
-        if rest:
-            print(f"… and {rest} more lines, which are in the log", file=sys.stderr)
+        if self._handle.output.new_rows(1):
+            print("… and more lines, which are in the log", file=sys.stderr)
         ended = self._handle.ended
         if ended and ended.error and not any(row.stream == STDERR for row in self._handle.output.rows()):
             print(ended.error.rstrip("\n"), file=sys.stderr)
@@ -184,16 +202,22 @@ class _Screen:
         """Draw if the last drawing is old."""
         if time.monotonic() < self._due:
             return
-        self.draw(f"running · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
+        self.draw(f"{RUNNING} · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
         # Counted from the end of the drawing: what is slow to draw must not be all that is done.
         self._due = time.monotonic() + self._wanted.refresh_s
 
-    def draw(self, status: str) -> None:
-        """Draw the run as it is now."""
+    def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
+        """Draw the run as it is now.
+
+        Args:
+            status: One line about it.
+            most_rows: So many of its lines are searched for further samples, None for all.
+        """
         wanted, run = self._wanted, self._run
-        for row, after in run.output.rows_from(self._position):
-            self._samples += samples_of((row,))
-            self._position = after
+        if self._stage.shows("chart"):
+            for row, after in islice(run.output.rows_from(self._position), most_rows):
+                self._samples += samples_of((row,))
+                self._position = after
         last = run.telemetry.last() or start_record(wanted.spec)
         traces = (*wanted.traces, pen_trace(wanted.spec, run.telemetry.array()))
         self._stage.show(Scene(wanted.spec, wanted.files, wanted.program.text, last, traces, self._samples), status)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import io
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -144,6 +145,10 @@ class Stage:
             if handle is not None:
                 self._handles[panel] = handle
 
+    def shows(self, panel: str) -> bool:
+        """Return whether the cell has put a panel on."""
+        return panel in self._settings.panels_on
+
     def show(self, scene: Scene, status: str) -> None:
         """Draw all panels.
 
@@ -151,6 +156,9 @@ class Stage:
             scene: What there is to show.
             status: One line about the run.
         """
+        # A kernel sends what is printed now and then, but displays at once.
+        sys.stdout.flush()
+        sys.stderr.flush()
         on, off, spec = self._settings.panels_on, self._settings.panels_off, scene.spec
         if "world" not in off:
             mat, pose = mat_pixels(scene.files), scene.last.pose
