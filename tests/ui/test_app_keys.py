@@ -9,7 +9,7 @@ from textual.widgets import Input, OptionList, Static
 
 from tests.ui.app_help import LOGS, lab, notices, ready, screen_text, settings, until
 from tuisim.core.geometry import Pose
-from tuisim.ui.actions import ACTIONS, Action, Situation
+from tuisim.ui.actions import ACTIONS, Action, Situation, working
 from tuisim.ui.app import Lab
 from tuisim.ui.footer import fitting
 from tuisim.ui.panels import LARGE, PANELS
@@ -257,3 +257,8 @@ def test_each_line_of_the_table_is_an_action(action: Action) -> None:
 
 def test_keys_differ() -> None:
     assert len({action.key for action in ACTIONS.values()}) == len(ACTIONS)
+
+
+def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
+    shown = fitting(working(Situation(PAUSED, True, True, in_past=True, looks_back=True)), 80)
+    assert [action.id for action in shown[:2]] == ["now", "branch"]

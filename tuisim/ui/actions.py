@@ -248,6 +248,10 @@ ACTIONS: Mapping[str, Action] = {
 """Every key by the id of what it does."""
 
 
+_OUT_OF_THE_PAST = ("now", "branch")
+
+
 def working(now: Situation) -> list[Action]:
-    """Return the actions that do something now, in the order of the table."""
-    return [action for action in ACTIONS.values() if not action.why_not(now)]
+    """Return the actions that do something now, in the order of the table; in the past first those that lead out."""
+    found = [action for action in ACTIONS.values() if not action.why_not(now)]
+    return sorted(found, key=lambda action: action.id not in _OUT_OF_THE_PAST) if now.looks_back else found

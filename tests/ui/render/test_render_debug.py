@@ -1,11 +1,30 @@
-"""Where a program stands, in words."""
+"""The words of the debug panel where there is little to say, or little room."""
 
 from __future__ import annotations
 
-from tuisim.protocol import PAUSES
-from tuisim.ui.render.debug import REASONS
+import pytest
+
+from tuisim.held import FrameState
+from tuisim.protocol import Looked, Paused
+from tuisim.ui.render.debug import DebugView, debug_lines
 
 
-def test_every_reason_to_stand_has_its_word() -> None:
-    assert set(REASONS) == set(PAUSES)
-    assert all(REASONS.values())
+def text(view: DebugView, width: int) -> list[str]:
+    return ["".join(part for part, _ in line) for line in debug_lines(view, width)]
+
+
+@pytest.mark.parametrize("width", [26, 38])
+@pytest.mark.parametrize("state", ["idle", "running", "waiting", "ended"])
+def test_all_keys_are_told_in_a_narrow_panel_too(state: str, width: int) -> None:
+    narrow, wide = text(DebugView(state), width), text(DebugView(state), 80)
+    assert max(map(len, narrow)) <= width
+    assert " ".join(narrow).split() == " ".join(wide).split()
+
+
+def test_a_module_beside_the_program_is_named() -> None:
+    frames = (FrameState("drive", 4, "/home/ann/helper.py"), FrameState("<module>", 3, ""))
+    looked = Looked(5, 50_000_000, "main", 0, "", (), frames, (), (), ())
+    paused = Paused(5, 50_000_000, 4, "step", file="/home/ann/helper.py")
+    rows = text(DebugView("paused", paused, looked), 60)
+    assert rows[0] == "line 4 of helper.py · 0.05 s · tick 5"
+    assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,6 +32,11 @@ REASONS = {
 }  # fmt: skip
 """Words for `protocol.PAUSES`."""
 
+DOES = {
+    "running": ("space  pauses    n  holds at the next line",),
+    "waiting": ("The Output panel takes the answer.",),
+}
+"""By state of a program that stands nowhere: what can be done."""
 OVER = (
     "The program is over.",
     "",
@@ -63,10 +70,10 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     """Return the text for a panel of that inner width."""
     if view.paused is None or view.looked is None:
         if view.busy:
-            return [[("working out that instant …", _PALE)]]
-        if view.state == "running":
-            return [[("running", _HEAD)], [("space pauses, n holds at the next line", _PALE)]]
-        return [[(text[:width], _PALE)] for text in (OVER if view.state == "ended" else EMPTY)]
+            return _told("", ("working out that instant …",), width)
+        if view.state in DOES:
+            return _told(view.state, DOES[view.state], width)
+        return _told("", OVER if view.state == "ended" else EMPTY, width)
     paused, looked = view.paused, view.looked
     lines = [_where(view, paused, width)]
     why = REASONS.get(paused.reason, paused.reason) + (f" {paused.detail}" if paused.detail else "")
@@ -95,6 +102,14 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     if looked.note:
         lines.append([(_cut(looked.note, width), _PALE)])
     return lines
+
+
+def _told(head: str, texts: Sequence[str], width: int) -> list[Line]:
+    """Words where there is nothing else to show; in a narrow panel each key has a line of its own."""
+    if max(map(len, texts)) > width:
+        parts = [part for text in texts for part in re.split(" {3,}", text)]
+        texts = [row for part in parts for row in textwrap.wrap(part, width) or [""]]
+    return [*([[(head, _HEAD)]] if head else []), *([(text, _PALE)] for text in texts)]
 
 
 def _where(view: DebugView, paused: Paused, width: int) -> Line:
