@@ -82,7 +82,7 @@ def test_only_radial_grey_moves_sensors() -> None:
 
 
 def test_every_mat_is_listed_in_order() -> None:
-    assert list(assets.backgrounds()) == list(STARTS)
+    assert [name for name in assets.backgrounds() if name in STARTS] == list(STARTS)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, cast
 
+from tuisim.datalog.formats import LISTED
 from tuisim.errors import ConfigError
 from tuisim.switches import SwitchParser, nearest
 
@@ -98,7 +99,7 @@ def add_arguments(parser: SwitchParser) -> None:
     parser.add_argument(
         "--out",
         metavar="FILE",
-        help="write the result: .csv, .parquet, .jsonl, .arrow; of plot .svg, .png, .txt; of report .html",
+        help=f"write the result: {LISTED}; of plot .svg, .png, .txt; of report .html",
     )
     for option, declared in OPTIONS.items():
         parser.add_argument(f"--{option}", **declared)

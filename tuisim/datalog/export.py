@@ -182,25 +182,16 @@ def read_metadata(path: str | Path) -> dict[str, Any]:
     """
     source = _source(path)
     try:
-        if EXPORTERS[source.suffix.lower()].companion:
+        inside = EXPORTERS[source.suffix.lower()].inside
+        if inside is None:
             beside = companion_of(source)
             text = beside.read_bytes() if beside.exists() else b"{}"
         else:
-            text = _schema_metadata(source).get(METADATA_KEY, b"{}")
+            text = inside(source).get(METADATA_KEY, b"{}")
         found = json.loads(text)
     except (OSError, ValueError) as error:
         raise LogError(f"cannot be read: {error}", file=str(source)) from error
     return found if isinstance(found, dict) else {}
-
-
-def _schema_metadata(source: Path) -> Mapping[bytes, bytes]:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    if source.suffix.lower() == ".parquet":
-        return pq.read_schema(source).metadata or {}
-    with pa.OSFile(str(source)) as handle, pa.ipc.open_file(handle) as reader:
-        return reader.schema.metadata or {}
 
 
 def _source(path: str | Path) -> Path:

@@ -38,8 +38,13 @@ class Exporter:
 
     write: Callable[[pd.DataFrame, Metadata, BinaryIO], None]
     read: Callable[[Path], pd.DataFrame]
-    companion: bool
-    """Whether the metadata goes into a file of its own, NAME.csv.json, for want of room inside."""
+    inside: Callable[[Path], Mapping[bytes, bytes]] | None = None
+    """What a file says besides its rows; None if it has no room for that."""
+
+    @property
+    def companion(self) -> bool:
+        """Whether the metadata goes into a file of its own, NAME.csv.json."""
+        return self.inside is None
 
 
 def _write_csv(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
@@ -136,10 +141,26 @@ def _read_arrow(path: Path) -> pd.DataFrame:
     return pd.read_feather(path)
 
 
+def _inside_parquet(path: Path) -> Mapping[bytes, bytes]:
+    import pyarrow.parquet as pq
+
+    return pq.read_schema(path).metadata or {}
+
+
+def _inside_arrow(path: Path) -> Mapping[bytes, bytes]:
+    import pyarrow as pa
+
+    with pa.OSFile(str(path)) as handle, pa.ipc.open_file(handle) as reader:
+        return reader.schema.metadata or {}
+
+
 EXPORTERS: Mapping[str, Exporter] = {
-    ".csv": Exporter(_write_csv, _read_csv, companion=True),
-    ".parquet": Exporter(_write_parquet, _read_parquet, companion=False),
-    ".jsonl": Exporter(_write_jsonl, _read_jsonl, companion=True),
-    ".arrow": Exporter(_write_arrow, _read_arrow, companion=False),
+    ".csv": Exporter(_write_csv, _read_csv),
+    ".parquet": Exporter(_write_parquet, _read_parquet, _inside_parquet),
+    ".jsonl": Exporter(_write_jsonl, _read_jsonl),
+    ".arrow": Exporter(_write_arrow, _read_arrow, _inside_arrow),
 }
-"""Every format by the suffix of its files. To add one: write its two functions and a line here."""
+"""Every format by the suffix of its files. To add one: write its functions and a line here."""
+
+LISTED = f"{', '.join([*EXPORTERS][:-1])} or {[*EXPORTERS][-1]}"
+"""The suffixes in words."""

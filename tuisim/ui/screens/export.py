@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
+from tuisim.datalog.formats import LISTED
 from tuisim.errors import TuisimError
 from tuisim.ui.screens.saving import FileDialog
 
@@ -29,7 +30,7 @@ class ExportDialog(FileDialog):
 
     TITLE_TEXT: str = "Export the log"
     HINT: str = "Enter writes · ctrl+t samples or telemetry · Escape closes"
-    SUFFIXES: ClassVar[str] = ".csv, .parquet, .jsonl or .arrow"
+    SUFFIXES: ClassVar[str] = LISTED
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+t", "switch", "Samples or telemetry", show=False)]
 
     def __init__(self, run_id: str, program: str) -> None:
@@ -39,19 +40,15 @@ class ExportDialog(FileDialog):
 
     def more(self) -> ComposeResult:
         """What goes in."""
-        yield Static(id="kind")
-
-    def on_mount(self) -> None:
-        """Show what goes in."""
-        self._show_kind()
+        yield Static(self._kind(), id="kind")
 
     def action_switch(self) -> None:
         """Samples or telemetry."""
         self._telemetry = not self._telemetry
-        self._show_kind()
+        self.query_one("#kind", Static).update(self._kind())
 
-    def _show_kind(self) -> None:
-        self.query_one("#kind", Static).update(f"[@click=screen.switch]{_KINDS[self._telemetry]}[/]")
+    def _kind(self) -> str:
+        return f"[@click=screen.switch]{_KINDS[self._telemetry]}[/]"
 
     def checked(self, path: Path) -> Path:
         """Refuse what no exporter can write."""
