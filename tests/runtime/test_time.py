@@ -34,6 +34,10 @@ PROGRAMS = {
         "print(round(time.monotonic(), 1))",
         ["1 0", "1 1", "3 0", "3 1", "0.6"],
     ),
+    "what a lock looks like": (
+        "import threading\nlock = threading.Lock()\nwith lock: print(lock, type(lock).__name__)\nprint(lock)",
+        ["<locked _thread.lock object> lock", "<unlocked _thread.lock object>"],
+    ),
     "event": (
         "import threading, time\ne = threading.Event()\nthreading.Timer(0.5, e.set).start()\n"
         "print(e.wait(2), round(time.monotonic(), 1), e.wait(0.1))",

@@ -23,6 +23,12 @@ def patch_threads(baton: Baton) -> None:
         def __init__(self) -> None:
             super().__init__(baton)
 
+        def __repr__(self) -> str:
+            # As Python's own, but for the address, which no two runs have in common.
+            return f"<{'locked' if self.locked() else 'unlocked'} _thread.lock object>"
+
+    LockType.__module__, LockType.__name__, LockType.__qualname__ = "_thread", "lock", "lock"
+
     def start_new_thread(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any = None) -> int:
         task = baton.spawn(lambda: _run_bare(function, args, kwargs or {}), daemon=True)
         # The library spins until its new thread has begun: let it begin.
