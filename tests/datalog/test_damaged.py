@@ -101,6 +101,11 @@ CASES: dict[str, Case] = {
         CSV.replace(",2", ",x2").encode(),
         Read(40, left_out=6, note="rows 3, 12, 13"),
     ),
+    "a line of blanks and words in one column": (
+        "a.csv",
+        b"red\n5\n  \n6\noops\n7\n",
+        Read(5, left_out=1, note="'red' hold no number (row 5"),
+    ),
     "empty cells": (
         "a.csv",
         CSV.replace(",20\n", ",\n").encode(),

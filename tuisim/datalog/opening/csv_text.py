@@ -156,7 +156,8 @@ def _count(mask: Any) -> int:
 
 
 def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
-    rows = [row for row, _ in block.lines()]
+    # A line of nothing but blanks is a row to the library's parser.
+    rows = [row for row, line in enumerate(block.text.split(b"\n"), block.first_row) if line]
     return [rows[at] for at in positions]
 
 
