@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
-from IPython.core.displaypub import CapturingDisplayPublisher
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
 from jupyter_client.blocking.client import BlockingKernelClient
 from jupyter_client.manager import KernelManager, start_new_kernel
 
+import tuisim
 from tests.conftest import ROOT
 
 
@@ -39,18 +39,25 @@ class Shown:
 Cell = Callable[[str], Shown]
 
 
+@pytest.fixture(scope="session")
+def shell() -> Iterator[InteractiveShell]:
+    """One for all tests, because to make one is slow."""
+    InteractiveShell.clear_instance()
+    yield InteractiveShell.instance()
+    InteractiveShell.clear_instance()
+
+
 @pytest.fixture
-def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Cell]:
+def cell(shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch) -> Cell:
     """`cell(text)` runs a cell in a shell that has loaded tuisim; the simulator is as new."""
     from tuisim.notebook import lab, magics
 
     fresh = lab.Lab()
     monkeypatch.setattr(lab, "roboSim", fresh)
     monkeypatch.setattr(magics, "roboSim", fresh)
-    InteractiveShell.clear_instance()
-    shell = InteractiveShell.instance()
-    assert not isinstance(shell.display_pub, CapturingDisplayPublisher)
-    shell.run_line_magic("load_ext", "tuisim")
+    shell.reset(new_session=False)
+    # As %load_ext does for the first time.
+    tuisim.load_ipython_extension(shell)
 
     def run(text: str) -> Shown:
         with capture_output() as captured:
@@ -61,8 +68,7 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Cell]:
         done.raise_error()
         return Shown(captured.stdout, captured.stderr, bundles, done.result)
 
-    yield run
-    InteractiveShell.clear_instance()
+    return run
 
 
 class Kernel:

@@ -39,41 +39,6 @@ def test_the_log_has_the_plateaus_and_adds_up_until_it_is_cleared(cell: Cell) ->
     assert cell("%sim_data").result.equals(once)
 
 
-SHOWS = [
-    ("", "<world,"),
-    ("-A", "<sensor arrays,"),
-    ("--array", "<sensor arrays,"),
-    ("-c", "<chart,"),
-    ("--chart", "<chart,"),
-    ("-i", "Instrumentation\n  LeftMotor"),
-    ("--instrumentation", "Sensor1 (left)   red 100.0 %"),
-    ("-X", "Positioning\n  x        150.0 mm"),
-    ("--positioning", "heading  0.0°"),
-    ("-z -N 7 -M 9", "Noise\n  light  7\n  motor  9"),
-    ("--noisecontrols --sensornoise 8", "light  8"),
-    ("-Z", "mat        Grey_bands"),
-    ("--settings --seed 5", "seed       5"),
-    ("-Z --profile ev3", "profile    ev3"),
-    ("-Z -r Small_Robot", "robot      Small_Robot"),
-    ("-Z -o Wall", "obstacles  1"),
-    ("-X -x 11 -y 22 -a -90", "x        11.0 mm\n  y        22.0 mm\n  heading  -90.0°"),
-    ("-D", "print('ran')"),
-    ("--code", "print('ran')"),
-    ("-O", "ready: -R runs the program"),
-    ("-OAc", "<chart,"),
-    ("-p -P green -C -u -q -F 0.5 -m -S -L", "<world,"),
-    ("--pendown --pencolor orange --clear --ultrasound --quiet --refresh --move --stop --collab", "<world,"),
-    ("-s roboSim", "<world,"),
-]
-
-
-@pytest.mark.parametrize(("words", "seen"), SHOWS, ids=[words or "nothing" for words, _ in SHOWS])
-def test_switch_shows(words: str, seen: str, cell: Cell) -> None:
-    shown = cell(program(f"-b Grey_bands {words}"))
-    assert (shown.err, shown.out) == ("", "")
-    assert seen in shown.plain
-
-
 @pytest.mark.parametrize(
     ("words", "pictures", "status"),
     [("-R", 1, True), ("--autorun -W", 0, True), ("-RH", 1, False), ("-RHW", 0, False), ("-OHRA", 2, False)],
@@ -81,17 +46,6 @@ def test_switch_shows(words: str, seen: str, cell: Cell) -> None:
 def test_what_is_hidden_is_not_there(words: str, pictures: int, status: bool, cell: Cell) -> None:
     shown = cell(program(words))
     assert (shown.out, shown.pictures, "finished · " in shown.plain) == ("ran\n", pictures, status)
-
-
-@pytest.mark.parametrize("words", ["-v", "--preview", "--previewcode"])
-def test_preview_shows_the_program(words: str, cell: Cell) -> None:
-    assert cell(program(words)).out == "print('ran')\n\n"
-
-
-@pytest.mark.parametrize("words", ["-h", "--help"])
-def test_help_tells_every_switch(words: str, cell: Cell) -> None:
-    told = cell(f"%sim_magic {words}").out
-    assert all(flag in told for flag in ("--background", "--collab", "--seed", "-F", "-s NAME"))
 
 
 @pytest.mark.parametrize(
@@ -135,7 +89,7 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("words", "told"), MISTAKES, ids=[words for words, _ in MISTAKES])
 def test_a_mistake_is_one_line_and_changes_nothing(words: str, told: str, cell: Cell) -> None:
-    cell(program("-b Grey_bands -x 300"))
+    cell(program("-b Grey_bands -x 300 -WH"))
     before = cell("%sim_robot_state").result
     shown = cell(program(f"-R -y 77 {words}", "print('never')"))
     assert (shown.out, shown.bundles) == ("", ())
@@ -143,7 +97,7 @@ def test_a_mistake_is_one_line_and_changes_nothing(words: str, told: str, cell: 
     assert told in shown.err
     assert shown.err.count("\n") == 1
     assert cell("%sim_robot_state").result == before
-    assert cell("%sim_magic -RW").out == "ran\n"
+    assert cell("roboSim.program_text").result == "print('ran')\n"
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,7 @@ def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
     assert "line 2" in done.stderr
 
 
+@pytest.mark.slow
 def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
     cells = [("code", f"%%sim_magic_preloaded -x {100 * at}\nprint('Number: {at}')\n") for at in range(20)]
     done = here("run", write(tmp_path / "twenty.ipynb", cells), "--all")

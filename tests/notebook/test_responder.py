@@ -49,6 +49,7 @@ ANSWERS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("answer", "got"), ANSWERS, ids=[answer for answer, _ in ANSWERS])
 def test_an_answer_is_what_json_can_hold(answer: str, got: str, cell: Cell) -> None:
     cell(f"roboSim.responder = lambda text: {answer}")

@@ -145,7 +145,8 @@ class Lab:
         if runs:
             self._run(plan, stage, words)
         else:
-            stage.show(*self._scene(plan))
+            scene, status = self._scene(plan)
+            stage.show(scene, f"nothing is running · {status}" if words.stop else status)
 
     def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _Plan:
         from tuisim.config import build_run_spec

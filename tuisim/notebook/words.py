@@ -51,7 +51,7 @@ def _parser(magic: str) -> SwitchParser:
     add("-s", "--sim", metavar="NAME", help="variable that holds the simulator (roboSim)")
     add("-h", "--help", action="store_true", help="show this")
     add("-v", "--preview", "--previewcode", action="store_true", help="show the program")
-    add("-S", "--stop", action="store_true", help="nothing runs between cells: shows how the last run ended")
+    add("-S", "--stop", action="store_true", help="tells that nothing runs: a program stops with its cell")
     add("-m", "--move", action="store_true", help="robot back to its start")
     add("-F", "--refresh", nargs="?", const=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S, metavar="S",
         type=lambda text: refresh(text, "-F"), help="seconds between two drawings")  # fmt: skip
