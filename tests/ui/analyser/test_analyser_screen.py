@@ -196,7 +196,7 @@ async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
         analyser = Analyser(Wanted(runs=(run.id,)))
         await lab.push_screen(analyser)
         await until(pilot, lambda: analyser.model is not None)
-        await pilot.press("j", "d", "c", "left", "shift+up")
+        await pilot.press("d", "escape", "B", "i", "left", "shift+up")
         assert lab.screen is analyser
         assert lab.bridge.snapshot().instant.pose == pose
         await pilot.press("ctrl+p")

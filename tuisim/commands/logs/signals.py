@@ -10,9 +10,8 @@ import numpy as np
 
 from tuisim.commands.logs.results import show_frame
 from tuisim.commands.logs.sources import names_of, the_source
-from tuisim.core.spec import from_plain
 from tuisim.datalog.analysis.expressions import evaluate
-from tuisim.datalog.analysis.reckoning import dead_reckoning, error_mm
+from tuisim.datalog.analysis.logreckon import reckoned_series
 from tuisim.datalog.analysis.signals import HOLD, derivative, integral, moving_average, resample, value_at
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.export import check_target
@@ -20,7 +19,7 @@ from tuisim.datalog.opening import Log, Series
 from tuisim.datalog.opening.exporting import export_log
 from tuisim.datalog.opening.layout import is_numeric
 from tuisim.datalog.opening.plain import numbers_of
-from tuisim.errors import ConfigError, LogError
+from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -104,28 +103,9 @@ def reckon(arguments: Namespace) -> int:
     """Where the wheels' counts say that the robot is, and how far off that is."""
     arguments.telemetry = True
     log = the_source(arguments)
-    frame = log.table.to_pandas()
-    needed = ("left_position_deg", "right_position_deg", "x_mm", "y_mm", "heading_deg")
-    missing = [name for name in needed if name not in frame.columns]
-    try:
-        spec = from_plain({k: v for k, v in log.metadata["runs"][0].items() if k not in ("run", "program")})
-    except (KeyError, IndexError, TypeError) as error:
-        hint = "a stored run, or its telemetry exported to a file"
-        raise LogError("does not know the robot", hint, file=log.title) from error
-    if missing:
-        raise LogError(f"no column {missing[0]!r}", "a stored run, or its telemetry exported", file=log.title)
-    start = spec.world.start
-    found = dead_reckoning(
-        frame["left_position_deg"].to_numpy(), frame["right_position_deg"].to_numpy(), start, spec.robot
-    )
-    off = error_mm(found, frame["x_mm"].to_numpy(), frame["y_mm"].to_numpy())
-    kept = frame[["time", "x_mm", "y_mm", "heading_deg"]]
-    show_frame(
-        kept.assign(
-            reckoned_x_mm=found.x_mm, reckoned_y_mm=found.y_mm, reckoned_heading_deg=found.heading_deg, error_mm=off
-        ),
-        arguments,
-    )
+    made = {series.name: series.values for series in reckoned_series(log)}
+    frame = log.table.select(["time", "x_mm", "y_mm", "heading_deg"]).to_pandas()
+    show_frame(frame.assign(**made), arguments)
     return 0
 
 

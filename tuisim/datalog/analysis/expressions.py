@@ -51,7 +51,10 @@ def _difference(values: FloatArray) -> FloatArray:
     return values - _shifted(values)
 
 
-FUNCTIONS: Mapping[str, tuple[int, Callable[..., Any], str]] = {
+Functions = Mapping[str, tuple[int, Callable[..., Any], str]]
+"""By name: how many arguments, what it does, in words."""
+
+FUNCTIONS: Functions = {
     "abs": (1, np.abs, "without its sign"),
     "sqrt": (1, np.sqrt, "square root"),
     "exp": (1, np.exp, "e to this power"),
@@ -70,17 +73,18 @@ FUNCTIONS: Mapping[str, tuple[int, Callable[..., Any], str]] = {
     "shift": (1, _shifted, "the row before"),
     "diff": (1, _difference, "the change since the row before"),
 }
-"""By name: how many arguments, what it does, in words."""
+"""What every expression may call."""
 
 CONSTANTS: Mapping[str, float] = {"pi": np.pi}
 
 
-def evaluate(text: str, columns: Mapping[str, FloatArray]) -> FloatArray:
+def evaluate(text: str, columns: Mapping[str, FloatArray], functions: Functions = FUNCTIONS) -> FloatArray:
     """Return the value of an expression in each row.
 
     Args:
         text: The expression; a column whose name is no Python name is written in backticks.
         columns: Arrays of one length by name.
+        functions: What it may call.
 
     Returns:
         Shape (n,); conditions are 1 where they hold and 0 elsewhere.
@@ -88,15 +92,34 @@ def evaluate(text: str, columns: Mapping[str, FloatArray]) -> FloatArray:
     Raises:
         LogError: what is wrong with the expression, and what there is instead.
     """
-    if len(text) > MAX_CHARS:
-        raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
-    names: dict[str, str] = {}
-    parsed = _parse(_without_backticks(text, names), text)
+    parsed, names = _read(text)
     length = len(next(iter(columns.values()))) if columns else 0
     # A division by zero is a value like any other here: inf or not a number.
     with np.errstate(all="ignore"):
-        value = _Evaluation(columns, names, text).value(parsed.body)
+        value = _Evaluation(columns, names, text, functions).value(parsed.body)
     return np.broadcast_to(np.asarray(value, np.float64), (length,)).copy()
+
+
+def names_in(text: str) -> list[str]:
+    """Return the columns that an expression names, in the order in which they first stand there.
+
+    Raises:
+        LogError: it cannot be read.
+    """
+    parsed, names = _read(text)
+    called = {id(node.func) for node in ast.walk(parsed) if isinstance(node, ast.Call)}
+    found = [node for node in ast.walk(parsed) if isinstance(node, ast.Name) and id(node) not in called]
+    found.sort(key=lambda node: (node.lineno, node.col_offset))
+    named = dict.fromkeys(names.get(node.id, node.id) for node in found)
+    return [name for name in named if name not in CONSTANTS]
+
+
+def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
+    """Return an expression, and the names in backticks by what stands for them in it."""
+    if len(text) > MAX_CHARS:
+        raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
+    names: dict[str, str] = {}
+    return _parse(_without_backticks(text, names), text), names
 
 
 def _without_backticks(text: str, names: dict[str, str]) -> str:
@@ -128,10 +151,13 @@ class _Evaluation:
         columns: Arrays by name.
         names: Names in backticks by what stands for them.
         text: The whole expression, for messages.
+        functions: What it may call.
     """
 
-    def __init__(self, columns: Mapping[str, FloatArray], names: Mapping[str, str], text: str) -> None:
-        self._columns, self._names, self._text = columns, names, text
+    def __init__(
+        self, columns: Mapping[str, FloatArray], names: Mapping[str, str], text: str, functions: Functions
+    ) -> None:
+        self._columns, self._names, self._text, self._functions = columns, names, text, functions
 
     def value(self, node: ast.expr) -> Any:
         """Return the value of a node: an array or a number.
@@ -177,9 +203,9 @@ class _Evaluation:
         raise LogError(f"no column {name!r}", f"there are {', '.join(self._columns) or 'none'}")
 
     def _called(self, name: str, arguments: list[ast.expr]) -> Any:
-        if name not in FUNCTIONS:
-            raise LogError(f"no function {name!r}", f"there are {', '.join(FUNCTIONS)}")
-        count, function, _ = FUNCTIONS[name]
+        if name not in self._functions:
+            raise LogError(f"no function {name!r}", f"there are {', '.join(self._functions)}")
+        count, function, _ = self._functions[name]
         if len(arguments) != count:
             raise LogError(f"{name} takes {count} {'value' if count == 1 else 'values'}, got {len(arguments)}")
         return function(*(self.value(argument) for argument in arguments))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -62,6 +62,8 @@ class Log:
     """Rows or cells that could not be read."""
     metadata: Mapping[str, Any] = field(default_factory=dict)
     """What an export of ours says of its runs."""
+    derived: Mapping[str, Series] = field(default_factory=dict)
+    """Series that were reckoned from others, by name."""
     _kept: _Kept = field(default_factory=_Kept, repr=False, compare=False)
 
     @property
@@ -72,7 +74,7 @@ class Log:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the series, in the order in which they first appear; of several runs with `#` and its number."""
-        return tuple(self._members())
+        return (*self._members(), *self.derived)
 
     def _members(self) -> Mapping[str, Member]:
         kept = self._kept
@@ -91,6 +93,8 @@ class Log:
         Raises:
             LogError: there is none of that name.
         """
+        if name in self.derived:
+            return self.derived[name]
         if name not in self._kept.series:
             member = self._members().get(name)
             if member is None:
@@ -129,4 +133,30 @@ class Log:
 
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another meaning of its columns."""
-        return replace(self, layout=layout, _kept=_Kept())
+        return replace(self, layout=layout, derived={}, _kept=_Kept())
+
+    def with_derived(self, column: str, series: Sequence[Series]) -> Log:
+        """Return the same log with series that were reckoned from its own.
+
+        Args:
+            column: Name of the column of the table that they become where each has its rows for itself.
+            series: One, or one a run.
+        """
+        bare = self.without_derived(column)
+        derived = {**bare.derived, **{one.name: one for one in series}}
+        table = bare.table
+        if all((np.diff(one.rows) > 0).all() for one in series):
+            cells = np.full(self.rows, np.nan)
+            for one in series:
+                cells[one.rows] = one.values
+            table = table.append_column(column, pa.array(cells, from_pandas=True))
+        return replace(bare, table=table, derived=derived)
+
+    def without_derived(self, column: str) -> Log:
+        """Return the same log without what was reckoned under a name."""
+        derived = {name: one for name, one in self.derived.items() if name.partition(" #")[0] != column}
+        if len(derived) == len(self.derived):
+            return self
+        table = self.table.drop_columns([column]) if column in self.table.column_names else self.table
+        kept = replace(self._kept, numbers={name: at for name, at in self._kept.numbers.items() if name != column})
+        return replace(self, table=table, derived=derived, _kept=kept)

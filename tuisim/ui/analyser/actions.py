@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.ui.analyser import doing, noting, outward, tabling
+from tuisim.ui.analyser import defining, doing, noting, outward, tabling
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.screen import Analyser
@@ -74,6 +74,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("hold", "H", "H", "Hold each value until the next, or not", CHART, doing.hold),
         Action("align", "A", "A", "Lay runs over each other by time, distance or an event", CHART, doing.ask_alignment),
         Action("against", "k", "k", "Draw the path, or one variable against another", CHART, doing.ask_against),
+        Action("derive", "d", "d", "Reckon a variable: slope(Colour), (Left + Right) / 2", LOG, defining.ask, "reckon"),
         Action("larger", "plus", "+", "Chart and pane, chart alone, pane alone", CHART, doing.larger, of_rows=False),
         Action("column-before", "less_than_sign", "<", "Column before", TABLE, partial(tabling.choose, step=-1)),
         Action("column", "greater_than_sign", ">", "Next column", TABLE, partial(tabling.choose, step=1)),

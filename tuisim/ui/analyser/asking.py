@@ -2,18 +2,61 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
+from typing import ClassVar
 
 from rich.table import Table
 from textual import on
 from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.suggester import Suggester
 from textual.widgets import Input, Static
 
 from tuisim.errors import TuisimError
 from tuisim.ui.screens.dialog import Dialog
 
+_LAST_WORD = re.compile(r"`[^`]+$|[^\W\d]\w*$")
+
 Form = tuple[str, str]
 """What may be typed, and what it means."""
+
+
+class _Line(Input):
+    """The field: tab takes the offered end of the word.
+
+    Args:
+        value: What stands there at first.
+        words: What may be offered.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "cursor_right", "Take the offered word", show=False)]
+
+    def __init__(self, value: str, words: Sequence[str]) -> None:
+        super().__init__(value, compact=True, select_on_focus=False, suggester=Offering(words) if words else None)
+
+
+class Offering(Suggester):
+    """Offers the first word that begins like the one that is being typed.
+
+    Args:
+        words: In the order in which they are offered.
+    """
+
+    def __init__(self, words: Sequence[str]) -> None:
+        super().__init__(use_cache=False, case_sensitive=True)
+        self._words = words
+
+    async def get_suggestion(self, value: str) -> str | None:
+        """Return the line with its last word ended, None if there is nothing to offer."""
+        match = _LAST_WORD.search(value)
+        if match is None:
+            return None
+        typed = match[0]
+        begun = (word for word in self._words if word.lower().startswith(typed.lower()) and len(word) > len(typed))
+        word = next(begun, None)
+        # What was typed stays: an offer only adds to it.
+        return None if word is None else value + word[len(typed) :]
 
 
 class Asking(Dialog[bool]):
@@ -24,12 +67,21 @@ class Asking(Dialog[bool]):
         do: Does it; a TuisimError is told and the line can be mended.
         value: What stands there at first.
         forms: What may be typed.
+        words: What the word that is being typed may become; tab takes what is offered.
     """
 
     HINT = "Enter does it · Escape closes"
 
-    def __init__(self, title: str, do: Callable[[str], None], value: str = "", forms: Sequence[Form] = ()) -> None:
+    def __init__(
+        self,
+        title: str,
+        do: Callable[[str], None],
+        value: str = "",
+        forms: Sequence[Form] = (),
+        words: Sequence[str] = (),
+    ) -> None:
         super().__init__()
+        self._words = words
         self.TITLE_TEXT = title.replace("[", "\\[")
         self._do = do
         self._value = value
@@ -37,7 +89,7 @@ class Asking(Dialog[bool]):
 
     def content(self) -> ComposeResult:
         """The field, what is wrong with what stands there, and what may stand there."""
-        yield Input(self._value, compact=True, select_on_focus=False)
+        yield _Line(self._value, self._words)
         yield Static(id="message", classes="wrong", markup=False)
         forms = Table.grid(padding=(0, 2))
         for form, meaning in self._forms:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ from tuisim.datalog.notes import Note, read_notes, write_notes
 from tuisim.datalog.opening.layout import is_numeric
 from tuisim.errors import LogError
 from tuisim.ui.analyser.aligning import TIME, aligned
+from tuisim.ui.analyser.deriving import derive
 from tuisim.ui.analyser.rows import Rows
 from tuisim.ui.analyser.traces import LogTrace, LogTraces
 from tuisim.ui.render.axes import Limits
@@ -24,6 +26,7 @@ from tuisim.ui.render.axes import Limits
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from tuisim.datalog.opening import Log
     from tuisim.ui.analyser.subject import Subject
 
 _LEAST_SPAN = 1e-9
@@ -61,6 +64,8 @@ class Model:
         self._reports: dict[str, BandReport] = {}
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
         """The bands of the reports that were last asked for."""
+        self.definitions: dict[str, str] = {}
+        """What was derived, as it was typed, by its name."""
         self._words: dict[str, str] = {}
         """What was found, in a sentence for each variable."""
         self._summaries: dict[str, Summary] = {}
@@ -161,16 +166,36 @@ class Model:
         if other.row == other.log.rows - 1:
             # Whoever looks at the end of a log that grows goes on looking at its end.
             self.row = self.log.rows - 1
-        if other.selected in self.traces:
-            self.selected = other.selected
+        for text in other.definitions.values():
+            derive(self, text)
         for trace in other.traces:
             if trace.name in self.traces:
                 self.traces.named(trace.name).on = trace.on
+        if other.selected in self.traces:
+            self.selected = other.selected
         self.rows.take_over(other.rows)
         if other.alignment != TIME:
-            limits = self.limits
-            self.align(other.alignment)
-            self.limits, self.mark_s = limits, other.mark_s
+            self._align_again(other.alignment)
+
+    def take_log(self, log: Log) -> None:
+        """Turn to the same log with other derived variables."""
+        self.log, self.subject = log, replace(self.subject, log=log)
+        before = {trace.name: trace for trace in self.traces}
+        self.traces.take_log(log)
+        self.rows.take_log(log)
+        for name, trace in before.items():
+            if name not in self.traces or self.traces.named(name) is not trace:
+                self._reports.pop(name, None)
+                self._summaries.pop(name, None)
+        if self.selected not in self.traces:
+            self.selected = next(iter(self.traces)).name
+        if self.alignment != TIME:
+            self._align_again(self.alignment)
+
+    def _align_again(self, way: str) -> None:
+        limits, mark_s = self.limits, self.mark_s
+        self.align(way)
+        self.limits, self.mark_s = limits, mark_s
 
     def go_to_row(self, row: int) -> None:
         """Go to a row of the table, the nearest there is."""

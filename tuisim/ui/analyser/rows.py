@@ -174,6 +174,20 @@ class Rows:
             self.frozen += 1
         self.columns.insert(self.column, name)
 
+    def take_log(self, log: Log) -> None:
+        """Turn to the same log with columns more or less; those that are new are shown."""
+        before, names = self._log.table.column_names, log.table.column_names
+        chosen = self.chosen
+        self._log = log
+        self.frozen = sum(name in names for name in self.columns[: self.frozen])
+        self.columns = [name for name in self.columns if name in names] or list(names)
+        self.columns += [name for name in names if name not in before and name not in self.columns]
+        self.column = self.columns.index(chosen) if chosen in self.columns else 0
+        gone = [at for at in (self.sorted_by, *(one.column for one in self.conditions)) if at and at not in names]
+        if gone:
+            self.sorted_by = "" if self.sorted_by in gone else self.sorted_by
+            self.filter(tuple(one for one in self.conditions if one.column not in gone))
+
     def take_over(self, other: Rows) -> None:
         """Show the same columns and conditions as another table of the same log."""
         self.columns, self.frozen, self.column = other.columns, other.frozen, other.column

@@ -66,6 +66,9 @@ class Analyser(ModalScreen[None]):
         self.wanted = wanted
         self.model: Model | None = None
         self.searched = ""
+        self.working = ""
+        """What is being done beside the screen, in a word."""
+        self._work: object = None
         self._searching: Model | None = None
         """The log that is being searched for bands."""
         self._reading = False
@@ -199,6 +202,20 @@ class Analyser(ModalScreen[None]):
         self._searching = None
         self.update()
 
+    def begin(self, word: str) -> object:
+        """Say what is being done beside the screen; return what tells this work from newer work."""
+        self.working = word
+        self._work = token = object()
+        self.update()
+        return token
+
+    def end(self, token: object, then: Callable[[], None]) -> None:
+        """Take the result of work, unless newer work has begun."""
+        if token is self._work:
+            self.working, self._work = "", None
+            then()
+            self.update()
+
     def redraw_chart(self) -> None:
         """Draw the chart anew, in another way."""
         if self.model is not None:
@@ -237,7 +254,8 @@ class Analyser(ModalScreen[None]):
                 f"row {self.model.row + 1:,} of {self.model.log.rows:,} · {self.model.time_of(self.model.row):.2f} s"
             )
         kind = " · telemetry" if self.wanted.telemetry else ""
-        self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {place}   {progress}", Style())]])
+        told = "   ".join(word for word in (place, progress, self.working) if word)
+        self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {told}", Style())]])
 
     def _show_keys(self) -> None:
         shown = [action for action in ACTIONS.values() if action.footer]

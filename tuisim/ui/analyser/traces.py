@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +22,8 @@ _LIGHT = "_red"
 """End of the names of what a colour sensor measures in red light."""
 _ANGLES = ("_deg", "_mm", "_dps")
 """Ends of names whose values do not fit the scale of light."""
+_SEEN = 5.0
+"""A variable that takes up less than one such part of a scale has the other one."""
 
 
 class LogTrace(Trace):
@@ -35,6 +37,7 @@ class LogTrace(Trace):
 
     def __init__(self, log: Log, name: str, number: int) -> None:
         super().__init__(name, number)
+        self.number = number
         self.on = number < MOST_ON
         self.other_scale = self.other_scale or name.partition(" #")[0].endswith(_ANGLES)
         self._places: FloatArray | None = None
@@ -61,6 +64,22 @@ class LogTrace(Trace):
     def places(self) -> FloatArray:
         """Where its samples stand along the chart, shape (n,): their times, unless it was aligned in another way."""
         return self.series.time_s if self._places is None else self._places
+
+    def is_derived_otherwise(self, log: Log) -> bool:
+        """Whether a log has another derived variable of this name."""
+        return self.name in log.derived and log.derived[self.name] is not self.series
+
+    def is_like(self, others: Sequence[LogTrace]) -> bool:
+        """Whether its values can be seen on the scale of others that are on the left one."""
+        own = self._least_and_greatest()
+        left = [other._least_and_greatest() for other in others if not other.other_scale]
+        low, high = min((at[0] for at in left), default=0.0), max((at[1] for at in left), default=0.0)
+        least, greatest = min(low, own[0]), max(high, own[1])
+        return min(high - low, own[1] - own[0]) * _SEEN >= greatest - least
+
+    def _least_and_greatest(self) -> Limits:
+        values = self.pyramid.values
+        return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
 
     def align(self, places: FloatArray | None) -> None:
         """Put its samples elsewhere along the chart; None: at their times."""
@@ -105,6 +124,20 @@ class LogTraces(Traces):
         names = (name for name in log.names if not log.layout.variable or len(log.series(name).rows))
         self._all = [LogTrace(log, name, number) for number, name in enumerate(names)]
         self._tick_light()
+        self._by_log_name = {trace.name: trace for trace in self._all}
+
+    def take_log(self, log: Log) -> None:
+        """Turn to the same log with other derived variables; those that are new are ticked."""
+        kept = [trace for trace in self._all if trace.name in log.names and not trace.is_derived_otherwise(log)]
+        known = {trace.name for trace in kept}
+        number = max((trace.number for trace in kept), default=-1)
+        added = [name for name in log.derived if name not in known]
+        new = [LogTrace(log, name, number + at) for at, name in enumerate(added, 1)]
+        shown = [trace for trace in kept if trace.on]
+        for trace in new:
+            trace.on = True
+            trace.other_scale = bool(shown) and not trace.is_like(shown)
+        self._all = [*kept, *new]
         self._by_log_name = {trace.name: trace for trace in self._all}
 
     def _tick_light(self) -> None:

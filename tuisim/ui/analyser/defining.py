@@ -1,0 +1,59 @@
+"""Asking for a variable that is made of others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from tuisim.datalog.analysis.derived import SIGNALS, TIME
+from tuisim.datalog.analysis.expressions import CONSTANTS, FUNCTIONS
+from tuisim.datalog.analysis.logreckon import NEEDED
+from tuisim.datalog.opening.layout import is_numeric
+from tuisim.ui.analyser.asking import Asking, Form
+from tuisim.ui.analyser.deriving import RECKONING, take, with_definition
+from tuisim.ui.analyser.working import work
+
+if TYPE_CHECKING:
+    from tuisim.datalog.opening import Log
+    from tuisim.ui.analyser.screen import Analyser
+
+_FORMS: tuple[Form, ...] = (
+    ("speed = slope(x_mm)", "change a second; a name before it if you like"),
+    ("average(Colour, 5)", "mean of the 5 samples around each"),
+    ("integral(Colour)", "sum over time"),
+    ("resample(Colour, 0.1)", "at even moments, every 0.1 s"),
+    ("(Left + Right) / 2", "+ - * / // % ** < > == and or not, a if b else c"),
+    ("speed =", "takes it away again"),
+)
+_RECKONING: Form = (RECKONING, "where the wheels say the robot is, and the error_mm")
+
+
+def ask(screen: Analyser) -> None:
+    """Ask for a variable that is made of others."""
+    model = screen.model
+    if model is None:
+        return
+
+    def go(text: str) -> None:
+        work(screen, "reckoning …", model.log.rows, lambda: with_definition(model, text), taken)
+
+    def taken(made: tuple[str, Log]) -> None:
+        text, log = made
+        if screen.model is model:
+            take(model, text, log)
+            screen.redraw_chart()
+            screen.update()
+
+    can_reckon = set(NEEDED) <= set(model.log.table.column_names)
+    forms = (*_FORMS, *((_RECKONING,) if can_reckon else ()), ("functions", ", ".join(FUNCTIONS)))
+    screen.app.push_screen(Asking("Reckon a variable", go, forms=forms, words=tuple(words(model.log))))
+
+
+def words(log: Log) -> Iterator[str]:
+    """Yield what may stand in an expression: variables, columns, functions."""
+    columns = (at.name for at in log.table.schema if is_numeric(at.type))
+    known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *columns, TIME))
+    yield from (name if name.isidentifier() else f"`{name}`" for name in known)
+    yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
+    yield from CONSTANTS
+    yield RECKONING
