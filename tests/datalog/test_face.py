@@ -16,7 +16,7 @@ from tuisim.datalog.face import (
     led_row,
     motors_row,
 )
-from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, STDOUT, OutputRow
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, SPEECH, STDOUT, OutputRow
 
 
 def row(text: str, stream: int) -> OutputRow:
@@ -44,6 +44,10 @@ def test_newest_screen_is_shown() -> None:
     face = face_after(Face(), [row(console_row(screen), CONSOLE), row(display_row(BLANK), DISPLAY)])
     assert face.text == screen
     assert not face.shows_text
+
+
+def test_the_last_sound_is_kept() -> None:
+    assert face_after(Face(), [row("[beep]", SPEECH), row("hello", SPEECH), row("Colour: 3", STDOUT)]).sound == "hello"
 
 
 def test_motors_turn_evenly_on() -> None:

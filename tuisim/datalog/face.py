@@ -1,4 +1,4 @@
-"""What is seen of the brick, as rows of the output: lights, picture, text screen, motors that do not drive the robot.
+"""What is seen of the brick, as rows of the output: lights, picture, text screen, sounds, further motors.
 
 Pure Python: the child writes it.
 
@@ -13,7 +13,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
-from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, OutputRow
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, SPEECH, OutputRow
 
 DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128
 """Pixels of the display."""
@@ -55,6 +55,8 @@ class Face:
     As they were at `turns_tick`; they turn evenly on. Empty until one of them has turned.
     """
     turns_tick: int = 0
+    sound: str = ""
+    """What it said or played last; in brackets, what was heard otherwise than as speech."""
 
     def turns_at(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
         """Return `turns` as they are at a later time."""
@@ -94,6 +96,8 @@ def face_after(face: Face, rows: Iterable[OutputRow]) -> Face:
                 columns, count, lines, inverse = json.loads(row.text)
                 spans = tuple((line, start, end) for line, start, end in inverse)
                 face = replace(face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True)
+            case stream if stream == SPEECH:
+                face = replace(face, sound=row.text)
             case stream if stream == MOTORS:
                 turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
                 face = replace(face, turns=turns, turns_tick=row.tick)

@@ -207,8 +207,6 @@ class Lab(Wishes):
     def _take(self, news: News) -> None:
         for sound in news.spoken:
             self.voice.make_heard(sound)
-            if self.desk.brick:
-                self.desk.brick.heard(sound.text)
         for event in news.held:
             self.debugging.take(event)
         if news.rows:

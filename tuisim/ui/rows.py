@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, STDERR, STDOUT, TEXT_STREAMS, OutputRow
+from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, SPEECH, STDERR, STDOUT, TEXT_STREAMS, OutputRow
 from tuisim.datalog.samples import parse_sample
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SAMPLE, ERROR = "sample", "error"
 """What is marked of the output: a sample that reached another level, an error text."""
 
-_FACE_STREAMS = (LED, DISPLAY, CONSOLE, MOTORS)
+_FACE_STREAMS = (LED, DISPLAY, CONSOLE, MOTORS, SPEECH)
 _LEVEL_SHARE = 0.15
 """A sample that has gone so much of its variable's range is on another level."""
 
@@ -83,7 +83,7 @@ class RowIndex:
         self._starts.append(self._end)
         if row.stream in TEXT_STREAMS:
             self._texts.append(number)
-        elif row.stream in self._faces:
+        if row.stream in self._faces:
             self._faces[row.stream].append(number)
         if row.stream == STDERR:
             if not self.marks or self.marks[-1] != (row.tick, ERROR):

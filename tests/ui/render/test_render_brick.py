@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -21,14 +23,14 @@ def picture(*dark: tuple[slice, slice]) -> bytes:
 
 
 def text_of(face: Face, width: int, height: int) -> list[str]:
-    return ["".join(text for text, _ in line) for line in draw_brick(face, (), "", width, height).lines]
+    return ["".join(text for text, _ in line) for line in draw_brick(face, (), width, height).lines]
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_nothing_is_wider_or_higher_than_the_panel(width: int, height: int) -> None:
     face = Face(picture=picture((slice(0, 60), slice(0, 90))), text=TextScreen(14, 5, ("x" * 14,) * 5))
     for shown in (face, Face(text=face.text, shows_text=True), Face()):
-        drawn = draw_brick(shown, {"enter"}, "la la la" * 20, width, height)
+        drawn = draw_brick(replace(shown, sound="la la la" * 20), {"enter"}, width, height)
         lines = ["".join(text for text, _ in line) for line in drawn.lines]
         assert len(lines) <= height
         # The row of buttons needs its room; a panel so narrow cuts it.
@@ -36,7 +38,7 @@ def test_nothing_is_wider_or_higher_than_the_panel(width: int, height: int) -> N
 
 
 def test_half_blocks_show_every_pixel_where_there_is_room() -> None:
-    lines = draw_brick(Face(picture=picture((slice(10, 11), slice(20, 30)))), (), "", 178, 70).lines
+    lines = draw_brick(Face(picture=picture((slice(10, 11), slice(20, 30)))), (), 178, 70).lines
     cells = [[(char, style) for text, style in line for char in text] for line in lines]
     dark = [column for row in cells for column, (char, _) in enumerate(row) if char == "▀"]
     assert dark == list(range(20, 30))
@@ -64,7 +66,7 @@ def test_text_screen_is_text() -> None:
 
 @pytest.mark.parametrize(("width", "height"), [(60, 20), (44, 6)], ids=["pad", "row"])
 def test_buttons_are_where_they_are_drawn(width: int, height: int) -> None:
-    drawn = draw_brick(Face(), {"enter", "left"}, "", width, height)
+    drawn = draw_brick(Face(), {"enter", "left"}, width, height)
     assert {box.name for box in drawn.buttons} == set(BUTTONS)
     symbols = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "right": "▶", "down": "▼"}
     for box in drawn.buttons:
@@ -75,7 +77,7 @@ def test_buttons_are_where_they_are_drawn(width: int, height: int) -> None:
 def test_a_pressed_button_stands_out() -> None:
     lit = {
         text.strip()
-        for line in draw_brick(Face(), {"enter"}, "", 60, 20).lines
+        for line in draw_brick(Face(), {"enter"}, 60, 20).lines
         for text, style in line
         if style.bgcolor and style.bgcolor.triplet and style.bgcolor.triplet.red == 255 and text.strip() in "▲●◀▶▼⌫"
     }
@@ -95,3 +97,11 @@ def test_lamps_have_names(red: int, green: int, name: str) -> None:
 
 def test_untouched_lamps_are_green() -> None:
     assert sum(line.count("green") for line in text_of(Face(), 60, 20)) == 2
+
+
+@pytest.mark.parametrize(
+    ("sound", "shown"),
+    [("[♪ song of 3 notes, 1.5 s]", "♪ song of 3 notes, 1.5 s"), ("[beep]", "♪ beep"), ("hello", "♪ hello"), ("", "")],
+)
+def test_the_last_sound_stands_below(sound: str, shown: str) -> None:
+    assert text_of(Face(sound=sound), 60, 20)[-1].strip() == shown

@@ -59,7 +59,6 @@ class Brick(Widget, can_focus=True):
         self._view = LinesView()
         self._snapshot: Snapshot | None = None
         self._picture = BrickPicture([], ())
-        self._sound = ""
         self._tapped: dict[str, Timer] = {}
         """Buttons that a key holds for a moment."""
         self._latched: set[str] = set()
@@ -94,18 +93,12 @@ class Brick(Widget, can_focus=True):
         self._snapshot = snapshot
         self._throttle.ask()
 
-    def heard(self, text: str) -> None:
-        """Show what the brick plays or says."""
-        self._sound = text
-        self._throttle.ask()
-
     def _draw(self) -> None:
         size = self._view.size
         if self._snapshot is None or not size:
             return
-        self._picture = draw_brick(
-            self._snapshot.face, self._snapshot.pressed, self._sound, max(1, size.width), max(1, size.height)
-        )
+        now = self._snapshot
+        self._picture = draw_brick(now.face, now.pressed, max(1, size.width), max(1, size.height))
         self._view.set_lines(self._picture.lines)
 
     # Buttons

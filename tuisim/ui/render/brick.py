@@ -62,13 +62,12 @@ class BrickPicture:
     buttons: tuple[ButtonBox, ...]
 
 
-def draw_brick(face: Face, pressed: Collection[str], sound: str, width: int, height: int) -> BrickPicture:
+def draw_brick(face: Face, pressed: Collection[str], width: int, height: int) -> BrickPicture:
     """Return the brick in a panel of that inner size.
 
     Args:
         face: What it shows.
         pressed: Buttons that are held down.
-        sound: What it plays or says, or did last.
         width: Columns, at least 1.
         height: Rows, at least 1; the buttons come first, then the display, then the sound.
     """
@@ -77,6 +76,7 @@ def draw_brick(face: Face, pressed: Collection[str], sound: str, width: int, hei
     rows = max(0, height - pad_rows - sound_rows)
     screen = _screen(face, width, rows) if rows else []
     pad, buttons = _pad(face, pressed, width, pad_rows, len(screen))
+    sound = face.sound.removeprefix("[").removeprefix("♪ ").removesuffix("]") if face.sound[:1] == "[" else face.sound
     heard: list[Run] = [(f"♪ {sound}"[:width] if sound else "", _CAPTION)]
     return BrickPicture([*screen, *pad, *([heard] if sound_rows else [])], buttons)
 
