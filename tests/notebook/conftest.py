@@ -38,6 +38,9 @@ class Shown:
 
 Cell = Callable[[str], Shown]
 
+NEW_NAMES = ("In", "Out", "get_ipython", "exit", "quit", "open")
+"""What a new shell's namespace holds."""
+
 
 @pytest.fixture(scope="session")
 def shell() -> Iterator[InteractiveShell]:
@@ -55,7 +58,8 @@ def cell(shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch) -> Cell:
     fresh = lab.Lab()
     monkeypatch.setattr(lab, "roboSim", fresh)
     monkeypatch.setattr(magics, "roboSim", fresh)
-    shell.reset(new_session=False)
+    for name in [name for name in shell.user_ns if name not in NEW_NAMES and not name.startswith("_")]:
+        del shell.user_ns[name]
     # As %load_ext does for the first time.
     tuisim.load_ipython_extension(shell)
 
