@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from tests.conftest import ROOT
 from tests.notebook.conftest import Cell, Kernel
 
 TALK = """\
@@ -70,6 +71,14 @@ def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
     out = cell(f"%%sim_magic_preloaded -b Grey_bands -x 1520 -RWL\n{text}").out
     # The disc lies on the black band.
     assert out.splitlines()[-1] == "[305]"
+
+
+def test_the_readme_example_does_as_it_says(cell: Cell) -> None:
+    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```python\n")[1:]
+    responder, program = (text for block in blocks if "responder =" in (text := block.partition("```")[0])
+                          or "pyState" in text)  # fmt: skip
+    cell(responder)
+    assert cell(program).out.splitlines()[-1] == program.partition("# ")[2].strip()
 
 
 MISTAKES = [
