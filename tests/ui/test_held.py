@@ -55,6 +55,8 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         for key in ("up", "up", "right", "p", "p", "p"):
             await pilot.press(key)
         assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
+        # As at the end of a drag.
+        app.bridge.place(app.bridge.pose)
         now = app.bridge.snapshot()
         assert (now.instant.noise, now.pen_down, now.gyro_deg) == (NoiseSpec(20, 0), True, 0)
         # Another line, and still the same tick: nothing has been done yet.
@@ -66,7 +68,8 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         await until(pilot, lambda: app.bridge.timeline.newest == tick + 1)
         recording = app.bridge.timeline.recording
         assert recording is not None
-        assert [(action.tick, action.kind) for action in recording.actions()][-1] == (tick, "set_pen")
+        kinds = ["set_noise", *["set_pose"] * 3, *["set_pen"] * 3]
+        assert [(action.tick, action.kind) for action in recording.actions()] == [(tick, kind) for kind in kinds]
         assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         await pilot.press("S")
         await until(pilot, lambda: app.bridge.state == ENDED)

@@ -189,7 +189,9 @@ class Bridge(Shown):
             self.propose(command)
             return
         if self.in_run:
-            self._act(command)
+            # Where time stands still, to put it where it is would only be noted as one thing more that was done.
+            if not self._stands_still or pose != self.pose:
+                self._act(command)
             return
         self._start_at(pose)
 
@@ -226,9 +228,13 @@ class Bridge(Shown):
     def _act(self, action: protocol.Message) -> None:
         """Send what changes the world; where time stands still that is shown before it has taken effect."""
         record = self._record()
-        if record is not None and self._branch is None and self.run is not None and self.run.paused:
+        if record is not None and self._branch is None and self._stands_still:
             self._pending.note(record, action)
         self._send(action)
+
+    @property
+    def _stands_still(self) -> bool:
+        return self.run is not None and self.run.paused
 
     def _send(self, command: protocol.Message) -> None:
         # On its way to its instant a branch is done again exactly as it was.
