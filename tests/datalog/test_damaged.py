@@ -27,16 +27,20 @@ def table(rows: int = 1000) -> pa.Table:
     return pa.table({"time": np.arange(rows) / 10, "red": np.arange(rows) * 2.0})
 
 
-def parquet(rows: int = 1000, group: int = 100) -> bytes:
+def twice(rows: int = 1000) -> pa.Table:
+    return table(rows).append_column("red", pa.array(np.arange(rows) * 1.0))
+
+
+def parquet(rows: int = 1000, group: int = 100, make: Callable[[int], pa.Table] = table) -> bytes:
     sink = io.BytesIO()
-    pq.write_table(table(rows), sink, row_group_size=group, compression="none", use_dictionary=False)
+    pq.write_table(make(rows), sink, row_group_size=group, compression="none", use_dictionary=False)
     return sink.getvalue()
 
 
-def arrow(rows: int = 1000, batch: int = 100) -> bytes:
+def arrow(rows: int = 1000, batch: int = 100, make: Callable[[int], pa.Table] = table) -> bytes:
     sink = io.BytesIO()
-    with pa.ipc.new_file(sink, table(rows).schema) as writer:
-        writer.write_table(table(rows), max_chunksize=batch)
+    with pa.ipc.new_file(sink, make(rows).schema) as writer:
+        writer.write_table(make(rows), max_chunksize=batch)
     return sink.getvalue()
 
 
@@ -208,6 +212,12 @@ CASES: dict[str, Case] = {
         Read(900, left_out=100, note="rows are damaged"),
     ),
     "parquet without rows": ("a.parquet", lambda: parquet(0), "no rows"),
+    "parquet with two columns of one name": (
+        "a.parquet",
+        lambda: parquet(make=twice),
+        Read(1000, ("red", "red (2)"), note="two columns", check=lambda log: values(log, "red (2)")[2] == 2),
+    ),
+    "arrow with two columns of one name": ("a.arrow", lambda: arrow(make=twice), Read(1000, ("red", "red (2)"))),
     "arrow": ("a.arrow", arrow, Read(1000, check=lambda log: values(log)[999] == 1998)),
     "arrow cut off": ("a.arrow", lambda: arrow()[: len(arrow()) // 2], Read(-1, note="cut off")),
     "arrow, only its magic": ("a.arrow", b"ARROW1\0\0", "Arrow"),

@@ -18,6 +18,7 @@ def log_of(**columns: object) -> Log:
     return Log("test", table, guessed(table))
 
 
+SMALL = pa.array(["B", None, "A", "B"]).dictionary_encode().cast(pa.dictionary(pa.int8(), pa.string()))
 TWICE = pa.DictionaryArray.from_arrays(pa.array([0, 1, 2, 1]), pa.array(["A", "B", "A"]))
 ROWS = {
     "each in its order": (log_of(variable=["B", "A", "B"], value=[1.0, 2.0, 3.0]), {"B": [0, 2], "A": [1]}),
@@ -26,6 +27,7 @@ ROWS = {
         {"B": [0, 2], "A": [1]},
     ),
     "a name that is coded twice": (log_of(variable=TWICE, value=[1.0] * 4), {"A": [0, 2], "B": [1, 3]}),
+    "codes of one byte": (log_of(variable=SMALL, value=[1.0] * 4), {"B": [0, 3], "None": [], "A": [2]}),
     "no name": (log_of(variable=["A", None, "A"], value=[1.0] * 3), {"A": [0, 2], "None": []}),
     "a variable called None": (log_of(variable=[None, "None"], value=[1.0] * 2), {"None": [1]}),
     "runs": (

@@ -10,6 +10,7 @@ from typing import Any
 import pyarrow as pa
 
 from tuisim.datalog.formats import METADATA_KEY
+from tuisim.datalog.opening.headings import unique_names
 from tuisim.datalog.opening.notes import Notes
 from tuisim.errors import LogError
 
@@ -50,7 +51,7 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
             except (pa.ArrowException, OSError, ValueError):
                 notes.add("rows are damaged and were left out", [first], rows)
             else:
-                yield (at + 1) / count, part
+                yield (at + 1) / count, _named(part, notes)
             first += rows
 
 
@@ -74,7 +75,7 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                     except (pa.ArrowException, OSError, ValueError):
                         notes.add("batches of rows are damaged and were left out", [], 1)
                     else:
-                        yield (at + 1) / count, part
+                        yield (at + 1) / count, _named(part, notes)
                 return
         except (pa.ArrowException, OSError, ValueError):
             notes.say("the file was cut off: read as far as it goes")
@@ -93,7 +94,11 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                 return
             except (pa.ArrowException, OSError, ValueError):
                 return
-            yield source.tell() / size, part
+            yield source.tell() / size, _named(part, notes)
+
+
+def _named(part: pa.Table, notes: Notes) -> pa.Table:
+    return part.rename_columns(unique_names(part.column_names, notes))
 
 
 def _short(error: Exception) -> str:

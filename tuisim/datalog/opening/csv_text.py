@@ -10,6 +10,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.csv as pa_csv
 
+from tuisim.datalog.opening.headings import unique_names
 from tuisim.datalog.opening.lines import Block
 from tuisim.datalog.opening.notes import Notes
 from tuisim.datalog.opening.numbers import EMPTY_CELLS, are_numbers, parsed_numbers
@@ -66,20 +67,9 @@ class CsvReader:
             self._notes.say("no heading: the columns are numbered")
             self._names = [f"column {at}" for at in range(1, len(names) + 1)]
             return block
-        self._names = self._unique(names)
+        self._names = unique_names(names, self._notes)
         skipped = block.text.split(b"\n", row - block.first_row + 1)
         return Block(row + 1, skipped[-1])
-
-    def _unique(self, names: Sequence[str]) -> list[str]:
-        unique: list[str] = []
-        for at, name in enumerate(names, 1):
-            wanted, again = name or f"column {at}", 2
-            while wanted in unique:
-                wanted, again = f"{name or f'column {at}'} ({again})", again + 1
-            if name and wanted != name:
-                self._notes.say(f"two columns are called {name!r}: the second is {wanted!r} here")
-            unique.append(wanted)
-        return unique
 
     # Cells
 

@@ -74,9 +74,8 @@ def _encoded(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     if not pa.types.is_dictionary(column.type):
         column = column.dictionary_encode("encode")
         values = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
-    indices = [
-        pc.fill_null(chunk.indices, len(values)) if chunk.null_count else chunk.indices for chunk in column.chunks
-    ]
+    indices = [chunk.indices.cast(pa.int32()) for chunk in column.chunks]
+    indices = [pc.fill_null(chunk, len(values)) if chunk.null_count else chunk for chunk in indices]
     appeared = pc.unique(pa.chunked_array(indices, pa.int32())).to_pylist()
     place_of = np.zeros(len(values) + 1, np.int32)
     place_of[appeared] = np.arange(len(appeared))
