@@ -124,7 +124,7 @@ def _analyse(arguments: Namespace) -> int:
 
     if what.file == STDIN:
         _keys_from_terminal()
-    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value))
+    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit)
     with _drawing_on_stdout():
         return run_analyser(wanted)
 

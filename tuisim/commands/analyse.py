@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from dataclasses import dataclass
 
+from tuisim.commands.logs.columns import add_columns
 from tuisim.commands.logs.sources import is_file
 from tuisim.errors import ConfigError
 from tuisim.switches import SwitchParser
@@ -28,10 +29,7 @@ def add_arguments(parser: SwitchParser) -> None:
     )
     parser.add_argument("words", nargs="*", metavar="LOG", help="runs, or a file")
     parser.add_argument("--telemetry", action="store_true", help="every tick of a run instead of its samples")
-    parser.add_argument("--time", metavar="COLUMN", help="column with the time; empty counts the rows")
-    parser.add_argument(
-        "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
-    )
+    add_columns(parser)
 
 
 def asked(arguments: Namespace) -> Asked:

@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, cast
 
+from tuisim.commands.logs.columns import add_columns
 from tuisim.datalog.formats import LISTED
 from tuisim.errors import ConfigError
 from tuisim.switches import SwitchParser, nearest
 
-COMMON = ("time", "value", "variable", "telemetry", "json", "out")
+COMMON = ("time", "unit", "value", "variable", "telemetry", "json", "out")
 _CHART = ("facets", "marks", "from", "to", "against", "size")
 
 
@@ -91,10 +92,7 @@ def add_arguments(parser: SwitchParser) -> None:
         "--variable", action="append", default=[], metavar="NAME", help="only this one; may be repeated"
     )
     parser.add_argument("--telemetry", action="store_true", help="every tick of a run instead of its samples")
-    parser.add_argument("--time", metavar="COLUMN", help="column with the time; empty counts the rows")
-    parser.add_argument(
-        "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
-    )
+    add_columns(parser)
     parser.add_argument("--json", action="store_true", help="as JSON")
     parser.add_argument(
         "--out",

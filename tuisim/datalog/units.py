@@ -31,6 +31,9 @@ UNITS = {
 
 _NONE = Unit("", "")
 
+SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
+"""Units that a column of times may have, in seconds."""
+
 
 def unit_of(name: str) -> Unit:
     """Return the unit that a name tells; both its texts are empty if it tells none."""

@@ -31,7 +31,7 @@ def report(arguments: Namespace) -> int:
         raise ConfigError("takes one run", f"got {len(what.runs)}", key="--telemetry")
     if what.runs and (arguments.time is not None or arguments.value):
         raise ConfigError("are for files", "what a run recorded is known", key="--time and --value")
-    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value))
+    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit)
     *_, subject = opening(wanted)
     names = names_of(subject.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or default_name(subject))

@@ -65,14 +65,14 @@ def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
         if not log.rows:
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry takes every tick instead"
             raise LogError("no samples", hint, file=log.title)
-        layout = chosen(log.table, arguments.time, arguments.value)
+        layout = chosen(log.table, arguments.time, arguments.value, arguments.unit)
         yield _with_notes(log.with_layout(layout))
 
 
 def _open_file(word: str, arguments: Namespace) -> Log:
     shows = sys.stderr.isatty()
     log = None
-    for loaded in loading(word, arguments.time, arguments.value):
+    for loaded in loading(word, arguments.time, arguments.value, arguments.unit):
         log = loaded.log or log
         if shows and not loaded.done:
             part = f"{loaded.part:4.0%}" if loaded.part == loaded.part else ""

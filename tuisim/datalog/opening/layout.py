@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 import numpy as np
 import pyarrow as pa
 
+from tuisim.datalog.units import SECONDS
 from tuisim.errors import LogError
 
 ROW = ""
@@ -17,7 +18,7 @@ ROW = ""
 _TIME_NAMES = ("time", "time_s", "t", "seconds", "sec", "elapsed", "timestamp", "datetime", "date", "index", "x")
 """Names of time columns, the surest first; ends such as `_ms` tell the unit."""
 
-_UNITS_S = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0}
+_UNITS_S = {**SECONDS, "sec": 1.0, "µs": 1e-6}
 _VARIABLE_NAMES = ("variable", "name", "sensor", "channel", "signal", "key", "metric")
 _VALUE_NAMES = ("value", "val", "y", "reading", "measurement")
 _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
@@ -38,6 +39,8 @@ class Layout:
     """Columns with values; one if `variable` names them."""
     run: str = ""
     """Column that tells runs apart; empty if there is one run only."""
+    sure: bool = True
+    """Whether the names of the columns say so; otherwise the user is better asked."""
 
 
 def is_numeric(kind: pa.DataType) -> bool:
@@ -58,31 +61,42 @@ def guessed(table: pa.Table) -> Layout:
     `value` names the variables; otherwise every other column of numbers is one.
     """
     names = table.column_names
-    time = _guessed_time(table)
+    time = _named_time(table)
     run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
     variable = next((n for n in _VARIABLE_NAMES if n in names and _is_text(table.schema.field(n).type)), "")
     value = next((n for n in _VALUE_NAMES if n in names and is_numeric(table.schema.field(n).type)), "")
     if variable and value and value != time:
-        return Layout(time, unit_of(time, table), variable, (value,), run)
+        rising = "" if time else _rising(table, besides=value)
+        return Layout(time or rising, unit_of(time or rising, table), variable, (value,), run, not rising)
+    sure = bool(time)
+    time = time or _rising(table)
     numeric = [n for n in names if is_numeric(table.schema.field(n).type) and n not in (time, run)]
     if value and value in numeric:
         kept = [n for n in numeric if n not in _NO_VALUES]
     else:
         # In a frame of every tick the pose is a value like any other.
         kept = [n for n in numeric if n not in ("line", "row")]
-    return Layout(time, unit_of(time, table), "", tuple(kept or numeric), run)
+    # Of one column of numbers there is nothing to choose.
+    return Layout(time, unit_of(time, table), "", tuple(kept or numeric), run, sure or (len(numeric) < 2 and not time))
 
 
-def _guessed_time(table: pa.Table) -> str:
+def _named_time(table: pa.Table) -> str:
+    """The column that by its name is the time, empty if there is none."""
     lowered: dict[str, str] = {name.lower(): name for name in table.column_names}
     for wanted in _TIME_NAMES:
         for ending in ("", *(f"_{unit}" for unit in _UNITS_S), *(f" ({unit})" for unit in _UNITS_S)):
             name = lowered.get(wanted + ending, "")
             if name and _is_usable(table, name):
                 return name
+    return ROW
+
+
+def _rising(table: pa.Table, besides: str = "") -> str:
+    """The first column of numbers besides one if it rises all the time, else nothing: the rows are counted."""
     numeric = [n for n in table.column_names if is_numeric(table.schema.field(n).type) and n not in _NO_VALUES]
     # A single column of numbers is what was measured.
-    return numeric[0] if len(numeric) > 1 and _rises(table, numeric[0]) else ROW
+    others = [n for n in numeric if n != besides]
+    return others[0] if others and len(numeric) > 1 and _rises(table, others[0]) else ROW
 
 
 def _is_usable(table: pa.Table, name: str) -> bool:
@@ -124,13 +138,14 @@ def unit_of(name: str, table: pa.Table) -> float:
     return _UNITS_S.get(ending, 1.0) if ending != name.lower() else 1.0
 
 
-def chosen(table: pa.Table, time: str | None, values: Sequence[str]) -> Layout:
+def chosen(table: pa.Table, time: str | None, values: Sequence[str], unit: str = "") -> Layout:
     """Return what the columns mean where the user names some of them.
 
     Args:
         table: The log.
         time: Column with the time; empty to count the rows; None to guess.
         values: Columns with values; none to guess.
+        unit: Of a time column that holds numbers, one of `SECONDS`; empty to guess it by the column's name.
 
     Raises:
         LogError: there is no such column, or it holds no numbers.
@@ -148,7 +163,9 @@ def chosen(table: pa.Table, time: str | None, values: Sequence[str]) -> Layout:
                 raise LogError(f"column {name!r} holds no numbers")
         keep = layout.variable if len(values) == 1 and layout.variable else ""
         layout = Layout(layout.time, layout.unit_s, keep, tuple(values), layout.run)
-    return layout
+    if unit and layout.time and is_numeric(table.schema.field(layout.time).type):
+        layout = replace(layout, unit_s=SECONDS[unit])
+    return replace(layout, sure=layout.sure or time is not None or bool(values))
 
 
 def _require(table: pa.Table, name: str) -> None:

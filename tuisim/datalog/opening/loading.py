@@ -59,29 +59,32 @@ class BlockReader(Protocol):
         """Return the rows of a block, None if it holds none."""
 
 
-def open_log(source: str | Path, time: str | None = None, values: Sequence[str] = ()) -> Log:
+def open_log(source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = "") -> Log:
     """Return the whole log in a file.
 
     Args:
         source: Path of a CSV, Parquet, JSONL, Arrow or text file; `-` is the standard input.
         time: Column with the time; empty to count the rows; None to guess.
         values: Columns with values; none to guess.
+        unit: Of times that are numbers, one of `SECONDS`; empty to guess.
 
     Raises:
         LogError: it cannot be read, holds no row, or there is no such column.
     """
     last = None
-    for loaded in loading(source, time, values):
+    for loaded in loading(source, time, values, unit):
         last = loaded.log or last
     assert last is not None
     return last
 
 
-def loading(source: str | Path, time: str | None = None, values: Sequence[str] = ()) -> Iterator[Loaded]:
+def loading(
+    source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = ""
+) -> Iterator[Loaded]:
     """Read a log; yield the log so far, soon after the start and then now and then.
 
     Args:
-        source, time, values: As for `open_log`.
+        source, time, values, unit: As for `open_log`.
 
     Raises:
         LogError: as for `open_log`.
@@ -97,21 +100,21 @@ def loading(source: str | Path, time: str | None = None, values: Sequence[str] =
         if not parts or now < show_at:
             yield Loaded(part, None)
             continue
-        yield Loaded(part, _log(title, parts, notes, time, values))
+        yield Loaded(part, _log(title, parts, notes, (time, values, unit)))
         # Looking at what there is so far may take no more than a fraction of the whole time.
         took = monotonic() - now
         show_at = now + took + max(_SHOW_EVERY_S, _SHOW_SELDOM * took)
     if not sum(part.num_rows for part in parts):
         said = "; ".join(notes.texts())
         raise LogError("no rows" + (f": {said}" if said else ""), "a log has a heading and a row a sample", file=title)
-    log = _log(title, parts, notes, time, values)
+    log = _log(title, parts, notes, (time, values, unit))
     yield Loaded(1.0, log, done=True)
 
 
-def _log(title: str, parts: Sequence[pa.Table], notes: Notes, time: str | None, values: Sequence[str]) -> Log:
+def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str | None, Sequence[str], str]) -> Log:
     table = joined(parts)
     try:
-        layout = chosen(table, time, values)
+        layout = chosen(table, *named)
     except LogError as error:
         raise LogError(str(error), file=title) from error
     metadata = metadata_in(parts[0].schema) or _metadata_beside(Path(title))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.ui.analyser import defining, doing, noting, outward, tabling
+from tuisim.ui.analyser import columns, defining, doing, noting, outward, tabling
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.screen import Analyser
@@ -95,6 +95,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("delete-note", "delete", "delete", "Delete the chosen note", LOG, noting.delete),
         Action("telemetry", "T", "T", "What every tick recorded, or what was printed", LOG,
                 doing.telemetry, of_rows=False),
+        Action("columns", "C", "C", "Say what the columns of the file are", LOG, columns.ask, of_rows=False),
         Action("open-runs", "R", "R", "Open other runs, several laid over each other", LOG,
                 doing.ask_runs, of_rows=False),
         Action("beside", "w", "w", "World beside the log, or not", PANE, doing.beside, of_rows=False),

@@ -40,9 +40,9 @@ class AnalyserApp(App[None]):
 class _First(Analyser):
     """The only screen: an error before there is anything to see ends the app."""
 
-    def _take(self, model: Model) -> None:
+    def take(self, model: Model) -> None:
         first = self.model is None
-        super()._take(model)
+        super().take(model)
         if first:
             # Also what drawing has imported stays: no key waits for a search through all that.
             self.call_after_refresh(gc.freeze)

@@ -9,7 +9,7 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
-from tuisim.ui.analyser.moments import Place, place_of
+from tuisim.ui.analyser.moments import Place, place_of, tells_places
 from tuisim.ui.cellview import LinesView
 from tuisim.ui.panels.arrays import Arrays
 from tuisim.ui.panels.world import WorldView
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _PLAIN, _DIM = Style(color="#d8dee6"), Style(color="#7f8fa1")
 _HERE = Style(color="#ffffff", bgcolor="#263545", bold=True)
-_NO_PLACE = "This log does not say where the robot was"
+NO_PLACE = "This log does not say where the robot was"
 
 
 class Beside(Vertical):
@@ -35,6 +35,8 @@ class Beside(Vertical):
 
     def __init__(self) -> None:
         super().__init__()
+        self.wanted = True
+        """Whether it is to be seen where there is something to see."""
         # Here the robot stands where it was; the mouse cannot move it.
         self._world = WorldView(lambda pose, done: None, lambda boxes, index: None)
         self._world.disabled = True
@@ -68,6 +70,7 @@ class Beside(Vertical):
         self._model, self._laid = model, None
         self._places.clear()
         self._asked.clear()
+        self.display = self.wanted and tells_places(model.subject)
         self.show(model)
 
     def show(self, model: Model) -> None:
@@ -81,7 +84,7 @@ class Beside(Vertical):
             self.run_worker(partial(self._prepare, model, run), thread=True, group="places")
         place = self._places.get(run)
         if place is None:
-            note = _NO_PLACE if run in self._places else "The mat is being prepared …"
+            note = NO_PLACE if run in self._places else "The mat is being prepared …"
             self._source.set_lines([[(note, _DIM)]])
             return
         snapshot = place.at(model.time_of(model.row), model.row)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from tuisim.errors import LogError
 from tuisim.ui.analyser.aligning import TIME
 from tuisim.ui.analyser.asking import Asking
+from tuisim.ui.analyser.beside import NO_PLACE
+from tuisim.ui.analyser.moments import tells_places
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.screen import Analyser
@@ -166,7 +168,11 @@ def larger(screen: Analyser) -> None:
 
 def beside(screen: Analyser) -> None:
     """The world beside the log, or not."""
-    screen.beside.display = not screen.beside.display
+    beside, model = screen.beside, screen.model
+    if model is not None and not tells_places(model.subject):
+        screen.say(NO_PLACE)
+        return
+    beside.display = beside.wanted = not beside.display
     screen.call_after_refresh(screen.update)
 
 

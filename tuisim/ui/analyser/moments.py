@@ -73,6 +73,14 @@ class Place:
         )
 
 
+def tells_places(subject: Subject) -> bool:
+    """Return whether a log tells where a robot was."""
+    if subject.runs:
+        return True
+    named = set(_POSE) <= set(subject.log.table.column_names)
+    return named and _spec_in(subject.log.metadata, 0) is not None
+
+
 def place_of(subject: Subject, run: int) -> Place | None:
     """Return the world of a run of a log, None if nothing tells what it was. Slow the first time for each mat.
 

@@ -22,6 +22,7 @@ from tuisim.errors import TuisimError
 from tuisim.ui.analyser.actions import ACTIONS
 from tuisim.ui.analyser.beside import Beside
 from tuisim.ui.analyser.chart import LogChart
+from tuisim.ui.analyser.columns import ask_if_unsure
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.pane import PaneView
 from tuisim.ui.analyser.subject import Wanted, opening
@@ -119,7 +120,7 @@ class Analyser(ModalScreen[None]):
                 model = Model(subject)
                 # What the first chart needs of a long log is reckoned here, where no key waits for it.
                 model.traces.span_s()
-                self.app.call_from_thread(self._take, model)
+                self.app.call_from_thread(self.take, model)
         except TuisimError as error:
             self.app.call_from_thread(self._failed, wanted, error)
 
@@ -134,7 +135,8 @@ class Analyser(ModalScreen[None]):
             self.wanted = self.model.subject.wanted
             self.update()
 
-    def _take(self, model: Model) -> None:
+    def take(self, model: Model) -> None:
+        """Show what has been read, unless something else is wanted by now."""
         subject, before = model.subject, self.model
         if subject.wanted is not self.wanted:
             return
@@ -150,6 +152,8 @@ class Analyser(ModalScreen[None]):
         self.chart.take(self.model)
         self.beside.take(self.model)
         self.update()
+        if before is None:
+            ask_if_unsure(self)
         if subject.done and (before is None or before.subject.log.notes != subject.log.notes):
             for note in subject.log.notes:
                 self.say(note)

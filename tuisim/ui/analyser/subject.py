@@ -28,6 +28,8 @@ class Wanted:
     """Column with the time, None to guess."""
     values: tuple[str, ...] = ()
     """Columns with values, none to guess."""
+    unit: str = ""
+    """Of times that are numbers, empty to guess."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +83,6 @@ def opening(wanted: Wanted) -> Iterator[Subject]:
         log = telemetry_log(runs[0]) if wanted.telemetry else log_of_runs(runs)
         yield Subject(wanted, log, runs[:1] if wanted.telemetry else runs)
         return
-    for loaded in loading(wanted.file, wanted.time, wanted.values):
+    for loaded in loading(wanted.file, wanted.time, wanted.values, wanted.unit):
         if loaded.log is not None:
             yield Subject(wanted, loaded.log, (), loaded.part, loaded.done)

@@ -1,0 +1,15 @@
+"""What the shell is told of the columns of a file."""
+
+from __future__ import annotations
+
+from tuisim.datalog.units import SECONDS
+from tuisim.switches import SwitchParser
+
+
+def add_columns(parser: SwitchParser) -> None:
+    """Declare `--time`, `--unit` and `--value`."""
+    parser.add_argument("--time", metavar="COLUMN", help="column with the time; empty counts the rows")
+    parser.add_argument("--unit", default="", choices=tuple(SECONDS), help="its unit, where its name does not tell")
+    parser.add_argument(
+        "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
+    )
