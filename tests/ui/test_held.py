@@ -73,6 +73,8 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         await pilot.press("S")
         await until(pilot, lambda: app.bridge.state == ENDED)
+        # It stands nowhere any more.
+        assert app.debugging.standing is None
         run = RunStore().load_run(app.bridge.run_id)
         again = rerun(run, RunStore())
         again.wait(20.0)

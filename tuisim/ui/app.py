@@ -248,6 +248,7 @@ class Lab(Wishes):
         good = ended.end in ("finished", "stopped")
         words = ended.summary or end_label(ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
+        self.debugging.ended()
         if self.desk.code:
             self.desk.code.mark_run_error(ended.error_line)
         # What was wrong is among the rows already, as a traceback.

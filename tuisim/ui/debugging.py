@@ -143,6 +143,13 @@ class Debugging:
         self._stand_in.close()
         self.show()
 
+    def ended(self) -> None:
+        """The run is over: it stands nowhere any more; a former instant is looked at as before."""
+        self._paused = None
+        if not self.is_away:
+            self.standing = self._lab.bridge.held_line = None
+            self.show()
+
     def take(self, event: Message) -> None:
         """The run stands still, goes on, or has told what it looks like."""
         if self._untold:
