@@ -22,9 +22,9 @@ def test_all_keys_are_told_in_a_narrow_panel_too(state: str, width: int) -> None
 
 
 def test_a_module_beside_the_program_is_named() -> None:
-    frames = (FrameState("drive", 4, "/home/ann/helper.py"), FrameState("<module>", 3, ""))
+    frames = (FrameState("drive", 4, "/lab/ann/helper.py"), FrameState("<module>", 3, ""))
     looked = Looked(5, 50_000_000, "main", 0, "", (), frames, (), (), ())
-    paused = Paused(5, 50_000_000, 4, "step", file="/home/ann/helper.py")
+    paused = Paused(5, 50_000_000, 4, "step", file="/lab/ann/helper.py")
     rows = text(DebugView("paused", paused, looked), 60)
     assert rows[0] == "line 4 of helper.py · 0.05 s · tick 5"
     assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]
