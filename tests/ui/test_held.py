@@ -175,6 +175,11 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
         assert "past 0.00 s" in screen_text(app)
         await pilot.press("end")
         await until(pilot, lambda: at_line(app, 6))
+        await pilot.press("N")
+        await until(pilot, partial(at_line, app, 5))
+        await pilot.press("full_stop")
+        await until(pilot, partial(at_line, app, 6))
+        assert app.bridge.timeline.newest == 0
         # While the way back is worked out, it can be given up.
         await pilot.press("N", "end")
         assert not app.debugging.busy

@@ -45,6 +45,8 @@ def ten_ticks(lab: Lab) -> None:
     if lab.bridge.in_past:
         at = timeline.at or 0
         travel.to_tick(lab, at + TICKS if at + TICKS < timeline.newest else None)
+    elif lab.debugging.is_away:
+        travel.to_now(lab)
     else:
         lab.bridge.debug(protocol.StepTicks(TICKS))
 

@@ -60,9 +60,11 @@ def tick_back(lab: Lab) -> None:
 
 
 def tick_on(lab: Lab) -> None:
-    """One tick on: as recorded in the past, else of a paused run."""
+    """One tick on: as recorded in the past, else of a paused run; from a former line of its last tick it is now."""
     if lab.bridge.in_past:
         _by(lab, 1)
+    elif lab.debugging.is_away:
+        to_now(lab)
     else:
         lab.bridge.step()
 
