@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from tuisim.datalog.opening import Log, open_log
@@ -98,3 +99,14 @@ def test_a_column_that_begins_empty(tmp_path: Path, suffix: str, cell: str, valu
 def test_a_column_that_stays_empty_holds_numbers(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("time,red,none\n1,2,\n2,3,NA\n")
     assert np.isnan(open_log(tmp_path / "a.csv").series("none").values).all()
+
+
+def test_a_column_without_a_type_is_no_variable(tmp_path: Path) -> None:
+    path = tmp_path / "a.parquet"
+    pq.write_table(pa.table({"time": [0.0, 1.0], "red": [5.0, 6.0], "none": pa.nulls(2)}), path, row_group_size=1)
+    assert open_log(path).names == ("red",)
+
+
+def test_infinite_numbers_are_compared_without_a_warning() -> None:
+    infinite = float("inf")
+    assert log_of(a=[infinite, infinite, 3.0], b=[1.0, 2.0, 3.0]).names == ("a", "b")

@@ -126,7 +126,7 @@ class CsvReader:
         if name not in self._kinds:
             numeric = are_numbers(cells, self._decimal_comma)
             if numeric is None:
-                return pa.nulls(len(cells))
+                return pa.nulls(len(cells), pa.float64())
             self._kinds[name] = pa.float64() if numeric else text_kind(cells)
         kind = self._kinds[name]
         if cells.type == kind:

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 import numpy as np
 import pyarrow as pa
 
+from tuisim.datalog.opening.plain import numbers_of
 from tuisim.datalog.units import SECONDS
 from tuisim.errors import LogError
 
@@ -127,7 +128,9 @@ def _rises(table: pa.Table, name: str) -> bool:
     column = table.column(name)
     if column.null_count or table.num_rows < 2:
         return False
-    return bool((np.diff(column.to_numpy()) > 0).all())
+    # Compared, not subtracted: what is infinite has no difference.
+    numbers = numbers_of(column)
+    return bool((numbers[1:] > numbers[:-1]).all())
 
 
 def unit_of(name: str, table: pa.Table) -> float:

@@ -131,12 +131,31 @@ def _metadata_beside(path: Path) -> Mapping[str, Any]:
 
 
 def joined(parts: Sequence[pa.Table]) -> pa.Table:
-    """Return tables one below the other; a column that one does not have is empty there, one without type a number."""
-    table = pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
-    for at, kind in enumerate(table.schema.types):
-        if pa.types.is_null(kind):
-            table = table.set_column(at, table.column_names[at], table.column(at).cast(pa.float64()))
-    return table
+    """Return tables one below the other; a column that one does not have is empty there."""
+    try:
+        table = pa.concat_tables(parts, promote_options="permissive")
+    except (pa.ArrowTypeError, pa.ArrowInvalid):
+        # What was taken for numbers as long as it was empty may have turned out to be text.
+        kinds = pa.unify_schemas([_filled(part).schema for part in parts], promote_options="permissive")
+        table = pa.concat_tables([_with_kinds(part, kinds) for part in parts], promote_options="permissive")
+    return table.unify_dictionaries()
+
+
+def _is_empty(column: pa.ChunkedArray) -> bool:
+    return bool(column.null_count == len(column))
+
+
+def _filled(part: pa.Table) -> pa.Table:
+    """The columns that hold something."""
+    return part.select([name for name in part.column_names if not _is_empty(part.column(name))])
+
+
+def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
+    """The same table, its empty columns of the kinds that others have."""
+    for at, name in enumerate(part.column_names):
+        if _is_empty(part.column(at)) and name in kinds.names:
+            part = part.set_column(at, name, pa.nulls(part.num_rows, kinds.field(name).type))
+    return part
 
 
 def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
