@@ -76,11 +76,12 @@ class Bridge(Shown):
         Raises:
             TuisimError: the run cannot be started.
         """
+        noise = branch.noise
         run = branch.start(self.speed)
         self.close()
         self.run, self._end = run, ""
         # The noise of the run at hand is that of the next one, as if it had been chosen now.
-        self.plan = plans.with_noise(self.plan, branch.noise)
+        self.plan = plans.with_noise(self.plan, noise)
         self._look_at(Recording(run, branch.of.answers))
         self._branch = branch
 
