@@ -31,16 +31,22 @@ def plateaus_aside(values: FloatArray, stopped: Callable[[], bool]) -> list[Plat
         stopped: Asked now and then whether nobody waits for the answer any more.
 
     Raises:
-        LogError: the search was stopped, or its process has ended without an answer.
+        LogError: the search was stopped, its process has ended without an answer, or there
+            is no room for temporary files.
     """
-    with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as answer:
-        np.asarray(values, np.float64).tofile(given)
-        given.seek(0)
-        code = _ended(given, answer, stopped)
-        answer.seek(0)
-        found = np.fromfile(answer).reshape(-1, _FIELDS).tolist()
-    if code:
-        raise LogError(f"the search for bands has ended without an answer (exit code {code})")
+    try:
+        with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as answer:
+            np.asarray(values, np.float64).tofile(given)
+            given.seek(0)
+            code = _ended(given, answer, stopped)
+            if code:
+                raise LogError(f"the search for bands has ended without an answer (exit code {code})")
+            answer.seek(0)
+            found = np.fromfile(answer).reshape(-1, _FIELDS).tolist()
+    except OSError as error:
+        raise LogError(
+            f"no search for bands: {error.strerror or error}", "it needs room for temporary files"
+        ) from error
     return [Plateau(int(row[0]), int(row[1]), row[2], row[3], row[4], int(row[5])) for row in found]
 
 

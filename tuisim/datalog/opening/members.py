@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 
 from tuisim.datalog.arrays import IntArray
 from tuisim.datalog.opening.layout import Layout
-from tuisim.datalog.opening.plain import whole_numbers_of
+from tuisim.datalog.opening.plain import whole_numbers, whole_numbers_of
 
 _NO_ROWS: IntArray = np.empty(0, np.int64)
 
@@ -49,10 +49,11 @@ def members(table: pa.Table, layout: Layout) -> list[Member]:
         rows_of = [None] if len(names) == 1 else _rows_by_code(codes, len(names))
         run = runs[0] if runs else 0
         return [_member(name, run, rows, False) for name, rows in zip(names, rows_of, strict=True)]
-    pairs = codes.astype(np.int64) * len(runs) + run_codes
-    rows_of = _rows_by_code(pairs, len(names) * len(runs))
-    order = sorted((pair for pair, rows in enumerate(rows_of) if len(rows)), key=lambda pair: rows_of[pair][0])
-    return [_member(names[pair // len(runs)], runs[pair % len(runs)], rows_of[pair], True) for pair in order]
+    # Of all pairs of a variable and a run there may be but few.
+    pairs, pair_codes = _encoded(whole_numbers(codes.astype(np.int64) * len(runs) + run_codes))
+    rows_of = _rows_by_code(pair_codes, len(pairs))
+    found = [(names[pair // len(runs)], runs[pair % len(runs)]) for pair in pairs]
+    return [_member(name, run, rows, True) for (name, run), rows in zip(found, rows_of, strict=True)]
 
 
 def _member(name: object, run: Any, rows: IntArray | None, several: bool) -> Member:

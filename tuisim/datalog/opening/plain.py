@@ -51,3 +51,8 @@ def whole_numbers_of(chunk: pa.Array) -> np.ndarray[Any, np.dtype[np.int32]]:
     if not len(chunk):
         return np.empty(0, np.int32)
     return np.frombuffer(chunk.buffers()[1], np.int32, len(chunk), chunk.offset * 4)
+
+
+def whole_numbers(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArray:
+    """Return 64-bit numbers, shape (n,), as a column, not copied."""
+    return pa.chunked_array([pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(numbers)])])
