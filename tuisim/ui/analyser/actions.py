@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.ui.analyser import columns, defining, doing, noting, outward, tabling
+from tuisim.ui.analyser import columns, defining, differing, doing, eventing, noting, outward, tabling
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.screen import Analyser
@@ -48,6 +48,8 @@ ACTIONS: Mapping[str, Action] = {
                 partial(doing.turn_to, pane="statistics"), "stats", of_rows=False),
         Action("notes", "n", "n", "Notes", PANE, partial(doing.turn_to, pane="notes"), "notes", of_rows=False),
         Action("runs", "r", "r", "Runs of this log", PANE, partial(doing.turn_to, pane="runs"), "runs", of_rows=False),
+        Action("events", "c", "c", "Events: where a variable crosses a threshold; again: which", PANE,
+                eventing.show, "events", of_rows=False),
         Action("note", "m", "m", "Note on the sample, the band, or the span from A", LOG, noting.write, "note"),
         Action("up", "up", "↑", "Row before", CURSOR, partial(doing.rows, step=-1)),
         Action("down", "down", "↓", "Next row", CURSOR, partial(doing.rows, step=1)),
@@ -60,6 +62,8 @@ ACTIONS: Mapping[str, Action] = {
         Action("far-left", "shift+left", "⇧←", "Cursor back by ten", CURSOR, partial(doing.columns, step=-10)),
         Action("far-right", "shift+right", "⇧→", "Cursor on by ten", CURSOR, partial(doing.columns, step=10)),
         Action("go-to", "g", "g", "Go to a row, or a time such as 2.5s", CURSOR, doing.ask_where, "go to"),
+        Action("event", "j", "j", "Next event", CURSOR, partial(eventing.jump, step=1)),
+        Action("event-before", "J", "J", "Event before", CURSOR, partial(eventing.jump, step=-1)),
         Action("mark", "a", "a", "Measure from here (A), or no longer", CHART, doing.mark, "A"),
         Action("zoom-in", "z", "z", "Less time, around the cursor", CHART, partial(doing.zoom, factor=0.5), "zoom"),
         Action("zoom-out", "Z", "Z", "More time", CHART, partial(doing.zoom, factor=2.0)),
@@ -98,6 +102,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("columns", "C", "C", "Say what the columns of the file are", LOG, columns.ask, of_rows=False),
         Action("open-runs", "R", "R", "Open other runs, several laid over each other", LOG,
                 doing.ask_runs, of_rows=False),
+        Action("differences", "D", "D", "Where two runs part, and go there", LOG, differing.show, of_rows=False),
         Action("beside", "w", "w", "World beside the log, or not", PANE, doing.beside, of_rows=False),
         Action("help", "question_mark", "?", "Help", LOG, doing.show_help, "help", of_rows=False),
         Action("leave", "q,escape", "q", "Leave the analyser", LOG, doing.leave, "leave", of_rows=False),

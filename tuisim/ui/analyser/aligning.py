@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tuisim.datalog.analysis.crossings import crossings
 from tuisim.datalog.analysis.logbands import driven_mm
 from tuisim.errors import LogError
+from tuisim.ui.analyser.events import threshold_of
 
 if TYPE_CHECKING:
     from tuisim.datalog.arrays import FloatArray
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
 
 TIME, DISTANCE = "time", "distance"
 FORM = "time, distance, or an event such as `Colour < 50`"
-_EVENT = re.compile(r"\s*(?P<name>.+?)\s*(?P<op>[<>])\s*(?P<value>-?\d+(?:\.\d+)?)\s*")
 
 
 def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
@@ -37,22 +35,11 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
         if any(places is None for places in driven):
             raise LogError("no distances: the log has no x_mm and y_mm in each row", FORM)
         return driven
-    match = _EVENT.fullmatch(way)
-    if match is None:
+    event = threshold_of(way)
+    if event is None:
         raise LogError(f"cannot align by {way!r}", FORM)
-    found = {
-        one.run: moment
-        for one in series
-        if one.name.partition(" #")[0] == match["name"] and (moment := _first(one, match)) is not None
-    }
+    found = {one.run: there[0].time_s for one in event.among(series) if (there := event.crossings(one))}
     if not found:
         raise LogError(f"no run comes to {way}", FORM)
     # A run in which it never happens stays where the earliest one is.
     return [one.time_s - found.get(one.run, min(found.values())) for one in series]
-
-
-def _first(series: Series, event: re.Match[str]) -> float | None:
-    """Time at which a value first goes beyond a threshold."""
-    rising = event["op"] == ">"
-    there = crossings(series.time_s, series.values, float(event["value"]))
-    return next((crossing.time_s for crossing in there if crossing.rising is rising), None)

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rich.style import Style
 from textual import events
 from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.ui.analyser.aligning import DISTANCE
+from tuisim.ui.analyser.events import marks
 from tuisim.ui.cellview import LinesView
 from tuisim.ui.render import axes
 from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from tuisim.ui.analyser.model import Model
     from tuisim.ui.analyser.traces import LogTrace
 
+_EVENTS = Style(color="#ffaf5f", bold=True)
 _LEAST_FACET_ROWS = 6
 """A chart of one variable that is lower says nothing."""
 
@@ -103,7 +106,8 @@ class LogChart(Widget):
             trace.prepare(x_limits, width, self.look.hold)
         unit = "mm" if model.alignment == DISTANCE else "s"
         measured = _measured(model, unit, width)
-        height -= len(measured)
+        marked = 1 if model.events.thresholds and model.log.rows else 0
+        height -= len(measured) + marked
         facets = ticked if self.look.facets and len(ticked) > 1 and height >= 2 * _LEAST_FACET_ROWS else []
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
@@ -119,7 +123,14 @@ class LogChart(Widget):
             picture = self._painters.setdefault(name, ChartPainter()).paint(part, state, width, rows)
             self._pictures.append((len(lines), picture))
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
-        self._text.set_lines([*lines, *measured])
+        self._text.set_lines([*lines, *(self._event_marks(model) if marked else []), *measured])
+
+    def _event_marks(self, model: Model) -> list[list[Run]]:
+        """The line below the charts with a mark where something crosses a threshold."""
+        _, picture = self._pictures[-1]
+        if not picture.columns:
+            return [[]]
+        return [[(" " * picture.left + marks(model, picture.x_limits, picture.columns), _EVENTS)]]
 
     def _against(self, model: Model, names: tuple[str, str], width: int, height: int) -> list[list[Run]]:
         trace = model.trace
@@ -170,8 +181,6 @@ def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
     """The line that says what lies between the two cursors."""
     if model.mark_s is None or not model.log.rows:
         return []
-    from rich.style import Style
-
     plain, strong = Style(color="#9fb0c3"), Style(color="#ffffff", bold=True)
     start_s, stop_s = sorted((model.mark_s, model.cursor_s))
     trace = model.trace

@@ -19,6 +19,7 @@ from tuisim.datalog.opening.layout import is_numeric
 from tuisim.errors import LogError
 from tuisim.ui.analyser.aligning import TIME, aligned
 from tuisim.ui.analyser.deriving import derive
+from tuisim.ui.analyser.events import Events
 from tuisim.ui.analyser.rows import Rows
 from tuisim.ui.analyser.traces import LogTrace, LogTraces
 from tuisim.ui.render.axes import Limits
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 _LEAST_SPAN = 1e-9
 """Of the whole time: the chart zooms in no further."""
+_SORTED_AT_ONCE = 200_000
+"""So many values have their quantiles found within a few hundredths of a second."""
 
 
 class Model:
@@ -64,6 +67,7 @@ class Model:
         self._reports: dict[str, BandReport] = {}
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
         """The bands of the reports that were last asked for."""
+        self.events = Events()
         self.definitions: dict[str, str] = {}
         """What was derived, as it was typed, by its name."""
         self._words: dict[str, str] = {}
@@ -173,6 +177,7 @@ class Model:
                 self.traces.named(trace.name).on = trace.on
         if other.selected in self.traces:
             self.selected = other.selected
+        self.events.thresholds = other.events.thresholds
         self.rows.take_over(other.rows)
         if other.alignment != TIME:
             self._align_again(other.alignment)
@@ -281,8 +286,20 @@ class Model:
             self._reported = reports, [band for report in reports for band in report.bands]
         return self._reported[1]
 
+    def measured(self) -> Limits | None:
+        """Return the part of the chart between the two cursors, None if there is one cursor only."""
+        if self.mark_s is None or not self.log.rows:
+            return None
+        return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)
+
     def summary(self, name: str) -> Summary:
-        """Return the figures of a variable, reckoned once."""
+        """Return the figures of a variable: of what is between the two cursors, or of all, reckoned once."""
+        span = self.measured()
+        if span is not None:
+            pyramid = self.traces.named(name).pyramid
+            values = pyramid.between(*span)[1]
+            # The quantiles of many would hold up the keys that move the cursor.
+            return summary_of(values) if len(values) <= _SORTED_AT_ONCE else pyramid.figures(*span)
         if name not in self._summaries:
             self._summaries[name] = summary_of(self.traces.named(name).series.values)
         return self._summaries[name]

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
-from typing import overload
+from math import isfinite, nan
+from typing import Generic, TypeVar, overload
 
 from rich.style import Style
 
 from tuisim.datalog.analysis.logbands import Band
 from tuisim.datalog.analysis.statistics import QUANTILES
+from tuisim.ui.analyser.events import Event
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.render.kinds import Line
 from tuisim.ui.verbs import end_label
@@ -54,21 +55,24 @@ def _figure(value: float, digits: str = ".4g") -> str:
     return f"{value:{digits}}" if isfinite(value) else "–"
 
 
-class _Bands(Sequence[Cells]):
-    """The rows of bands, each made when it is looked at: a long log has a hundred thousand of them."""
+Thing = TypeVar("Thing")
 
-    def __init__(self, bands: Sequence[Band]) -> None:
-        self._bands = bands
+
+class _MadeWhenSeen(Sequence[Cells], Generic[Thing]):
+    """Rows that are made when they are looked at: a long log has a hundred thousand bands or events."""
+
+    def __init__(self, things: Sequence[Thing], row: Callable[[Thing], Cells]) -> None:
+        self._things, self._row = things, row
 
     def __len__(self) -> int:
-        return len(self._bands)
+        return len(self._things)
 
     @overload
     def __getitem__(self, at: int) -> Cells: ...
     @overload
     def __getitem__(self, at: slice) -> Sequence[Cells]: ...
     def __getitem__(self, at: int | slice) -> Cells | Sequence[Cells]:
-        return _Bands(self._bands[at]) if isinstance(at, slice) else _band(self._bands[at])
+        return _MadeWhenSeen(self._things[at], self._row) if isinstance(at, slice) else self._row(self._things[at])
 
 
 def _band(band: Band) -> Cells:
@@ -78,13 +82,28 @@ def _band(band: Band) -> Cells:
     )  # fmt: skip
 
 
+def _event(event: Event) -> Cells:
+    return (
+        event.variable, "above" if event.rising else "below", f"{event.time_s:.3f}",
+        f"{event.since_s:.3f}" if isfinite(event.since_s) else "–", _figure(event.value), f"{event.row + 1:,}",
+        f"{event.threshold.value:g}",
+    )  # fmt: skip
+
+
 def _statistics(model: Model) -> list[Cells]:
     rows = []
     for trace in model.traces.ticked():
         found = model.summary(trace.name)
-        figures = (found.min, found.mean, found.max, found.std, *found.quantiles)
+        figures = (found.min, found.mean, found.max, found.std, *(found.quantiles or (nan,) * len(QUANTILES)))
         rows.append((trace.name, f"{found.count:,}", *map(_figure, figures)))
     return rows
+
+
+def _between(model: Model) -> list[str]:
+    span = model.measured()
+    if span is None:
+        return []
+    return [f"Between {span[0]:.3f} and {span[1]:.3f}, from A to the cursor; a takes A away and all counts again"]
 
 
 def _notes(model: Model) -> list[Cells]:
@@ -115,14 +134,19 @@ def _runs(model: Model) -> list[Cells]:
 PANES: Mapping[str, Pane] = {
     "table": Pane("Table", lambda _: (), ()),
     "bands": Pane(
-        "Bands", lambda model: _Bands(model.bands()),
+        "Bands", lambda model: _MadeWhenSeen(model.bands(), _band),
         ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
         Model.bands_in_words, "No band: no ticked variable keeps a level",
     ),
     "statistics": Pane(
         "Statistics", _statistics,
         ("variable", "count", "min", "mean", "max", "std", *(f"{100 * part:g} %" for part in QUANTILES)),
-        empty="Tick a variable: v chooses one, space ticks it",
+        _between, empty="Tick a variable: v chooses one, space ticks it",
+    ),
+    "events": Pane(
+        "Events", lambda model: _MadeWhenSeen(model.events.found(model.log), _event),
+        ("variable", "comes", "at s", "after s", "value", "row", "threshold"),
+        empty="No events: c asks for a threshold, such as Colour < 50",
     ),
     "notes": Pane(
         "Notes", _notes, ("from s", "to s", "variable", "run", "note"),
@@ -160,7 +184,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     first = _first(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
-    used = [at for at in range(len(widths)) if any(row[at] for row in measured)]
+    used = _fitting_whole([at for at in range(len(widths)) if any(row[at] for row in measured)], widths, width)
     lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], HEAD)]
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN
@@ -169,6 +193,17 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
             line.append((" " * width, HERE))
         lines.append(line)
     return lines + [[(text, DIM)] for text in below]
+
+
+def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
+    """The columns that are seen whole, and the last of all if it is a text that may be cut."""
+    left, seen = width, []
+    for at in columns:
+        if widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
+            break
+        left -= widths[at] + 2
+        seen.append(at)
+    return seen
 
 
 def _first(chosen: int, count: int, room: int) -> int:

@@ -19,6 +19,7 @@ from textual.worker import get_current_worker
 
 from tuisim.datalog.analysis.aside import plateaus_aside
 from tuisim.errors import TuisimError
+from tuisim.ui.analyser import eventing
 from tuisim.ui.analyser.actions import ACTIONS
 from tuisim.ui.analyser.beside import Beside
 from tuisim.ui.analyser.chart import LogChart
@@ -236,13 +237,16 @@ class Analyser(ModalScreen[None]):
         if model is None:
             return
         bands, notes = model.bands() if name == "bands" else [], model.notes if name == "notes" else []
-        count = len(bands or notes) or len(model.subject.runs if name == "runs" else model.traces.ticked())
+        events = model.events.found(model.log) if name == "events" else []
+        count = len(bands or notes or events) or len(model.subject.runs if name == "runs" else model.traces.ticked())
         self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
         if bands:
             model.selected = bands[number].variable
             rows = model.trace.series.rows
             first, last = np.searchsorted(rows, (bands[number].first_row, bands[number].last_row))
             model.go_to_row(int(rows[(first + last) // 2]))
+        elif events:
+            eventing.go_to(self, number)
         elif notes:
             _, note = notes[number]
             if note.variable in model.traces:

@@ -77,14 +77,16 @@ class Differences(Dialog[bool]):
         first: What the first run is called.
         second: What the other one is called.
         diff: What tells them apart.
+        samples: Whether one can also go to a sample: then the first one that differs counts if no tick does.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Go there", show=False)]
 
-    def __init__(self, first: str, second: str, diff: RunDiff) -> None:
+    def __init__(self, first: str, second: str, diff: RunDiff, *, samples: bool = False) -> None:
         super().__init__()
         self.TITLE_TEXT = f"{first} and {second}"
-        self.HINT = "Escape closes" if diff.tick is None else "Enter goes to the first difference · Escape closes"
+        self._goes = diff.tick is not None or (samples and diff.sample is not None)
+        self.HINT = "Escape closes" if not self._goes else "Enter goes to the first difference · Escape closes"
         self._diff = diff
 
     def content(self) -> ComposeResult:
@@ -99,4 +101,4 @@ class Differences(Dialog[bool]):
 
     def action_go(self) -> None:
         """Look at the first difference."""
-        self.dismiss(self._diff.tick is not None)
+        self.dismiss(self._goes)
