@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -201,3 +202,16 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
         assert app.bridge.in_past
         assert app.loading.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
         assert app.bridge.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)
+
+
+async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("helper.py").write_text("def turn(by):\n    return by + 1\n")
+    async with Lab(settings("from helper import turn\nturn(1)\n")).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for line in (1, 2):
+            await pilot.press("n")
+            await until(pilot, partial(at_line, app, line))
+        await pilot.press("s")
+        await until(pilot, lambda: "line 2 of helper.py" in screen_text(app))
+        assert "  return by + 1" in screen_text(app)

@@ -25,6 +25,6 @@ def test_a_module_beside_the_program_is_named() -> None:
     frames = (FrameState("drive", 4, "/lab/ann/helper.py"), FrameState("<module>", 3, ""))
     looked = Looked(5, 50_000_000, "main", 0, "", (), frames, (), (), ())
     paused = Paused(5, 50_000_000, 4, "step", file="/lab/ann/helper.py")
-    rows = text(DebugView("paused", paused, looked), 60)
-    assert rows[0] == "line 4 of helper.py · 0.05 s · tick 5"
+    rows = text(DebugView("paused", paused, looked, source="    return speed\n"), 60)
+    assert rows[:2] == ["line 4 of helper.py · 0.05 s · tick 5", "  return speed"]
     assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import linecache
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
@@ -17,6 +19,7 @@ from tuisim.ui.snapshot import IDLE, Snapshot
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
+    from tuisim.protocol import Paused
     from tuisim.ui.debugging import Debugging
 
 
@@ -85,7 +88,8 @@ class Debug(Widget, can_focus=True):
         if standing is None:
             self._content = DebugView(busy=busy)
         else:
-            self._content = DebugView("", standing.paused, standing.looked, standing.past, busy)
+            source = _line_of(standing.paused)
+            self._content = DebugView("", standing.paused, standing.looked, standing.past, busy, source)
         self._draw()
 
     def on_resize(self, event: events.Resize) -> None:
@@ -96,9 +100,7 @@ class Debug(Widget, can_focus=True):
         size = self._view.size
         if not size:
             return
-        view = self._content
-        shown = DebugView(self._state, view.paused, view.looked, view.past, view.busy)
-        self._lines = debug_lines(shown, size.width)
+        self._lines = debug_lines(replace(self._content, state=self._state), size.width)
         self._top = max(0, min(self._top, len(self._lines) - size.height))
         below = len(self._lines) - self._top - size.height
         self.border_title = f"{self.TITLE} ↓{below}" if below > 0 else self.TITLE
@@ -124,3 +126,11 @@ class Debug(Widget, can_focus=True):
     def on_mouse_scroll_up(self) -> None:
         """Scroll by the wheel."""
         self.action_scroll_lines(-2)
+
+
+def _line_of(paused: Paused) -> str:
+    """The line of a module beside the program; empty for the program itself, or if it cannot be read."""
+    if not paused.file:
+        return ""
+    linecache.checkcache(paused.file)
+    return linecache.getline(paused.file, paused.line)

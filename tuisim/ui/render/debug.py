@@ -64,6 +64,8 @@ class DebugView:
     past: bool = False
     busy: bool = False
     """Whether a former instant is still being worked out."""
+    source: str = ""
+    """The line itself, of a module beside the program: the code panel does not show that."""
 
 
 def debug_lines(view: DebugView, width: int) -> list[Line]:
@@ -76,6 +78,8 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
         return _told("", OVER if view.state == "ended" else EMPTY, width)
     paused, looked = view.paused, view.looked
     lines = [_where(view, paused, width)]
+    if view.source:
+        lines.append([(_cut(f"  {view.source.strip()}", width), _VALUE)])
     why = REASONS.get(paused.reason, paused.reason) + (f" {paused.detail}" if paused.detail else "")
     if paused.value:
         why += f": {paused.value}"
