@@ -364,9 +364,9 @@ def test_the_files_of_the_readme_work_together(root: Path, tmp_path: Path) -> No
         name, _, text = block.partition("```")[0].partition("\n")
         (tmp_path / name).write_text(text)
     spec = build_run_spec(settings_of(load_world(tmp_path / "lab.toml").settings))
-    assert [sensor.name for sensor in spec.robot.color_sensors] == ["left", "right", "middle"]
+    assert [sensor.name for sensor in spec.robot.color_sensors] == ["left", "right"]
     assert (spec.profile.name, spec.profile.color_read_ns) == ("profile", 5_000_000)
     assert load_obstacles(str(tmp_path / "obstacles.toml")) == (Obstacle(900, 500, 200, 100),)
     explorer = load_robot(str(tmp_path / "explorer.toml"))
-    assert [sensor.name for sensor in explorer.sensors] == ["left", "right", "back", "bumper"]
+    assert [sensor.name for sensor in explorer.sensors] == ["left", "middle", "back", "bumper"]
     assert len(blocks) == 5

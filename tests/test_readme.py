@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
+from typing import Any
 
 import pytest
 
-from tests.conftest import ROOT
+from tests.conftest import ROOT, Command
 from tuisim.cli import COMMANDS
 from tuisim.commands.log import SUBCOMMANDS
 from tuisim.core.profile import PROFILES
@@ -59,3 +61,30 @@ def test_where_things_are_added_is_there() -> None:
                 assert (ROOT / "tuisim" / word).exists() or (ROOT / word).exists(), word
             else:
                 assert re.search(rf"^(class )?{word}\b", code, flags=re.MULTILINE), word
+
+
+def block(language: str, holding: str) -> str:
+    """The one block of code in a language that holds a text."""
+    (found,) = [code for code in re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL) if holding in code]
+    return str(found)
+
+
+def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "my_program.py").write_text(block("python", "tank_drive.on("))
+    (tmp_path / "robot.toml").write_text(block("toml", "# robot.toml"))
+    for robot in ("Default_Robot", "robot.toml"):
+        done = here("run", "my_program.py", "-r", robot)
+        assert (done.returncode, done.stdout.splitlines()[0]) == (0, "Colour: 100.0"), done.stderr
+
+
+def test_logs_and_runs_are_read_as_told(tmp_path: Path, here: Command) -> None:
+    assert here("run", "log_greys", "--export", "greys.csv", "--export", "greys.jsonl").returncode == 0
+    names: dict[str, Any] = {}
+    exec(block("python", "read_log("), names)
+    assert names["df"]["variable"].unique().tolist() == ["Colour"]
+    ends = [line for line in block("python", "load_run(").splitlines() if "load_run(" in line]
+    for told_of in re.findall(r"run(?:\.\w+)+", ends[0].partition("#")[2]):
+        assert eval(told_of, names) is not None, told_of
+    beside = {path.name for path in tmp_path.glob("greys.*.json")}
+    assert beside == {"greys.csv.json", "greys.jsonl.json"}
+    assert all(name.replace("greys", "NAME") in QUOTED for name in beside)
