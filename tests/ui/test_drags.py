@@ -2,40 +2,36 @@
 
 from __future__ import annotations
 
-import pytest
+from textual.widget import Widget
 
-from tests.ui.app_help import ENDLESS, ready, settings, until
-from tuisim.core.geometry import Pose
+from tests.ui.app_help import LOGS, ready, settings, until
 from tuisim.ui.app import Lab
+from tuisim.ui.panels.brick import Brick
+from tuisim.ui.panels.chart import Chart
 from tuisim.ui.panels.world import WorldView
+from tuisim.ui.screens.dialog import Dialog
 from tuisim.ui.slider import Slider
-from tuisim.ui.snapshot import RUNNING
-
-pytestmark = pytest.mark.usefixtures("home")
 
 
 async def test_no_drag_outlives_a_dialog() -> None:
-    shown = frozenset({"noise", "brick"})
-    async with Lab(settings(ENDLESS, panels_on=shown)).run_test(size=(120, 50)) as pilot:
+    async with Lab(settings(LOGS, panels_on=frozenset({"noise", "brick"}))).run_test(size=(120, 50)) as pilot:
         app = await ready(pilot)
-        view, slider, brick = app.query_one(WorldView), app.query_one("#light", Slider), app.desk.brick
-        assert view._port is not None and brick is not None
-        await pilot.press("R")
-        await until(pilot, lambda: app.bridge.state == RUNNING and bool(brick._picture.buttons))
-        await pilot.press("space")
-        app.bridge.place(Pose(1000, 500, 0))
-        await until(pilot, lambda: view._snapshot is not None and view._snapshot.instant.pose.x_mm == 1000)
-        col, row = view._port.to_px(1000, 500)
-        button = brick._picture.buttons[0]
-        for widget, x, y in (
-            (view, int(col), int(row / 2)), (slider, 0, 0), (brick._view, button.first, button.row)
-        ):  # fmt: skip
-            await pilot.mouse_down(widget, offset=(x, y))
-            await pilot.press("question_mark")
-            await until(pilot, lambda: len(app.screen_stack) == 2)
+        view, slider = app.query_one(WorldView), app.query_one("#light", Slider)
+        chart, brick = app.query_one(Chart), app.query_one(Brick)
+        assert view._port is not None
+        col, row = view._port.to_px(app.bridge.pose.x_mm, app.bridge.pose.y_mm)
+        grips: list[tuple[Widget, tuple[int, int]]] = [(view, (int(col), int(row / 2))), (slider, (0, 0))]
+        for widget, at in grips:
+            await pilot.mouse_down(widget, offset=at)
+            dialog: Dialog[None] = Dialog()
+            await app.push_screen(dialog)
             await pilot.mouse_up()
-            await pilot.press("escape")
+            dialog.dismiss()
             await until(pilot, lambda: len(app.screen_stack) == 1)
-        assert view._grip is None
-        assert not slider.dragging
-        assert app.bridge.pressed == frozenset()
+        # As while the mouse presses a button, or drags the cursor.
+        brick._clicked, chart._dragging = "enter", True
+        app.capture_mouse(brick)
+        app.capture_mouse(chart)
+        app.capture_mouse(None)
+        await pilot.pause()
+        assert (view._grip, slider.dragging, brick.held, chart._dragging) == (None, False, frozenset(), False)
