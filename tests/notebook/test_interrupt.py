@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from IPython.core.interactiveshell import InteractiveShell
 
 from tests.notebook.conftest import Cell, Kernel
 from tuisim.notebook import running
@@ -42,7 +43,11 @@ def check_that_all_is_well(cell: Cell) -> None:
         pytest.param(Stage, "show", id="in the display"),
     ],
 )
-def test_an_interrupt_stops_the_program(holder: Any, name: str, cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupt_stops_the_program(
+    holder: Any, name: str, cell: Cell, shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # As a kernel's shell, which draws while the program runs.
+    monkeypatch.setattr(shell, "kernel", None, raising=False)
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell("%%sim_magic -RW\nprint('Colour: 1')\n")
     with monkeypatch.context() as patch:

@@ -12,6 +12,7 @@ from typing import Any
 from tuisim.errors import ConfigError
 from tuisim.notebook.words import lasting_after, parse_line
 from tuisim.programfile import PRELUDES, ProgramSource
+from tuisim.switches import nearest
 
 MAX_NOTEBOOK_BYTES = 64 << 20
 SUFFIX = ".ipynb"
@@ -91,8 +92,11 @@ def _magics(text: str, where: str) -> Iterator[tuple[re.Match[str], Mapping[str,
     lines = stripped.splitlines()[:1] if stripped.startswith("%%") else stripped.splitlines()
     for line in lines:
         match = _MAGIC.fullmatch(line.strip())
-        if match is None or match["name"] not in PRELUDES:
+        if match is None:
             continue
+        if match["name"] not in PRELUDES:
+            known = nearest(match["name"], PRELUDES)
+            raise ConfigError(f"no such magic %{match['cell'] or ''}{match['name']}", known, file=where)
         try:
             yield match, parse_line(match["words"], match["name"]).settings
         except ConfigError as error:

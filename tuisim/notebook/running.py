@@ -43,8 +43,6 @@ BYTES_IN_A_HURRY = 1 << 20
 FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
 """What the lines begin with that are meant for the responder."""
 
-RUNNING = "running"
-
 Responder = Callable[[str], object]
 _SHOWN = {STDOUT, STDERR, SPEECH}
 
@@ -137,7 +135,7 @@ class _Follower:
         """Wait until the run is over, and pass everything on meanwhile."""
         handle, interruption = self._handle, self._interruption
         # Before anything is printed: what a cell shows stands in the same order however fast the program is.
-        self._screen.draw(RUNNING)
+        self._screen.draw_now_and_then()
         more = False
         while handle.ended is None:
             if interruption.count > 1:
@@ -193,16 +191,16 @@ class _Screen:
 
     def __init__(self, wanted: CellRun, stage: Stage, run: StoredRun) -> None:
         self._wanted, self._stage, self._run = wanted, stage, run
-        self._due = time.monotonic() + wanted.refresh_s
+        self._due = 0.0
         self._samples: list[Sample] = []
         self._position = 0
         """Up to where the output has been searched for samples."""
 
     def draw_now_and_then(self) -> None:
-        """Draw if the last drawing is old."""
-        if time.monotonic() < self._due:
+        """Draw if there is no drawing yet, or the last one is old; where drawings would pile up, never."""
+        if not self._stage.redraws or time.monotonic() < self._due:
             return
-        self.draw(f"{RUNNING} · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
+        self.draw(f"running · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
         # Counted from the end of the drawing: what is slow to draw must not be all that is done.
         self._due = time.monotonic() + self._wanted.refresh_s
 

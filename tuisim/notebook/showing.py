@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from IPython.core.getipython import get_ipython
 from IPython.display import DisplayHandle, display
 
 from tuisim.core.sensors import mounted
@@ -134,6 +135,8 @@ class Stage:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
+        self.redraws = hasattr(get_ipython(), "kernel")
+        """Whether what is shown can be drawn anew in its place; a terminal would repeat it below."""
         self._handles: dict[str, DisplayHandle] = {}
 
     def _put(self, panel: str, bundle: dict[str, Any]) -> None:
@@ -141,7 +144,7 @@ class Stage:
             self._handles[panel].update(bundle, raw=True)
         else:
             handle = display(bundle, raw=True, display_id=True)
-            # Outside a notebook nothing can be drawn anew: the first drawing is what there is.
+            # A display that swallows what it is given returns none.
             if handle is not None:
                 self._handles[panel] = handle
 
