@@ -11,6 +11,7 @@ import sys
 from argparse import Namespace, RawDescriptionHelpFormatter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 
@@ -58,8 +59,7 @@ def _parser(command: str) -> SwitchParser:
             formatter_class=_HelpFormatter,
             allow_abbrev=False,
         )
-        parser.add_argument("words", nargs="*", metavar="PROGRAM", help="a Python file, or an example's name")
-        parser.add_world()
+        parser.add_programs("words")
         parser.add_argument("--run", metavar="RUN", help="a stored run, to look back at: see `tuisim runs`")
         parser.add_argument("--version", action="version", version=f"tuisim {__version__}")
         parser.add_switches()
@@ -152,8 +152,21 @@ def _drawing_on_stdout() -> Iterator[None]:
         os.close(stderr)
 
 
+def _check_command(word: str) -> None:
+    """Tell a misspelt command from a program."""
+    close = get_close_matches(word, COMMANDS, 1)
+    if not close or "." in word:
+        return
+    from tuisim.commands.prepare import find_program
+
+    if not find_program(word).exists():
+        raise ConfigError(f"{word}: there is no such command or program", f"did you mean `tuisim {close[0]}`?")
+
+
 def _dispatch(words: Sequence[str]) -> int:
     command, rest = (words[0], words[1:]) if words and words[0] in COMMANDS else ("open", words)
+    if words and command != words[0]:
+        _check_command(words[0])
     # Intermixed, because switches may stand between two programs.
     arguments = _parser(command).parse_intermixed_args(rest)
     if command == "open":

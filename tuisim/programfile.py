@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from tuisim.assets import programs
 from tuisim.errors import ConfigError
 from tuisim.switches import nearest, parse_words
 
@@ -200,7 +201,7 @@ def _decode(data: bytes, shown: str) -> str:
 
 
 def _neighbours(path: Path) -> str:
-    """The hint for a missing file: programs beside it with a like name, and where to find more."""
+    """The hint for a missing file: programs beside it with a like name, else examples, and where to find more."""
     import difflib
 
     try:
@@ -208,4 +209,8 @@ def _neighbours(path: Path) -> str:
     except OSError:
         beside = []
     close = difflib.get_close_matches(path.name, beside, 3)
+    if not close and path.parent == Path():
+        # A word without a folder may also have meant an example, which needs no suffix.
+        stems = [file.path.stem for file in programs()]
+        close = [f"{stem}{path.suffix}" for stem in difflib.get_close_matches(path.stem, stems, 3)]
     return f"did you mean {' or '.join(close)}?" if close else "see `tuisim programs` for examples"

@@ -248,8 +248,10 @@ class SwitchParser(argparse.ArgumentParser):
         text = message.removeprefix("argument ").replace("unrecognized arguments:", "no such switch or argument:")
         raise ConfigError(text, f"see `{self.prog} --help`" if self.add_help else "")
 
-    def add_world(self) -> None:
-        """Add `--world`, which a magic line cannot have."""
+    def add_programs(self, dest: str) -> None:
+        """Add what a magic line cannot have: the programs, and `--world`."""
+        what = "a Python file, a notebook or one of its cells (FILE.ipynb#2), or an example's name"
+        self.add_argument(dest, nargs="*", metavar="PROGRAM", help=what)
         self.add_argument("--world", metavar="FILE", help="a world file; it may also stand before the program")
 
     def add_switches(self) -> None:

@@ -246,7 +246,7 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
     from tuisim.switches import SwitchParser
 
     parser = SwitchParser(prog="tuisim")
-    parser.add_world()
+    parser.add_programs("words")
     parser.add_switches()
     prepared = prepare_app(["lab.toml"], parser.parse_args([]))
     assert prepared.world is not None

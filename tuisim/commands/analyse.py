@@ -22,12 +22,12 @@ class Asked:
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim analyse`."""
-    parser.usage = "tuisim analyse FILE|RUN… [options]"
+    parser.usage = "tuisim analyse [RUN…|FILE|-] [options]"
     parser.epilog = (
         "A RUN is its number, its id, or `last` (also if none is named); several are laid over each other.\n"
         "A FILE is CSV, Parquet, JSONL, Arrow or text with lines such as `Colour: 98.8`; - is the standard input."
     )
-    parser.add_argument("words", nargs="*", metavar="LOG", help="runs, or a file")
+    parser.add_argument("words", nargs="*", metavar="LOG", help="runs, a file, or -")
     parser.add_argument("--telemetry", action="store_true", help="every tick of a run instead of its samples")
     add_columns(parser)
 

@@ -40,7 +40,8 @@ def add_break_arguments(parser: SwitchParser) -> None:
         "may be repeated")  # fmt: skip
     add("--watch", dest="watches", action="append", default=[], metavar="EXPR",
         help="an expression to tell at each break; may be repeated")  # fmt: skip
-    add("--break-then", choices=(GO, STOP), default=GO, help="what follows a break (go); stop ends with exit code 3")
+    add("--break-then", choices=(GO, STOP), default=GO, metavar=f"{GO}|{STOP}",
+        help="what follows a break (go); stop ends with exit code 3")  # fmt: skip
 
 
 def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]) -> None:

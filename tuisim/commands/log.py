@@ -56,7 +56,12 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
 OPTIONS: Mapping[str, Mapping[str, Any]] = {
     "at": {"type": float, "metavar": "VALUE", "help": "threshold of events"},
     "hysteresis": {"type": float, "default": 0.0, "metavar": "VALUE", "help": "events: how far beyond counts"},
-    "between": {"choices": ("hold", "linear"), "default": "hold", "help": "what a signal is between samples"},
+    "between": {
+        "choices": ("hold", "linear"),
+        "default": "hold",
+        "metavar": "hold|linear",
+        "help": "what a signal is between samples (hold)",
+    },
     "width": {"type": int, "default": 5, "metavar": "N", "help": "samples of an average, odd"},
     "period": {"type": float, "metavar": "S", "help": "seconds between rows of resample"},
     "expression": {"default": "", "metavar": "TEXT", "help": "such as '(left + right) / 2', see README"},
@@ -87,7 +92,7 @@ def add_arguments(parser: SwitchParser) -> None:
         "  tuisim log plot last --telemetry --variable y_mm --against x_mm"
     )
     parser.add_argument("action", metavar="SUBCOMMAND", help="what to do")
-    parser.add_argument("words", nargs="*", metavar="LOG", help="runs or files")
+    parser.add_argument("words", nargs="*", metavar="LOG", help="runs, files or -")
     parser.add_argument(
         "--variable", action="append", default=[], metavar="NAME", help="only this one; may be repeated"
     )

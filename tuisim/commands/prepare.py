@@ -35,8 +35,12 @@ class Prepared:
     world: WorldFile | None = None
 
 
-def _find(word: str) -> Path:
-    """The file that a word means: a path, else the name of an example program."""
+def find_program(word: str) -> Path:
+    """Return the file that a word means: a path, else the name of an example program; it may not be there.
+
+    Raises:
+        ConfigError: nobody can tell whether it is there, such as with a name that is too long.
+    """
     path = Path(word)
     try:
         path.exists()
@@ -65,7 +69,7 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -
     if word is None:
         settings = settings_of(in_world, given(arguments))
         return Prepared(None, settings, build_run_spec(settings), world)
-    return _of_source(read_program(_find(word)), world, arguments)
+    return _of_source(read_program(find_program(word)), world, arguments)
 
 
 def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:

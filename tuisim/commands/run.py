@@ -32,13 +32,7 @@ def add_arguments(parser: SwitchParser) -> None:
         "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or a break; the worst counts."
     )
     parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--telemetry FILE] [--json] …"
-    parser.add_argument(
-        "programs",
-        nargs="*",
-        metavar="PROGRAM",
-        help="a Python file, a notebook or one of its cells (FILE.ipynb#2), or an example's name",
-    )
-    parser.add_world()
+    parser.add_programs("programs")
     add = parser.add_argument_group("data and limits").add_argument
     add("--export", action="append", default=[], metavar="FILE",
         help=f"write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated")  # fmt: skip

@@ -9,7 +9,13 @@ from tuisim.switches import SwitchParser
 def add_columns(parser: SwitchParser) -> None:
     """Declare `--time`, `--unit` and `--value`."""
     parser.add_argument("--time", metavar="COLUMN", help="column with the time; empty counts the rows")
-    parser.add_argument("--unit", default="", choices=tuple(SECONDS), help="its unit, where its name does not tell")
+    parser.add_argument(
+        "--unit",
+        default="",
+        choices=tuple(SECONDS),
+        metavar="|".join(SECONDS),
+        help="its unit, where its name does not tell",
+    )
     parser.add_argument(
         "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
     )
