@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, radians, sin
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.css import css_rgb
@@ -174,6 +175,7 @@ def chart_picture(samples: Iterable[Sample]) -> Image:
     if not traces:
         draw.text((_MARGIN_LEFT + 8, _MARGIN + 8), "no samples", fill="black")
         return picture
+    traces = {name: _thinned(trace) for name, trace in traces.items()}
     points = [point for trace in traces.values() for point in trace]
     lows, highs = [min(axis) for axis in zip(*points, strict=True)], [max(axis) for axis in zip(*points, strict=True)]
     for low, high, place in ((lows[1], highs[1], "y"), (lows[0], highs[0], "x")):
@@ -184,6 +186,18 @@ def chart_picture(samples: Iterable[Sample]) -> Image:
         draw.text(ends[1], f"{high:.4g}{unit}", fill="black")
     _draw_traces(draw, traces, lows, highs)
     return picture
+
+
+def _thinned(trace: list[Point]) -> list[Point]:
+    """Return what there is to see of a trace: of each stretch narrower than a pixel its lowest and highest point."""
+    step = len(trace) // (2 * CHART_SIZE[0])
+    if step < 2:
+        return trace
+    kept = trace[:1]
+    for at in range(0, len(trace), step):
+        stretch = sorted(trace[at : at + step], key=itemgetter(1))
+        kept += sorted((stretch[0], stretch[-1]))
+    return [*kept, trace[-1]]
 
 
 def _draw_traces(draw: ImageDraw, traces: Mapping[str, list[Point]], lows: list[float], highs: list[float]) -> None:

@@ -88,6 +88,10 @@ def test_an_interrupt_before_the_run_leaves_everything_as_it_was(cell: Cell, mon
         pytest.param(ENDLESS.replace("-RW", "-RAciXpF 0.02"), id="while everything is drawn"),
         pytest.param(ENDLESS.replace("    pass", "    print('Flood: 1')").replace(" --speed 1", ""), id="in a flood"),
         pytest.param(
+            ENDLESS.replace("    pass", "    print('Flood: 1')").replace("-RW --speed 1", "-RcO"),
+            id="in a charted flood",
+        ),
+        pytest.param(
             ENDLESS.replace("    pass", "    try:\n        pass\n    except BaseException: pass"), id="stubborn"
         ),
     ],

@@ -81,6 +81,14 @@ def test_the_readme_example_does_as_it_says(cell: Cell) -> None:
     assert cell(program).out.splitlines()[-1] == program.partition("# ")[2].strip()
 
 
+def test_a_responder_may_run_programs_itself(cell: Cell) -> None:
+    cell("def measure(text):\n    get_ipython().run_cell_magic('sim_magic', '-RWH', \"print('Inner: 1')\")\n"
+         "roboSim.responder = measure")  # fmt: skip
+    cell("%%sim_magic -RWL\nprint('PY::?')\nfrom ev3dev2_glue import pyState\npyState()\nprint('Outer: 2')")
+    frame = cell("%sim_data").result
+    assert list(zip(frame.run, frame.variable, strict=True)) == [(1, "Outer"), (2, "Inner")]
+
+
 MISTAKES = [
     ("lambda text: object()", "roboSim.responder: the program cannot get a object"),
     ("lambda text: {1j: 2}", "roboSim.responder: the program cannot get keys must be str"),

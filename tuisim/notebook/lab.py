@@ -173,11 +173,11 @@ class Lab:
             plan.program, plan.spec, plan.files, plan.settings.speed or 0.0, words.refresh_s, self._traces, responder,
             plan.settings.quiet,
         )  # fmt: skip
-        logged = len(self._runs)
 
         def note(run: StoredRun) -> None:
-            # The log has it from its start, for a responder.
-            self._last, self._runs[logged:] = run, [run]
+            # The log has it from its start, for a responder, which may also have started runs of its own.
+            places = [at for at, known in enumerate(self._runs) if known.id == run.id] or [len(self._runs)]
+            self._last, self._runs[places[0] : places[0] + 1] = run, [run]
 
         run = run_cell(wanted, stage, note)
         self._traces = (*self._traces, pen_trace(run.spec, run.telemetry.array()))
