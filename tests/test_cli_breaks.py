@@ -47,6 +47,7 @@ def test_a_break_may_end_the_run(program: str, capsys: pytest.CaptureFixture[str
     assert out.splitlines() == ["Total: 0", "Total: 1"]
     assert "0.150 s, tick 15" in err
     assert "    sleeps until 0.20 s" in err.splitlines()
+    assert ": stopped · 0.150 s" in err
 
 
 def test_a_break_for_another_robot_is_refused(program: str, capsys: pytest.CaptureFixture[str]) -> None:

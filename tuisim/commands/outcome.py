@@ -64,7 +64,7 @@ def describe(run: StoredRun) -> dict[str, Any]:
 def last_state(facts: dict[str, Any]) -> str:
     """Return the line that a run ends with, from what `describe` returned."""
     state = facts["state"].replace("_", " ")
-    what = f"{state}: {facts['summary']}" if facts["summary"] else state
+    what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
     samples = f"{facts['samples']} sample{'s' * (facts['samples'] != 1)}"
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
