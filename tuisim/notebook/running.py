@@ -34,7 +34,7 @@ ROWS_AT_ONCE = 2000
 ROWS_AFTER_INTERRUPT = 1000
 """So many lines of an interrupted run are still shown; its log has them all."""
 
-ROWS_A_DRAWING = 20_000
+ROWS_A_DRAWING = 10_000
 """So many lines are searched for samples between two looks at the interrupt."""
 
 BYTES_IN_A_HURRY = 1 << 20
@@ -86,7 +86,8 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
         try:
             run = store.load_run(handle.run_id)
             begun(run)
-            _Follower(wanted, handle, _Screen(wanted, stage, run), interruption).to_the_end()
+            screen = _Screen(wanted, stage, run)
+            _Follower(wanted, handle, screen, interruption).to_the_end()
         except BaseException:  # whatever a responder raises: its program must not outlive the cell
             handle.stop()
             handle.wait(STOP_WAIT_S)
@@ -97,7 +98,7 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
             begun(done)
         # The user who has interrupted a flood of lines does not wait for all of them to be read.
         hurry = interruption.count > 0
-        _Screen(wanted, stage, done).draw(told_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
+        screen.draw(told_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
     return done
 
 
@@ -149,7 +150,8 @@ class _Follower:
             # An answer is one to all that was printed before the question.
             if not more and not interruption.count:
                 self._reply()
-            self._screen.draw_now_and_then()
+            if not interruption.count:
+                self._screen.draw_now_and_then()
         self._finish()
 
     def _pass_on(self) -> bool:
