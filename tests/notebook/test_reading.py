@@ -76,6 +76,7 @@ def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
         pytest.param(LESSON, "#4", "a number from 1 to 3", id="no such cell"),
         pytest.param(LESSON, "#x", "a number from 1 to 3", id="no number"),
         pytest.param([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such switch", id="wrong switch"),
+        pytest.param([("code", "%%sim_magic -b Nope\npass")], "", "bad.ipynb#1: -b: no such mat", id="wrong mat"),
         pytest.param([("code", "%%sim_magic_preload\npass")], "", "cell 1: no such magic %%sim", id="wrong magic"),
         pytest.param('{"cells": ' + "[" * 100_000, "", "is no notebook that can be read", id="deep"),
         pytest.param('{"cells": [{"cell_type": "code", "source": [1]}]}', "", "is no notebook", id="no text"),

@@ -77,6 +77,14 @@ def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespac
     return Prepared(_program(file, settings), settings, build_run_spec(settings), world)
 
 
+def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
+    try:
+        return _of_source(file, world, arguments)
+    except ConfigError as error:
+        # A notebook has many: a mat or robot that there is not says in which of them.
+        raise ConfigError(error.message, error.hint, file="" if error.file else file.name) from None
+
+
 def _program(file: ProgramSource, settings: Settings) -> Program:
     return Program(name=file.name, text=file.text, prelude=settings.preload or file.prelude, path=file.path)
 
@@ -97,7 +105,7 @@ def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
         raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
     word = programs[0] if programs else world.program if world else None
     if word is not None and is_notebook(word):
-        return _of_source(chosen_programs(word)[0].source, world, arguments)
+        return _of_cell(chosen_programs(word)[0].source, world, arguments)
     return _prepared(word, world, arguments)
 
 
@@ -143,7 +151,7 @@ def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared]:
     prepared: list[Prepared] = []
     for word in programs:
         if is_notebook(word):
-            prepared += [_of_source(program.source, world, arguments) for program in chosen_programs(word)]
+            prepared += [_of_cell(program.source, world, arguments) for program in chosen_programs(word)]
         else:
             prepared.append(_prepared(word, world, arguments))
     return prepared
