@@ -35,7 +35,7 @@ def ask(screen: Analyser) -> None:
         return
 
     def go(text: str) -> None:
-        work(screen, "reckoning …", model.log.rows, lambda: with_definition(model, text), taken)
+        work(screen, "reckoning …", model.log.rows, lambda _: with_definition(model, text), taken)
 
     def taken(made: tuple[str, Log]) -> None:
         text, log = made

@@ -48,7 +48,7 @@ def _compare(screen: Analyser, model: Model, first: StoredRun, second: StoredRun
     from tuisim.datalog.diff import diff_runs
 
     ticks = first.telemetry.count + second.telemetry.count
-    work(screen, "comparing …", ticks, partial(diff_runs, first, second), partial(_tell, screen, model, first, second))
+    work(screen, "comparing …", ticks, lambda _: diff_runs(first, second), partial(_tell, screen, model, first, second))
 
 
 def _tell(screen: Analyser, model: Model, first: StoredRun, second: StoredRun, diff: RunDiff) -> None:

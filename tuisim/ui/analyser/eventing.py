@@ -45,7 +45,7 @@ def ask(screen: Analyser) -> None:
 
     def go(text: str) -> None:
         thresholds = thresholds_of(text, log)
-        work(screen, "events are searched for …", log.rows, lambda: (thresholds, events_of(log, thresholds)), found)
+        work(screen, "events are searched for …", log.rows, lambda _: (thresholds, events_of(log, thresholds)), found)
 
     def found(those: tuple[tuple[Threshold, ...], list[Event]]) -> None:
         if screen.model is model:

@@ -292,6 +292,17 @@ class Model:
             return None
         return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)
 
+    def unsummed(self) -> list[str]:
+        """Return the ticked variables whose figures are shown and have not been reckoned."""
+        if self.measured() is not None:
+            return []
+        return [trace.name for trace in self.traces.ticked() if trace.name not in self._summaries]
+
+    def sum_up(self, names: Sequence[str]) -> None:
+        """Reckon the figures of variables. Slow for a long log: call it in a thread."""
+        for name in names:
+            self._summaries[name] = summary_of(self.traces.named(name).series.values)
+
     def summary(self, name: str) -> Summary:
         """Return the figures of a variable: of what is between the two cursors, or of all, reckoned once."""
         span = self.measured()
@@ -301,7 +312,7 @@ class Model:
             # The quantiles of many would hold up the keys that move the cursor.
             return summary_of(values) if len(values) <= _SORTED_AT_ONCE else pyramid.figures(*span)
         if name not in self._summaries:
-            self._summaries[name] = summary_of(self.traces.named(name).series.values)
+            self.sum_up([name])
         return self._summaries[name]
 
     # Notes

@@ -16,6 +16,7 @@ from tuisim.datalog.analysis.logbands import Band
 from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.ui.analyser.events import Event
 from tuisim.ui.analyser.model import Model
+from tuisim.ui.analyser.task import AT_ONCE
 from tuisim.ui.render.kinds import Line
 from tuisim.ui.verbs import end_label
 
@@ -92,7 +93,12 @@ def _event(event: Event) -> Cells:
 
 def _statistics(model: Model) -> list[Cells]:
     rows = []
+    # Of a short log nothing is missing for longer than it takes to draw it.
+    missing = model.unsummed() if model.log.rows > AT_ONCE else []
     for trace in model.traces.ticked():
+        if trace.name in missing:
+            rows.append((trace.name, "…", *[""] * (4 + len(QUANTILES))))
+            continue
         found = model.summary(trace.name)
         figures = (found.min, found.mean, found.max, found.std, *(found.quantiles or (nan,) * len(QUANTILES)))
         rows.append((trace.name, f"{found.count:,}", *map(_figure, figures)))

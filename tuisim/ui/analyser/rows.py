@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +16,12 @@ if TYPE_CHECKING:
 
     from tuisim.datalog.arrays import IntArray
     from tuisim.datalog.opening import Log
+    from tuisim.ui.analyser.task import Task
 
 FORM = "column, one of < <= > >= == != ~ and a value; several with `and`"
 _CONDITION = re.compile(r"\s*(?P<column>[^<>=!~]+?)\s*(?P<op><=|>=|==|!=|=|<|>|~)\s*(?P<value>.*?)\s*")
+_STRETCH = 100_000
+"""So many rows are searched at once."""
 _COMPARED: Mapping[str, str] = {
     "<": "less", "<=": "less_equal", ">": "greater", ">=": "greater_equal", "==": "equal", "=": "equal",
     "!=": "not_equal",
@@ -55,6 +58,19 @@ def conditions_of(text: str, columns: list[str]) -> list[Condition]:
     return found
 
 
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """Which rows of a log a table shows, in which order."""
+
+    conditions: tuple[Condition, ...]
+    fulfilled: IntArray | None
+    """Rows that fulfil the conditions, rising; None for all."""
+    sorted_by: str
+    descending: bool
+    order: IntArray | None
+    """Those rows as they are shown; None for all as they are in the log."""
+
+
 class Rows:
     """What the table shows.
 
@@ -73,7 +89,7 @@ class Rows:
         self.conditions: tuple[Condition, ...] = ()
         self.sorted_by = ""
         self.descending = False
-        self._masked: np.ndarray[Any, np.dtype[np.bool_]] | None = None
+        self._fulfilled: IntArray | None = None
         self._order: IntArray | None = None
         """Rows of the log that are shown, in order; None for all as they are."""
 
@@ -121,29 +137,47 @@ class Rows:
         Raises:
             LogError: a value is none that its column could have.
         """
-        masks = [_mask(self._log.table.column(condition.column), condition) for condition in conditions]
-        self.conditions = conditions
-        self._masked = np.logical_and.reduce(masks) if masks else None
-        self._arrange()
+        self.arrange(self.filtered(conditions))
 
     def sort(self, column: str, descending: bool) -> None:
         """Put the rows in the order of a column; empty for that of the log."""
-        self.sorted_by, self.descending = column, descending
-        self._arrange()
+        self.arrange(self.sorted(column, descending))
 
-    def _arrange(self) -> None:
+    def filtered(self, conditions: tuple[Condition, ...]) -> Arrangement:
+        """Return the rows that fulfil all conditions, in the order that they have. Slow for a long log.
+
+        Raises:
+            LogError: a value is none that its column could have.
+        """
+        masks = [_mask(self._log.table.column(condition.column), condition) for condition in conditions]
+        fulfilled = np.flatnonzero(np.logical_and.reduce(masks)) if masks else None
+        return self._arrangement(conditions, fulfilled, self.sorted_by, self.descending)
+
+    def sorted(self, column: str, descending: bool) -> Arrangement:
+        """Return the same rows in the order of a column; empty for that of the log. Slow for a long log."""
+        return self._arrangement(self.conditions, self._fulfilled, column, descending)
+
+    def arrange(self, arrangement: Arrangement) -> None:
+        """Show rows that were chosen and put in order."""
+        self.conditions, self._fulfilled = arrangement.conditions, arrangement.fulfilled
+        self.sorted_by, self.descending = arrangement.sorted_by, arrangement.descending
+        self._order = arrangement.order
+
+    def _arrangement(
+        self, conditions: tuple[Condition, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
+    ) -> Arrangement:
         import pyarrow as pa
         import pyarrow.compute as pc
 
-        order = None if self._masked is None else np.flatnonzero(self._masked)
-        if self.sorted_by:
-            column = self._log.table.column(self.sorted_by)
+        order = fulfilled
+        if sorted_by:
+            column = self._log.table.column(sorted_by)
             column = _texts(column) if pa.types.is_dictionary(column.type) else column
-            way = "descending" if self.descending else "ascending"
             taken = column if order is None else column.take(order)
+            way = "descending" if descending else "ascending"
             places = pc.sort_indices(taken, sort_keys=[("", way)]).to_numpy().astype(np.int64)
             order = places if order is None else order[places]
-        self._order = order
+        return Arrangement(conditions, fulfilled, sorted_by, descending, order)
 
     # Which columns
 
@@ -196,19 +230,48 @@ class Rows:
 
     # Search
 
-    def find(self, text: str, from_place: int, step: int) -> int | None:
-        """Return the next place whose row has a text in one of the shown columns, going round; None if none has."""
+    def find(self, text: str, from_place: int, step: int, task: Task | None = None) -> int | None:
+        """Return the next place whose row has a text in one of the shown columns, going round; None if none has.
+
+        Slow for a long log that has it nowhere.
+
+        Args:
+            text: In any case of letters.
+            from_place: Where to begin; looked at last.
+            step: 1 for onwards, -1 for backwards.
+            task: Told how far the search has come, and asked whether anybody still waits.
+        """
+        seen = 0
+        for first, last in _stretches(from_place, len(self), step):
+            places = self._places_with(text, first, last)
+            if len(places):
+                return int(places[0] if step > 0 else places[-1])
+            seen += last - first
+            if task is not None:
+                task.part = seen / len(self)
+                if task.stopped:
+                    return None
+        return None
+
+    def _places_with(self, text: str, first: int, last: int) -> IntArray:
+        """The places from `first` to before `last` whose rows have a text."""
         import pyarrow.compute as pc
 
-        found = np.zeros(self._log.rows, bool)
-        for name in self.columns:
-            texts = _texts(self._log.table.column(name))
-            found |= np.asarray(pc.fill_null(pc.match_substring(texts, text, ignore_case=True), False).to_numpy(), bool)
-        places = np.flatnonzero(found if self._order is None else found[self._order])
-        if not len(places):
-            return None
-        ahead = places[places > from_place] if step > 0 else places[places < from_place][::-1]
-        return int(ahead[0]) if len(ahead) else int(places[0] if step > 0 else places[-1])
+        table = self._log.table.select(self.columns)
+        part = table.slice(first, last - first) if self._order is None else table.take(self._order[first:last])
+        found = np.zeros(last - first, bool)
+        for column in part.columns:
+            matched = pc.match_substring(_texts(column), text, ignore_case=True)
+            found |= np.asarray(pc.fill_null(matched, False).to_numpy(), bool)
+        return first + np.flatnonzero(found)
+
+
+def _stretches(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
+    """Yield all places in stretches, first and one after the last, from the one beside a place on, going round."""
+    middle = from_place + 1 if step > 0 else from_place
+    onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]
+    before = [(first, min(first + _STRETCH, middle)) for first in range(0, middle, _STRETCH)]
+    yield from [*onwards, *before] if step > 0 else [*reversed(before), *reversed(onwards)]
 
 
 def _texts(column: Any) -> Any:

@@ -15,25 +15,23 @@ from textual.binding import Binding, BindingType
 from textual.command import Provider
 from textual.containers import Horizontal, Vertical
 from textual.screen import ModalScreen
-from textual.worker import get_current_worker
 
-from tuisim.datalog.analysis.aside import plateaus_aside
 from tuisim.errors import TuisimError
 from tuisim.ui.analyser import eventing
 from tuisim.ui.analyser.actions import ACTIONS
 from tuisim.ui.analyser.beside import Beside
 from tuisim.ui.analyser.chart import LogChart
 from tuisim.ui.analyser.columns import ask_if_unsure
+from tuisim.ui.analyser.finding import Finder
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.pane import PaneView
 from tuisim.ui.analyser.subject import Wanted, opening
+from tuisim.ui.analyser.task import Task
 from tuisim.ui.cellview import LinesView
 
 _KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
 _ALWAYS = ("help", "leave")
 _LOOK_S = 1.0
-_SEARCHED_AT_ONCE = 20_000
-"""Rows in which bands are found within a few hundredths of a second."""
 _PATIENCE = 10.0
 """Times as long as the reading took there is no other one."""
 
@@ -68,11 +66,9 @@ class Analyser(ModalScreen[None]):
         self.wanted = wanted
         self.model: Model | None = None
         self.searched = ""
-        self.working = ""
-        """What is being done beside the screen, in a word."""
-        self._work: object = None
-        self._searching: Model | None = None
-        """The log that is being searched for bands."""
+        self.job: Task | None = None
+        """What is being done beside the screen."""
+        self.finder = Finder(self)
         self._reading = False
         self._began_s = self._next_look_s = 0.0
         self._stamp: object = None
@@ -162,6 +158,8 @@ class Analyser(ModalScreen[None]):
     def look_again(self) -> None:
         """Read on when the log has grown; the longer the reading took, the seldomer."""
         model = self.model
+        if self.job is not None:
+            self._tell(self._progress())
         if model is None or not model.subject.done or self._reading or monotonic() < self._next_look_s:
             return
         if model.subject.stamp() != self._stamp:
@@ -174,52 +172,34 @@ class Analyser(ModalScreen[None]):
         model = self.model
         if model is None:
             return
-        part = model.subject.part
-        self._tell("" if model.subject.done else f"reading {part:.0%} …" if part == part else "reading …")
-        if self.pane.name_shown == "bands":
-            self._find_bands(model)
+        self._tell(self._progress())
+        self.finder.look(model, self.pane.name_shown)
         self.chart.show(model)
         self.pane.show(model)
         self.beside.show(model)
 
-    def _find_bands(self, model: Model) -> None:
-        """Search for the bands that are to be shown, beside the screen if that takes long."""
-        names = model.unsearched()
-        if not names or model is self._searching:
-            return
-        if model.log.rows <= _SEARCHED_AT_ONCE:
-            model.find_bands(names)
-            return
-        self._searching = model
-        self.run_worker(partial(self._search_bands, model, names), thread=True, group="bands", exclusive=True)
-
-    def _search_bands(self, model: Model, names: list[str]) -> None:
-        worker = get_current_worker()
-        try:
-            model.find_bands(names, partial(plateaus_aside, stopped=lambda: worker.is_cancelled))
-        except TuisimError as error:
-            if not worker.is_cancelled:
-                self.app.call_from_thread(self.complain, error)
-            return
-        self.app.call_from_thread(self._found_bands)
-
-    def _found_bands(self) -> None:
-        self._searching = None
+    def begin(self, task: Task) -> None:
+        """Say what is being done beside the screen; nobody waits for older work any more."""
+        self.give_up()
+        self.job = task
         self.update()
 
-    def begin(self, word: str) -> object:
-        """Say what is being done beside the screen; return what tells this work from newer work."""
-        self.working = word
-        self._work = token = object()
-        self.update()
-        return token
-
-    def end(self, token: object, then: Callable[[], None]) -> None:
+    def end(self, task: Task, then: Callable[[], None]) -> None:
         """Take the result of work, unless newer work has begun."""
-        if token is self._work:
-            self.working, self._work = "", None
+        if task is self.job:
+            self.job = None
             then()
             self.update()
+
+    def give_up(self) -> None:
+        """Wait no more for what is being done."""
+        if self.job is not None:
+            self.job.stopped = True
+        self.job = None
+
+    def on_unmount(self) -> None:
+        """Nobody waits for work any more."""
+        self.give_up()
 
     def redraw_chart(self) -> None:
         """Draw the chart anew, in another way."""
@@ -254,6 +234,13 @@ class Analyser(ModalScreen[None]):
             model.go_to_moment(note.start_s)
         model.follow_cursor()
 
+    def _progress(self) -> str:
+        """How far the log has been read."""
+        subject = self.model.subject if self.model else None
+        if subject is None or subject.done:
+            return ""
+        return f"reading {subject.part:.0%} …" if subject.part == subject.part else "reading …"
+
     def _tell(self, progress: str) -> None:
         title = self.model.log.title if self.model else " ".join((self.wanted.file, *self.wanted.runs))
         place = ""
@@ -262,7 +249,7 @@ class Analyser(ModalScreen[None]):
                 f"row {self.model.row + 1:,} of {self.model.log.rows:,} · {self.model.time_of(self.model.row):.2f} s"
             )
         kind = " · telemetry" if self.wanted.telemetry else ""
-        told = "   ".join(word for word in (place, progress, self.working) if word)
+        told = "   ".join(word for word in (place, progress, str(self.job or "")) if word)
         self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {told}", Style())]])
 
     def _show_keys(self) -> None:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.errors import LogError
 from tuisim.ui.analyser.asking import Asking
 from tuisim.ui.analyser.panes import PANES
-from tuisim.ui.analyser.rows import conditions_of
+from tuisim.ui.analyser.rows import Arrangement, conditions_of
+from tuisim.ui.analyser.task import Task
+from tuisim.ui.analyser.working import work
 
 if TYPE_CHECKING:
+    from tuisim.ui.analyser.model import Model
     from tuisim.ui.analyser.screen import Analyser
 
 MOST_COPIED = 10_000
@@ -36,13 +40,22 @@ def sort(screen: Analyser) -> None:
     """Sort by the chosen column: upwards, downwards, not at all."""
     if screen.model is None:
         return
-    rows = screen.model.rows
+    model, rows = screen.model, screen.model.rows
     if rows.sorted_by != rows.chosen:
-        rows.sort(rows.chosen, False)
-    elif not rows.descending:
-        rows.sort(rows.chosen, True)
+        wanted = rows.chosen, False
     else:
-        rows.sort("", False)
+        wanted = ("", False) if rows.descending else (rows.chosen, True)
+    work(screen, "sorting …", len(rows), lambda _: rows.sorted(*wanted), partial(_arrange, screen, model))
+
+
+def _arrange(screen: Analyser, model: Model, arrangement: Arrangement) -> None:
+    """Show rows that were chosen and put in order, the cursor among them."""
+    if screen.model is not model:
+        return
+    rows = model.rows
+    rows.arrange(arrangement)
+    if rows.conditions and len(rows):
+        model.go_to_row(rows.row(rows.place(model.row)))
     screen.update()
 
 
@@ -53,10 +66,11 @@ def ask_filter(screen: Analyser) -> None:
         return
 
     def keep(text: str) -> None:
-        model.rows.filter(tuple(conditions_of(text, model.log.table.column_names)) if text else ())
-        if len(model.rows):
-            model.go_to_row(model.rows.row(model.rows.place(model.row)))
-        screen.update()
+        conditions = tuple(conditions_of(text, model.log.table.column_names)) if text else ()
+        rows = model.rows
+        work(
+            screen, "filtering …", model.log.rows, lambda _: rows.filtered(conditions), partial(_arrange, screen, model)
+        )
 
     now = " and ".join(map(str, model.rows.conditions))
     screen.app.push_screen(Asking("Filter", keep, now, _FILTERS))
@@ -65,8 +79,9 @@ def ask_filter(screen: Analyser) -> None:
 def show_all(screen: Analyser) -> None:
     """Show every row and every column, in the order of the log."""
     if screen.model is not None:
-        screen.model.rows.filter(())
+        screen.give_up()
         screen.model.rows.sort("", False)
+        screen.model.rows.filter(())
         screen.model.rows.show_all()
         screen.update()
 
@@ -76,8 +91,8 @@ def ask_search(screen: Analyser) -> None:
 
     def go(text: str) -> None:
         screen.searched = text
-        if text and not _find(screen, 1):
-            raise LogError(f"{text!r} is nowhere", "in the rows and columns that are shown")
+        if text:
+            _find(screen, 1)
 
     if screen.model is not None:
         screen.app.push_screen(Asking("Search", go, screen.searched))
@@ -87,22 +102,39 @@ def find(screen: Analyser, step: int) -> None:
     """Go to the next or the former place found."""
     if not screen.searched:
         ask_search(screen)
-    elif not _find(screen, step):
-        screen.say(f"{screen.searched!r} is nowhere in the rows and columns that are shown")
+    else:
+        try:
+            _find(screen, step)
+        except LogError as error:
+            screen.complain(error)
 
 
-def _find(screen: Analyser, step: int) -> bool:
-    model = screen.model
+def _find(screen: Analyser, step: int) -> None:
+    """Go to the next place found, or the former one.
+
+    Raises:
+        LogError: there is none, if that is known at once.
+    """
+    model, text = screen.model, screen.searched
     if model is None:
-        return False
-    place = model.rows.find(screen.searched, model.rows.place(model.row), step)
-    if place is None:
-        return False
-    screen.pane.turn_to("table")
-    model.go_to_row(model.rows.row(place))
-    model.follow_cursor()
-    screen.update()
-    return True
+        return
+    rows = model.rows
+    here = rows.place(model.row)
+
+    def search(task: Task) -> int:
+        place = rows.find(text, here, step, task)
+        if place is None:
+            raise LogError(f"{text!r} is nowhere", "in the rows and columns that are shown")
+        return place
+
+    def found(place: int) -> None:
+        if screen.model is model:
+            screen.pane.turn_to("table")
+            model.go_to_row(rows.row(place))
+            model.follow_cursor()
+            screen.update()
+
+    work(screen, "searching …", len(rows), search, found)
 
 
 def hide(screen: Analyser) -> None:

@@ -7,17 +7,15 @@ from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 from tuisim.errors import TuisimError
+from tuisim.ui.analyser.task import AT_ONCE, Task
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.screen import Analyser
 
 Made = TypeVar("Made")
 
-AT_ONCE = 200_000
-"""Rows that are worked through within a few hundredths of a second."""
 
-
-def work(screen: Analyser, word: str, rows: int, do: Callable[[], Made], then: Callable[[Made], None]) -> None:
+def work(screen: Analyser, word: str, rows: int, do: Callable[[Task], Made], then: Callable[[Made], None]) -> None:
     """Do something, and then something with its result; newer work takes the place of older.
 
     Args:
@@ -31,16 +29,17 @@ def work(screen: Analyser, word: str, rows: int, do: Callable[[], Made], then: C
         TuisimError: what `do` raises if it is done at once; else it is told on the screen.
     """
     if rows <= AT_ONCE:
-        then(do())
+        then(do(Task(word)))
         return
-    token = screen.begin(word)
-    screen.run_worker(partial(_aside, screen, token, do, then), thread=True, group="work")
+    task = Task(word)
+    screen.begin(task)
+    screen.run_worker(partial(_aside, screen, task, do, then), thread=True, group="work")
 
 
-def _aside(screen: Analyser, token: object, do: Callable[[], Made], then: Callable[[Made], None]) -> None:
+def _aside(screen: Analyser, task: Task, do: Callable[[Task], Made], then: Callable[[Made], None]) -> None:
     try:
-        made = do()
+        made = do(task)
     except TuisimError as error:
-        screen.app.call_from_thread(screen.end, token, partial(screen.complain, error))
+        screen.app.call_from_thread(screen.end, task, partial(screen.complain, error))
     else:
-        screen.app.call_from_thread(screen.end, token, partial(then, made))
+        screen.app.call_from_thread(screen.end, task, partial(then, made))
