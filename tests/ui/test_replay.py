@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from argparse import Namespace
 from collections.abc import Callable
 from dataclasses import replace
@@ -69,10 +70,11 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
 
 async def test_a_run_is_searched_for_and_chosen() -> None:
     ids = [stored("print('A: 1')\n"), stored("tank_drive.on_for_seconds(50, 50, 1)\n", background="Lollipop")]
-    async with Lab(settings()).run_test(size=(120, 40)) as pilot:
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("h")
         await until(pilot, lambda: "2 of 2 runs" in screen_text(app))
+        assert re.search(r" samples +│.* Grey_bands finished +0\.\d+ +1 ", screen_text(app), re.DOTALL)
         await pilot.press(*"grey_b")
         await until(pilot, lambda: "1 of 2 runs" in screen_text(app))
         assert isinstance(app.screen, RunChooser)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from datetime import datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.text import Text
@@ -46,7 +47,8 @@ def _when(run: RunInfo) -> str:
         return run.created[:16]
 
 
-_HEADS = f"{'run':>5} {'when':<11} {'program':<14} {'mat':<11} {'end':<9} {'s':>7} {'samples':>7}"
+# As wide as there is room in a terminal of 80 columns; the list is indented by one.
+_HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}"
 
 
 def run_line(run: RunInfo) -> Text:
@@ -54,10 +56,10 @@ def run_line(run: RunInfo) -> Text:
     line = Text(no_wrap=True, overflow="ellipsis")
     line.append(f"{run.number:>4} ", "bold")
     line.append(f"{_when(run)[5:]:<11} ", "#9fb0c3")
-    line.append(f"{run.program:<14.14} ", "bold")
-    line.append(f"{run.background:<11.11} ")
+    line.append(f"{run.program:<12.12} ", "bold")
+    line.append(f"{Path(run.background).name:<10.10} ")
     line.append(f"{end_label(run.end):<9.9} ", "" if run.end in _GOOD else "#ff6e6e")
-    line.append(f"{run.time_s or 0:>7.2f} {run.samples or 0:>7,}")
+    line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
     if run.tags or run.summary:
         line.append(f"  {run.tags or run.summary}", "#9fb0c3")
     return line
