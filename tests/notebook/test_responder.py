@@ -102,6 +102,8 @@ def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) ->
     shown = cell("%%sim_magic -RWL --speed 1\nprint('PY::?')\nwhile True:\n    pass\n")
     assert shown.err.startswith(f"tuisim: {told}")
     assert shown.err.count("\n") == 1
+    # Its last state stays in the cell, where the program ran at all.
+    assert ("stopped · " in shown.plain) == (responder != "'no function'")
     assert cell("%%sim_magic -RW\nprint('next')").out == "next\n"
 
 

@@ -179,8 +179,12 @@ class Lab:
             places = [at for at, known in enumerate(self._runs) if known.id == run.id] or [len(self._runs)]
             self._last, self._runs[places[0] : places[0] + 1] = run, [run]
 
-        run = run_cell(wanted, stage, note)
-        self._traces = (*self._traces, pen_trace(run.spec, run.telemetry.array()))
+        try:
+            run_cell(wanted, stage, note)
+        finally:
+            # Also of a run that a responder's error has ended.
+            if self._last is not None:
+                self._traces = (*self._traces, pen_trace(self._last.spec, self._last.telemetry.array()))
 
     def _scene(self, plan: _Plan) -> tuple[Scene, str]:
         """What there is to show while nothing runs, and the line about it."""

@@ -6,6 +6,7 @@ import json
 import sys
 import time
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby, islice
@@ -81,12 +82,11 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
     options = RunOptions(
         live=paced, speed=wanted.speed, asks_user=True, time_waits=not paced, replies=wanted.responder is not None
     )
-    with Interruption() as interruption:
-        handle = start_run(wanted.program, wanted.spec, options, store)
+    with Interruption() as interruption, closing(start_run(wanted.program, wanted.spec, options, store)) as handle:
+        run = store.load_run(handle.run_id)
+        begun(run)
+        screen = _Screen(wanted, stage, run)
         try:
-            run = store.load_run(handle.run_id)
-            begun(run)
-            screen = _Screen(wanted, stage, run)
             _Follower(wanted, handle, screen, interruption).to_the_end()
         except BaseException:  # whatever a responder raises: its program must not outlive the cell
             handle.stop()
@@ -96,9 +96,9 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
             handle.close()
             done = store.load_run(handle.run_id)
             begun(done)
-        # The user who has interrupted a flood of lines does not wait for all of them to be read.
-        hurry = interruption.count > 0
-        screen.draw(told_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
+            # The user who has interrupted a flood of lines does not wait for all of them to be read.
+            hurry = interruption.count > 0
+            screen.draw(told_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
     return done
 
 
