@@ -84,6 +84,9 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     grown = model_of(wide_log(200))
     grown.take_over(model)
     assert len(grown.log.series("v").values) == 200
+    other = model_of(long_log())
+    other.take_over(model)
+    assert [trace.name for trace in other.traces] == ["Colour", "Left"]
     model.rows.sort("v", True)
     derive(model, "v =")
     assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == ["time", "wave"]
@@ -94,3 +97,10 @@ async def test_the_word_that_is_typed_is_ended() -> None:
     offering = Offering(("Colour", "Left", "slope(", "`a b`"))
     lines = {"slope(Co": "slope(Colour", "2 * sl": "2 * slope(", "`a": "`a b`", "2 + 3": None, "Colour": None}
     assert {line: await offering.get_suggestion(line) for line in lines} == lines
+
+
+def test_columns_that_mean_something_else_have_nothing_derived() -> None:
+    model = model_of(wide_log(100))
+    derive(model, "v = wave + 1")
+    other = model.log.with_layout(model.log.layout)
+    assert other.names == ("wave",) and other.table.column_names == ["time", "wave"]

@@ -133,7 +133,14 @@ class Log:
 
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another meaning of its columns."""
-        return replace(self, layout=layout, derived={}, _kept=_Kept())
+        return replace(self.bare(), layout=layout, _kept=_Kept())
+
+    def bare(self) -> Log:
+        """Return the same log without anything that was derived."""
+        log = self
+        for name in self.derived:
+            log = log.without_derived(name.partition(" #")[0])
+        return log
 
     def with_derived(self, column: str, series: Sequence[Series]) -> Log:
         """Return the same log with series that were reckoned from its own.

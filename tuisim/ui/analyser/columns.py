@@ -163,7 +163,7 @@ def ask(screen: Analyser) -> None:
     elif not candidates(model.log.table):
         screen.say("There is no column of numbers")
     else:
-        screen.app.push_screen(AskColumns(model.log), lambda said: _apply(screen, said))
+        screen.app.push_screen(AskColumns(model.log.bare()), lambda said: _apply(screen, said))
 
 
 def _apply(screen: Analyser, said: Columns | None) -> None:
@@ -175,7 +175,7 @@ def _apply(screen: Analyser, said: Columns | None) -> None:
         screen.open(wanted)
         return
     # All of it has been read: the same rows mean something else now.
-    layout = chosen(model.log.table, said.time, said.values, said.unit)
+    layout = chosen(model.log.bare().table, said.time, said.values, said.unit)
     screen.wanted = wanted
     screen.take(Model(Subject(wanted, model.log.with_layout(layout))))
 

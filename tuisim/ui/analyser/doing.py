@@ -187,7 +187,7 @@ def ask_alignment(screen: Analyser) -> None:
         screen.redraw_chart()
         screen.update()
 
-    screen.app.push_screen(Asking("Lay runs over each other by", go, model.alignment, _ALIGNMENTS))
+    screen.app.push_screen(Asking("Lay runs over each other by", go, model.alignment, _ALIGNMENTS, replaced=True))
 
 
 def ask_against(screen: Analyser) -> None:
@@ -237,7 +237,7 @@ def ask_runs(screen: Analyser) -> None:
         ids = tuple(store.find(word).id for word in words)
         screen.open(Wanted(runs=ids))
 
-    screen.app.push_screen(Asking("Open runs", go, " ".join(wanted.runs) and "last", _WHICH))
+    screen.app.push_screen(Asking("Open runs", go, " ".join(wanted.runs) and "last", _WHICH, replaced=True))
 
 
 def show_help(screen: Analyser) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -170,8 +171,7 @@ class Model:
         if other.row == other.log.rows - 1:
             # Whoever looks at the end of a log that grows goes on looking at its end.
             self.row = self.log.rows - 1
-        for text in other.definitions.values():
-            derive(self, text)
+        self.define_as(other)
         for trace in other.traces:
             if trace.name in self.traces:
                 self.traces.named(trace.name).on = trace.on
@@ -181,6 +181,14 @@ class Model:
         self.rows.take_over(other.rows)
         if other.alignment != TIME:
             self._align_again(other.alignment)
+
+    def define_as(self, other: Model) -> None:
+        """Derive what another model of the same log has derived. Slow for a long log: call it in a thread before."""
+        for name, text in other.definitions.items():
+            if name not in self.definitions:
+                # Other columns may be variables by now: what needs those that are gone goes with them.
+                with suppress(LogError):
+                    derive(self, text)
 
     def take_log(self, log: Log) -> None:
         """Turn to the same log with other derived variables."""

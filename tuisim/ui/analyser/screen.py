@@ -114,7 +114,9 @@ class Analyser(ModalScreen[None]):
             for subject in opening(wanted):
                 if wanted is not self.wanted or not self.is_running:
                     return
-                model = Model(subject)
+                model, before = Model(subject), self.model
+                if before is not None and before.subject.wanted is wanted:
+                    model.define_as(before)
                 # What the first chart needs of a long log is reckoned here, where no key waits for it.
                 model.traces.span_s()
                 self.app.call_from_thread(self.take, model)

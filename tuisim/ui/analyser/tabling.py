@@ -95,7 +95,7 @@ def ask_search(screen: Analyser) -> None:
             _find(screen, 1)
 
     if screen.model is not None:
-        screen.app.push_screen(Asking("Search", go, screen.searched))
+        screen.app.push_screen(Asking("Search", go, screen.searched, replaced=True))
 
 
 def find(screen: Analyser, step: int) -> None:
@@ -159,7 +159,7 @@ def ask_export(screen: Analyser) -> None:
             raise LogError("which file?", "such as rows.csv")
         screen.export(Path(text).expanduser())
 
-    screen.app.push_screen(Asking("Export the rows as shown", go, "rows.csv", _FILES))
+    screen.app.push_screen(Asking("Export the rows as shown", go, "rows.csv", _FILES, replaced=True))
 
 
 def copy_value(screen: Analyser) -> None:
