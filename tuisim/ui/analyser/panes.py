@@ -33,9 +33,9 @@ _MEASURED = 1000
 """In another pane of more rows, those that are seen decide it."""
 
 EMPTY = (
-    "This log is empty. To log a value, print it with a name:",
+    "This log is empty. Print values with a name:",
     "    print('Colour: ' + str(value))",
-    "Run the program again; T shows what every tick recorded.",
+    "Run again; T shows what every tick recorded.",
 )
 
 
