@@ -39,7 +39,7 @@ def check_that_all_is_well(cell: Cell) -> None:
     ("holder", "name"),
     [
         pytest.param(running, "start_run", id="as it starts"),
-        pytest.param(running, "show_rows", id="among its lines"),
+        pytest.param(running, "show_rows", id="among its lines", marks=pytest.mark.slow),
         pytest.param(Stage, "show", id="in the display"),
     ],
 )

@@ -41,7 +41,14 @@ def test_the_log_has_the_plateaus_and_adds_up_until_it_is_cleared(cell: Cell) ->
 
 @pytest.mark.parametrize(
     ("words", "pictures", "status"),
-    [("-R", 1, True), ("--autorun -W", 0, True), ("-RH", 1, False), ("-RHW", 0, False), ("-OHRA", 2, False)],
+    [
+        ("-R", 1, True),
+        ("-OHRA", 2, False),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in [("--autorun -W", 0, True), ("-RH", 1, False), ("-RHW", 0, False)]
+        ),
+    ],
 )
 def test_what_is_hidden_is_not_there(words: str, pictures: int, status: bool, cell: Cell) -> None:
     shown = cell(program(words))

@@ -81,6 +81,7 @@ def test_the_readme_example_does_as_it_says(cell: Cell) -> None:
     assert cell(program).out.splitlines()[-1] == program.partition("# ")[2].strip()
 
 
+@pytest.mark.slow
 def test_a_responder_may_run_programs_itself(cell: Cell) -> None:
     cell("def measure(text):\n    get_ipython().run_cell_magic('sim_magic', '-RWH', \"print('Inner: 1')\")\n"
          "roboSim.responder = measure")  # fmt: skip
@@ -90,13 +91,18 @@ def test_a_responder_may_run_programs_itself(cell: Cell) -> None:
 
 
 MISTAKES = [
-    ("lambda text: object()", "roboSim.responder: the program cannot get a object"),
-    ("lambda text: {1j: 2}", "roboSim.responder: the program cannot get keys must be str"),
-    ("'no function'", "roboSim.responder: must be a function, got 'no function'"),
+    pytest.param("lambda text: object()", "roboSim.responder: the program cannot get a object", id="an object"),
+    pytest.param(
+        "lambda text: {1j: 2}",
+        "roboSim.responder: the program cannot get keys must be str",
+        id="a key",
+        marks=pytest.mark.slow,
+    ),
+    pytest.param("'no function'", "roboSim.responder: must be a function, got 'no function'", id="no function"),
 ]
 
 
-@pytest.mark.parametrize(("responder", "told"), MISTAKES, ids=[responder for responder, _ in MISTAKES])
+@pytest.mark.parametrize(("responder", "told"), MISTAKES)
 def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) -> None:
     cell(f"roboSim.responder = {responder}")
     shown = cell("%%sim_magic -RWL --speed 1\nprint('PY::?')\nwhile True:\n    pass\n")
