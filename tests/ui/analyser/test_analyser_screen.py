@@ -168,7 +168,7 @@ async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
     file.write_text("Colour: 1\nColour: 2\n")
     async with AnalyserApp(Wanted(file=str(file))).run_test(size=(80, 24)) as pilot:
         screen, model = await opened(pilot)
-        await pilot.press("end")
+        await pilot.press("end", "d")
         with file.open("a") as handle:
             handle.write("Colour: 3\n")
 
@@ -179,6 +179,9 @@ async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
         await until(pilot, has_grown)
         assert screen.model is not None and screen.model.row == 2
         assert screen.model is not model
+        # What was asked about the shorter log holds for what there is of it now.
+        await typed(pilot, "=v = Colour + 1", "enter")
+        assert screen.model.log.series("v").values.tolist() == [2.0, 3.0, 4.0]
 
 
 async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 _EVENTS = Style(color="#ffaf5f", bold=True)
 _LEAST_FACET_ROWS = 6
 """A chart of one variable that is lower says nothing."""
+FACETS_ROWS = 2 * _LEAST_FACET_ROWS
+"""Lower than that there is one chart for all."""
 
 
 @dataclass(slots=True)
@@ -108,7 +110,7 @@ class LogChart(Widget):
         measured = _measured(model, unit, width)
         marked = 1 if model.events.thresholds and model.log.rows else 0
         height -= len(measured) + marked
-        facets = ticked if self.look.facets and len(ticked) > 1 and height >= 2 * _LEAST_FACET_ROWS else []
+        facets = ticked if self.look.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
             model.selected, model.cursor_s if model.log.rows else None, x_limits, bool(self.app.no_color),

@@ -10,11 +10,12 @@ from tuisim.datalog.analysis.expressions import CONSTANTS, FUNCTIONS
 from tuisim.datalog.analysis.logreckon import NEEDED
 from tuisim.datalog.opening.layout import is_numeric
 from tuisim.ui.analyser.asking import Asking, Form
-from tuisim.ui.analyser.deriving import RECKONING, take, with_definition
+from tuisim.ui.analyser.deriving import RECKONING, derive, take, with_definition
 from tuisim.ui.analyser.working import work
 
 if TYPE_CHECKING:
     from tuisim.datalog.opening import Log
+    from tuisim.ui.analyser.model import Model
     from tuisim.ui.analyser.screen import Analyser
 
 _FORMS: tuple[Form, ...] = (
@@ -35,14 +36,19 @@ def ask(screen: Analyser) -> None:
         return
 
     def go(text: str) -> None:
-        work(screen, "reckoning …", model.log.rows, lambda _: with_definition(model, text), taken)
+        model = screen.at_hand()
+        work(screen, "reckoning …", model.log.rows, lambda _: (model, *with_definition(model, text)), taken)
 
-    def taken(made: tuple[str, Log]) -> None:
-        text, log = made
-        if screen.model is model:
+    def taken(made: tuple[Model, str, Log]) -> None:
+        of, text, log = made
+        model = screen.at_hand()
+        if model is of:
             take(model, text, log)
-            screen.redraw_chart()
-            screen.update()
+        else:
+            # The log has grown meanwhile.
+            derive(model, text)
+        screen.redraw_chart()
+        screen.update()
 
     can_reckon = set(NEEDED) <= set(model.log.table.column_names)
     forms = (*_FORMS, *((_RECKONING,) if can_reckon else ()), ("functions", ", ".join(FUNCTIONS)))

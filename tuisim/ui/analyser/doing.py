@@ -10,6 +10,7 @@ from tuisim.errors import LogError
 from tuisim.ui.analyser.aligning import TIME
 from tuisim.ui.analyser.asking import Asking
 from tuisim.ui.analyser.beside import NO_PLACE
+from tuisim.ui.analyser.chart import FACETS_ROWS
 from tuisim.ui.analyser.moments import tells_places
 
 if TYPE_CHECKING:
@@ -84,6 +85,7 @@ def ask_where(screen: Analyser) -> None:
         return
 
     def go(text: str) -> None:
+        model = screen.at_hand()
         seconds = _SECONDS.fullmatch(text)
         if seconds:
             model.go_to_time(float(seconds[1]))
@@ -146,6 +148,11 @@ def facets(screen: Analyser) -> None:
     """One chart for each variable, or one for all."""
     screen.chart.look.facets = not screen.chart.look.facets
     screen.redraw_chart()
+    if screen.chart.look.facets and screen.model is not None:
+        if len(screen.model.traces.ticked()) < 2:
+            screen.say("One chart for each ticked variable: v chooses one more, space ticks it")
+        elif screen.chart.display and screen.chart.size.height < FACETS_ROWS:
+            screen.say("Too low for several charts: + makes the chart larger")
 
 
 def marks(screen: Analyser) -> None:
@@ -183,6 +190,7 @@ def ask_alignment(screen: Analyser) -> None:
         return
 
     def go(text: str) -> None:
+        model = screen.at_hand()
         model.align(text or TIME)
         screen.redraw_chart()
         screen.update()
@@ -197,6 +205,7 @@ def ask_against(screen: Analyser) -> None:
         return
 
     def go(text: str) -> None:
+        model = screen.at_hand()
         names = [name.strip() for name in text.split(" against ")]
         if not text:
             look.against = None

@@ -10,6 +10,7 @@ from tuisim.ui.analyser.events import Event, Threshold, events_of, thresholds_of
 from tuisim.ui.analyser.working import work
 
 if TYPE_CHECKING:
+    from tuisim.datalog.opening import Log
     from tuisim.ui.analyser.screen import Analyser
 
 _FORMS = (
@@ -41,20 +42,26 @@ def ask(screen: Analyser) -> None:
     model = screen.model
     if model is None:
         return
-    log = model.log
 
     def go(text: str) -> None:
+        log = screen.at_hand().log
         thresholds = thresholds_of(text, log)
-        work(screen, "events are searched for …", log.rows, lambda _: (thresholds, events_of(log, thresholds)), found)
+        work(
+            screen,
+            "events are searched for …",
+            log.rows,
+            lambda _: (log, thresholds, events_of(log, thresholds)),
+            found,
+        )
 
-    def found(those: tuple[tuple[Threshold, ...], list[Event]]) -> None:
-        if screen.model is model:
-            model.events.take(log, *those)
-            screen.choose(0)
-            screen.update()
+    def found(those: tuple[Log, tuple[Threshold, ...], list[Event]]) -> None:
+        # Of a log that has grown meanwhile they are found anew.
+        screen.at_hand().events.take(*those)
+        screen.choose(0)
+        screen.update()
 
     now = ", ".join(map(str, model.events.thresholds))
-    screen.app.push_screen(Asking("Events", go, now, _FORMS, tuple(words(log))))
+    screen.app.push_screen(Asking("Events", go, now, _FORMS, tuple(words(model.log))))
 
 
 def jump(screen: Analyser, step: int) -> None:

@@ -35,7 +35,7 @@ def write(screen: Analyser) -> None:
     def keep(text: str) -> None:
         if not text:
             raise LogError("the note is empty", "Escape leaves it")
-        model.add_note(text, start_s, stop_s, name, run)
+        screen.at_hand().add_note(text, start_s, stop_s, name, run)
         screen.say("Noted: n lists the notes")
         screen.update()
 

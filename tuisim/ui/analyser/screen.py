@@ -16,7 +16,7 @@ from textual.command import Provider
 from textual.containers import Horizontal, Vertical
 from textual.screen import ModalScreen
 
-from tuisim.errors import TuisimError
+from tuisim.errors import LogError, TuisimError
 from tuisim.ui.analyser import eventing
 from tuisim.ui.analyser.actions import ACTIONS
 from tuisim.ui.analyser.beside import Beside
@@ -180,6 +180,16 @@ class Analyser(ModalScreen[None]):
         self.pane.show(model)
         self.beside.show(model)
 
+    def at_hand(self) -> Model:
+        """Return what is shown now: a log that grows may be another one than when a question was asked.
+
+        Raises:
+            LogError: there is none yet.
+        """
+        if self.model is None:
+            raise LogError("there is no log yet")
+        return self.model
+
     def begin(self, task: Task) -> None:
         """Say what is being done beside the screen; nobody waits for older work any more."""
         self.give_up()
@@ -190,7 +200,10 @@ class Analyser(ModalScreen[None]):
         """Take the result of work, unless newer work has begun."""
         if task is self.job:
             self.job = None
-            then()
+            try:
+                then()
+            except TuisimError as error:
+                self.complain(error)
             self.update()
 
     def give_up(self) -> None:

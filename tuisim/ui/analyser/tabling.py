@@ -66,6 +66,7 @@ def ask_filter(screen: Analyser) -> None:
         return
 
     def keep(text: str) -> None:
+        model = screen.at_hand()
         conditions = tuple(conditions_of(text, model.log.table.column_names)) if text else ()
         rows = model.rows
         work(
