@@ -98,7 +98,9 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 
 
 def _named(part: pa.Table, notes: Notes) -> pa.Table:
-    return part.rename_columns(unique_names(part.column_names, notes))
+    # Renaming alone would lose what the file says about itself.
+    renamed = part.rename_columns(unique_names(part.column_names, notes))
+    return renamed.replace_schema_metadata(part.schema.metadata)
 
 
 def _short(error: Exception) -> str:
