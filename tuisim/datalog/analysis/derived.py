@@ -28,7 +28,9 @@ SIGNALS = {
 """What may be called besides `FUNCTIONS`, in words."""
 
 _NAMED = re.compile(r"\s*(?P<name>[^\W\d]\w*)\s*=(?!=)(?P<expression>.*)", re.DOTALL)
-_EVEN = re.compile(r"\s*resample\s*\((?P<expression>.*),\s*(?P<period_s>\d*\.?\d+(?:e-?\d+)?)\s*s?\s*\)\s*", re.DOTALL)
+_EVEN = re.compile(
+    r"\s*resample\s*\((?P<expression>.*),\s*(?P<period_s>-?\d*\.?\d+(?:e-?\d+)?)\s*s?\s*\)\s*", re.DOTALL
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +40,8 @@ class Definition:
     name: str
     expression: str
     """Empty to take the variable away."""
-    period_s: float = 0.0
-    """Distance of its samples; 0 keeps those that it is made of."""
+    period_s: float | None = None
+    """Distance of its samples; None keeps those that it is made of."""
 
 
 def definition_of(text: str) -> Definition:
@@ -98,7 +100,7 @@ def _made(log: Log, definition: Definition, names: Sequence[str], base: Series) 
         "resample": (2, _resampled_within, SIGNALS["resample"]),
     }
     values = evaluate(definition.expression, columns, functions)
-    if not definition.period_s:
+    if definition.period_s is None:
         return replace(base, values=values)
     moments_s, values = resample(base.time_s, values, definition.period_s)
     before = np.searchsorted(base.time_s, moments_s + 1e-9, side="right") - 1
@@ -110,6 +112,8 @@ def _column(log: Log, name: str, base: Series) -> FloatArray:
     for wanted in (name, f"{name} #{base.run}"):
         if wanted in log.names:
             series = log.series(wanted)
+            if not len(series.rows):
+                return np.full(len(base.rows), np.nan)
             same = series.rows is base.rows or series.time_s is base.time_s
             return series.values if same else value_at(series.time_s, series.values, base.time_s)
     schema = log.table.schema
