@@ -184,7 +184,8 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     rows = pane.rows(model)
     if not rows:
         searching = name == "bands" and model.unsearched()
-        return [[("The bands are being searched for …" if searching else pane.empty, DIM)]]
+        said = "The bands are being searched for …" if searching else pane.empty
+        return [[(text, DIM)] for text in _wrapped([said], width, height)]
     below = _wrapped(pane.below(model), width, max(0, height // 3))
     room = max(height - 1 - len(below), 1)
     first = _first(chosen, len(rows), room)
