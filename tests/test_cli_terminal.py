@@ -78,8 +78,8 @@ def test_app_is_drawn_on_stdout_and_q_leaves_it(screen: Screen, tmp_path: Path) 
     app = start(screen, tmp_path, "log_greys", "-W")
     screen.until(b"Instrumentation")
     screen.press(b"q")
-    assert screen.drain_until_gone(app) == 0
-    assert (tmp_path / "errors").read_bytes() == b""
+    code = screen.drain_until_gone(app)
+    assert (code, (tmp_path / "errors").read_bytes()) == (0, b"")
 
 
 def test_app_without_a_keyboard_says_so(screen: Screen, tmp_path: Path) -> None:

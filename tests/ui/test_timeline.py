@@ -117,7 +117,8 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         await until(pilot, lambda: app.bridge.state == PAUSED)
         newest = app.bridge.timeline.newest
         assert app.bridge.timeline.at == 0
-        await pilot.press("space")
+        # Slowly, so that the past is not over before anybody looks.
+        await pilot.press(*["left_square_bracket"] * 4, "space")
         await until(pilot, lambda: 0 < (app.bridge.timeline.at or 0))
         await pilot.press("space")
         at = app.bridge.timeline.at
