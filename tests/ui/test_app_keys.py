@@ -262,3 +262,14 @@ def test_keys_differ() -> None:
 def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
     shown = fitting(working(Situation(PAUSED, True, True, in_past=True, looks_back=True)), 80)
     assert [action.id for action in shown[:2]] == ["now", "branch"]
+
+
+async def test_nothing_is_opened_while_the_app_ends() -> None:
+    async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.exit()
+        # What was typed quickly after q, and what was to be done soon after the start.
+        for action in ("open", "runs", "panel-settings", "breaks", "analyse"):
+            app.action_act(action)
+        app._begin()
+        assert len(app.screen_stack) == 1

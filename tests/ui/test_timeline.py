@@ -118,7 +118,7 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         newest = app.bridge.timeline.newest
         assert app.bridge.timeline.at == 0
         # Slowly, so that the past is not over before anybody looks.
-        await pilot.press(*["left_square_bracket"] * 4, "space")
+        await pilot.press(*["left_square_bracket"] * 3, "space")
         await until(pilot, lambda: 0 < (app.bridge.timeline.at or 0))
         await pilot.press("space")
         at = app.bridge.timeline.at

@@ -27,6 +27,7 @@ from tuisim.ui.editor.work import Work
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
 from tuisim.ui.hints import BrickHint
+from tuisim.ui.leaving import is_leaving
 from tuisim.ui.loading import Loading
 from tuisim.ui.lookback import Lookback
 from tuisim.ui.news import News
@@ -114,6 +115,8 @@ class Lab(Wishes):
             loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
 
     def _begin(self) -> None:
+        if is_leaving(self):
+            return
         self.desk.ensure("world", "output", "chart")
         if self.settings.replay:
             open_run(self, self.settings.replay)
@@ -332,6 +335,8 @@ class Lab(Wishes):
 
     def action_act(self, name: str) -> None:
         """Do what a key stands for, or say why it does nothing now."""
+        if is_leaving(self):
+            return
         action = ACTIONS[name]
         if reason := action.why_not(situation(self)):
             self.say(reason)

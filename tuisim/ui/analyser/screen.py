@@ -28,6 +28,7 @@ from tuisim.ui.analyser.pane import PaneView
 from tuisim.ui.analyser.subject import Wanted, opening
 from tuisim.ui.analyser.task import Task
 from tuisim.ui.cellview import LinesView
+from tuisim.ui.leaving import is_leaving
 
 _KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
 _ALWAYS = ("help", "leave")
@@ -284,6 +285,8 @@ class Analyser(ModalScreen[None]):
 
     def action_act(self, name: str) -> None:
         """Do what a key stands for."""
+        if is_leaving(self.app):
+            return
         action = ACTIONS[name]
         if action.of_rows and (self.model is None or not self.model.log.rows):
             self.say("There are no rows yet")
