@@ -288,10 +288,14 @@ def test_stop_works_wherever_it_holds(debug: Callable[..., Driver], text: str, h
     assert time.monotonic() - begun < 1.5
 
 
-BUSY = {"plain": "3 if n < 0", "with a call": "3 if len(str(n)) > 99"}
+BUSY = [
+    pytest.param("3 if n < 0", id="plain"),
+    # Each call is worked out in a process of its own.
+    pytest.param("3 if len(str(n)) > 99", id="with a call", marks=pytest.mark.slow),
+]
 
 
-@pytest.mark.parametrize("text", BUSY.values(), ids=BUSY)
+@pytest.mark.parametrize("text", BUSY)
 def test_a_break_in_a_busy_loop_leaves_the_run_in_hand(debug: Callable[..., Driver], text: str) -> None:
     driver = debug("n = 0\nwhile True:\n    n += 1\n", breaks=(text,), speed=1.0)
     held = driver.do(Pause())

@@ -13,7 +13,7 @@ import pytest
 
 from tests.ui.terminals import PATIENCE_S, Terminal
 
-pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
+pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
 
 
 def kill_the_app(terminal: Terminal) -> None:
