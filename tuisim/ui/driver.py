@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
 from io import TextIOWrapper
+from pathlib import Path
 from typing import TextIO, cast
 
 from textual.app import App
@@ -30,7 +33,7 @@ class Outlasting:
             try:
                 self._file.write(text)
             except OSError:
-                self.gone = True
+                self._lose()
         return len(text)
 
     def flush(self) -> None:
@@ -39,7 +42,13 @@ class Outlasting:
             try:
                 self._file.flush()
             except OSError:
-                self.gone = True
+                self._lose()
+
+    def _lose(self) -> None:
+        self.gone = True
+        # What is still in the file's buffer would fail once more when Python ends, and change the exit code.
+        with suppress(OSError), Path(os.devnull).open("wb") as nothing:
+            os.dup2(nothing.fileno(), self._file.fileno())
 
     def fileno(self) -> int:
         """Return the number of the output's file."""
