@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -15,6 +15,14 @@ from tuisim.notebook import running
 from tuisim.notebook.showing import Stage
 
 ENDLESS = "%%sim_magic_preloaded -RW --speed 1\nprint('Colour: 1')\nwhile True:\n    pass\n"
+
+
+@pytest.fixture(autouse=True)
+def _as_in_a_kernel() -> Iterator[None]:
+    """Hear interrupts, also where the tests were started in the background, with interrupts ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def striking(act: Callable[..., Any]) -> Callable[..., Any]:
