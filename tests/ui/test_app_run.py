@@ -124,6 +124,7 @@ async def test_input_is_answered_from_the_app(keys: list[str], printed: str) -> 
         await until(pilot, lambda: not app.query(Answer))
 
 
+@pytest.mark.slow
 async def test_a_flood_of_prints_leaves_the_app_usable() -> None:
     flood = "for n in range(200_000):\n    print('line', n)\n"
     async with Lab(settings(flood, autorun=True)).run_test(size=(120, 40)) as pilot:

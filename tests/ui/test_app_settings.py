@@ -38,7 +38,14 @@ async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
     await pilot.pause()
 
 
-@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"])
+@pytest.mark.parametrize(
+    "size",
+    [
+        pytest.param((80, 24), id="80x24"),
+        pytest.param((120, 40), id="120x40", marks=pytest.mark.slow),
+        pytest.param((200, 60), id="200x60", marks=pytest.mark.slow),
+    ],
+)
 async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
     async with Lab(settings(LOGS)).run_test(size=size) as pilot:
         app = await opened(pilot)
@@ -114,6 +121,7 @@ async def test_settings_are_not_changed_during_a_run() -> None:
         assert app.bridge.spec.robot.wheel_diameter_mm == 60
 
 
+@pytest.mark.slow
 async def test_a_robot_is_saved_edited_and_loaded_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:

@@ -68,6 +68,7 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
         assert again.telemetry.array()[:100].tobytes() == first.telemetry.array()[:100].tobytes()
 
 
+@pytest.mark.slow
 async def test_a_run_is_searched_for_and_chosen() -> None:
     ids = [stored("print('A: 1')\n"), stored("tank_drive.on_for_seconds(50, 50, 1)\n", background="Lollipop")]
     async with Lab(settings()).run_test(size=(80, 24)) as pilot:
