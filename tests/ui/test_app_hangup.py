@@ -1,4 +1,4 @@
-"""A terminal that goes away, as at the end of a lost connection, takes the app and its program with it."""
+"""Apps that are stopped and ended from outside, as by a lost connection: in order, and their programs with them."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ import errno
 import io
 import os
 import pty
+import select
+import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
 from typing import TextIO, cast
@@ -17,8 +20,12 @@ from typing import TextIO, cast
 import pytest
 from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
 
+from tests.ui.app_help import ready, settings
 from tests.ui.terminals import PATIENCE_S
+from tuisim.core.geometry import Pose
+from tuisim.ui.app import Lab
 from tuisim.ui.driver import Outlasting
+from tuisim.ui.screens.poses import SavedPoses
 
 ENTER = "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.executable, sys.argv[1:])"
 """Makes the standard input the terminal that can hang up, and becomes the app."""
@@ -65,28 +72,82 @@ def test_more_than_the_queue_holds_is_written_to_a_terminal_that_is_gone() -> No
     assert not writer.is_alive()
 
 
-def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path) -> None:
-    (tmp_path / "spin.py").write_text("tank_drive.on(20, 30)\nwhile True:\n    pass\n")
+@contextmanager
+def lab(folder: Path, root: Path, *words: str) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
+    """Run the app in a terminal of its own; yield it and the terminal's other end."""
     outer, inner = pty.openpty()
-    words = [sys.executable, "-m", "tuisim", "spin.py", "-R"]
     environment = {**os.environ, "TERM": "xterm-256color", "PYTHONPATH": str(root), "COLUMNS": "120", "LINES": "40"}
     app = subprocess.Popen(
-        [sys.executable, "-c", ENTER, *words],
-        stdin=inner, stdout=inner, stderr=inner, cwd=tmp_path, env=environment, start_new_session=True,
+        [sys.executable, "-c", ENTER, sys.executable, "-m", "tuisim", *words],
+        stdin=inner, stdout=inner, stderr=inner, cwd=folder, env=environment, start_new_session=True,
     )  # fmt: skip
     os.close(inner)
     try:
-        shown = b""
-        while b"running" not in shown:
-            shown += os.read(outer, 65536)
-        program = children(app.pid)
-        assert program
-        # With keys on their way it has the more to draw when nobody takes it any more.
-        os.write(outer, b"cCpP\x1bxX")
+        yield app, outer
     finally:
-        os.close(outer)
+        app.kill()
+        app.wait()
+
+
+class Screen:
+    """What an app draws, in the order in which it comes.
+
+    Args:
+        outer: The terminal's other end.
+    """
+
+    def __init__(self, outer: int) -> None:
+        self.outer = outer
+        self._come = b""
+
+    def wait(self, wanted: bytes) -> None:
+        """Take what comes up to this."""
+        give_up = time.monotonic() + PATIENCE_S
+        while wanted not in self._come:
+            readable, _, _ = select.select([self.outer], [], [], give_up - time.monotonic())
+            assert readable, f"{wanted!r} never came, but {self._come[-400:]!r}"
+            self._come += os.read(self.outer, 65536)
+        self._come = self._come.partition(wanted)[2]
+
+
+def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path) -> None:
+    (tmp_path / "spin.py").write_text("tank_drive.on(20, 30)\nwhile True:\n    pass\n")
+    with lab(tmp_path, root, "spin.py", "-R") as (app, outer):
         try:
-            assert app.wait(PATIENCE_S) == 129
+            Screen(outer).wait(b"running")
+            program = children(app.pid)
+            assert program
+            # With keys on their way it has the more to draw when nobody takes it any more.
+            os.write(outer, b"cCpP\x1bxX")
         finally:
-            app.kill()
+            os.close(outer)
+        assert app.wait(PATIENCE_S) == 129
     wait(lambda: not any(alive(process) for process in program))
+
+
+def test_an_app_that_was_stopped_from_outside_is_drawn_again_and_hears_every_key(tmp_path: Path, root: Path) -> None:
+    with lab(tmp_path, root) as (app, outer):
+        screen = Screen(outer)
+        screen.wait(b"quit")
+        os.kill(app.pid, signal.SIGSTOP)
+        os.kill(app.pid, signal.SIGCONT)
+        screen.wait(b"\x1b[?1049h")
+        screen.wait(b"quit")
+        # Were there still another reader from before, one of the two would get each key.
+        os.write(outer, b"?")
+        screen.wait(b"Help")
+        os.write(outer, b"?")
+        screen.wait(b"quit")
+        os.write(outer, b"q")
+        screen.wait(b"\x1b[?1049l")
+        assert app.wait(PATIENCE_S) == 0
+        os.close(outer)
+
+
+async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm() -> None:
+    app = Lab(settings("print('A: 1')\n"))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        app.push_screen(SavedPoses(Pose(0, 0, 0)))
+        app.exit(return_code=129)
+    assert app.return_code == 129

@@ -75,7 +75,7 @@ async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
 async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -> None:
     async with Lab(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.snapshot().instant.tick > 0)
         app.query_one("#light", Slider).focus()
         await pilot.press("pageup")
         await until(pilot, lambda: app.bridge.snapshot().instant.noise.light == 10)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
-import signal
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
@@ -22,7 +20,6 @@ from tuisim.ui.actions import ACTIONS, Act
 from tuisim.ui.bridge import ROWS_A_POLL, Bridge
 from tuisim.ui.debugging import Debugging
 from tuisim.ui.desk import Desk
-from tuisim.ui.driver import TerminalDriver
 from tuisim.ui.editor.work import Work
 from tuisim.ui.feed import Feed, Series, sample_series
 from tuisim.ui.footer import KeyFooter
@@ -72,7 +69,7 @@ class Lab(Wishes):
     ]
 
     def __init__(self, settings: AppSettings) -> None:
-        super().__init__(driver_class=TerminalDriver)
+        super().__init__()
         self.settings = settings
         self.bridge = Bridge(settings)
         self.desk = Desk(settings.panels_on, settings.panels_off)
@@ -103,16 +100,9 @@ class Lab(Wishes):
         if self.is_headless:
             self.pacer.asks = False
         else:
-            self._leave_on_signals()
+            self.leave_on_signals()
         self.situation_changed()
         self.set_timer(AFTER_FIRST_PAINT_S, self._begin)
-
-    def _leave_on_signals(self) -> None:
-        """Give the terminal back in order when somebody ends the app from outside."""
-        loop = asyncio.get_running_loop()
-        for number in (signal.SIGTERM, signal.SIGHUP):
-            # As a shell shows a program that the signal has ended.
-            loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
 
     def _begin(self) -> None:
         if is_leaving(self):

@@ -45,10 +45,10 @@ class Outlasting:
                 self._lose()
 
     def _lose(self) -> None:
-        self.gone = True
         # What is still in the file's buffer would fail once more when Python ends, and change the exit code.
         with suppress(OSError), Path(os.devnull).open("wb") as nothing:
             os.dup2(nothing.fileno(), self._file.fileno())
+        self.gone = True
 
     def fileno(self) -> int:
         """Return the number of the output's file."""
@@ -63,3 +63,13 @@ class TerminalDriver(LinuxDriver):
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self._file = cast(TextIOWrapper, Outlasting(cast(TextIO, self._file)))
+
+    def _sigcont_application(self, *_: object) -> None:
+        # The signal also comes with the news that the terminal is gone, where there is nothing to go on with, and after
+        # a stop that could not be prepared for, where what read and wrote before must end before the same begins anew.
+        if not self._auto_restart or not os.isatty(self.fileno):
+            return
+        if self._writer_thread is not None and self._writer_thread.is_alive():
+            self.suspend_application_mode()
+            self._must_signal_resume = True
+        self.resume_application_mode()

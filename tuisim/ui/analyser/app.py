@@ -5,16 +5,14 @@ from __future__ import annotations
 import gc
 from typing import ClassVar
 
-from textual.app import App
-
 from tuisim.errors import TuisimError
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.screen import Analyser
 from tuisim.ui.analyser.subject import Wanted
-from tuisim.ui.driver import TerminalDriver
+from tuisim.ui.leaving import TerminalApp
 
 
-class AnalyserApp(App[None]):
+class AnalyserApp(TerminalApp):
     """An app with one screen.
 
     Args:
@@ -27,7 +25,7 @@ class AnalyserApp(App[None]):
     ENABLE_COMMAND_PALETTE: ClassVar[bool] = True
 
     def __init__(self, wanted: Wanted) -> None:
-        super().__init__(driver_class=TerminalDriver)
+        super().__init__()
         self.wanted = wanted
         self.failure: TuisimError | None = None
         """What kept the log from being opened."""
@@ -35,6 +33,11 @@ class AnalyserApp(App[None]):
     def on_mount(self) -> None:
         """Show the analyser; leaving it ends the app."""
         self.push_screen(_First(self.wanted), lambda _: self.exit())
+
+    def on_ready(self) -> None:
+        """Listen to who may end the app from outside."""
+        if not self.is_headless:
+            self.leave_on_signals()
 
 
 class _First(Analyser):

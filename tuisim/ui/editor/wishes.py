@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from textual.app import App
-
 from tuisim.ui.editor.work import Work
+from tuisim.ui.leaving import TerminalApp
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
@@ -17,7 +16,7 @@ ROOMY_ROWS = 12
 """A code panel of fewer rows grows while one types."""
 
 
-class EditorWishes(App[None]):
+class EditorWishes(TerminalApp):
     """The part of the app that answers the code panel; Textual finds the methods by their names."""
 
     work: Work
