@@ -77,6 +77,8 @@ def lab(folder: Path, root: Path, *words: str) -> Iterator[tuple[subprocess.Pope
     """Run the app in a terminal of its own; yield it and the terminal's other end."""
     outer, inner = pty.openpty()
     environment = {**os.environ, "TERM": "xterm-256color", "PYTHONPATH": str(root), "COLUMNS": "120", "LINES": "40"}
+    # What is written is held back in a buffer for most users.
+    environment.pop("PYTHONUNBUFFERED", None)
     app = subprocess.Popen(
         [sys.executable, "-c", ENTER, sys.executable, "-m", "tuisim", *words],
         stdin=inner, stdout=inner, stderr=inner, cwd=folder, env=environment, start_new_session=True,

@@ -48,6 +48,7 @@ class Outlasting:
         # What is still in the file's buffer would fail once more when Python ends, and change the exit code.
         with suppress(OSError), Path(os.devnull).open("wb") as nothing:
             os.dup2(nothing.fileno(), self._file.fileno())
+            self._file.flush()
         self.gone = True
 
     def fileno(self) -> int:
