@@ -221,3 +221,18 @@ def test_what_is_kept_comes_back(home: object) -> None:
     keep("/some/where.py", kept)
     assert load_kept("/some/where.py") == kept
     assert load_kept("/else/where.py") == Kept()
+
+
+async def test_breaks_are_kept_with_a_program_that_no_panel_shows(home: object) -> None:
+    app = Lab(settings(COUNTS, panels_off=("code", "controls")))
+    assert app.bridge.program is not None
+    keep(app.bridge.program.path, Kept(parse_breaks(("4",)), ("total",)))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await until(pilot, lambda: bool(app.debugging.breaks))
+        assert (app.desk.code, app.debugging.watches) == (None, ("total",))
+        app.debugging.set_breaks(parse_breaks(("4", "6")))
+        assert load_kept(app.bridge.program.path).breaks == app.debugging.breaks
+        await pilot.press("D")
+        await until(pilot, lambda: app.desk.code is not None)
+        assert [one.text for one in app.debugging.breaks] == ["4", "6"]

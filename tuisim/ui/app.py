@@ -114,6 +114,8 @@ class Lab(Wishes):
         else:
             self.loading.prepare_mat()
             self.loading.begin()
+        # Breaks hold, and are kept, whether or not a panel shows the program.
+        self.debugging.program_changed(self.bridge.program)
         self.set_interval(1 / self.settings.fps, self._beat)
         self.set_interval(PERIOD_S, self.loading.look)
 
