@@ -17,6 +17,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.datalog.catalogue import CATALOGUE_FILE
 from tuisim.datalog.runfile import RunEnd
 from tuisim.datalog.store import RunStore
+from tuisim.errors import LogError
 
 FINISHED = RunEnd("finished", 100, 1_000_000_000)
 
@@ -80,6 +81,25 @@ def test_catalogue_is_made_again_from_the_folders(
     assert store.runs() == before
     assert [info.number for info in before] == [1, 3, 4]
     assert store.new_run(PROGRAM, spec).number == 5
+
+
+def test_runs_are_listed_and_removed_also_where_no_catalogue_can_be_written(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore
+) -> None:
+    for number in range(3):
+        recorder = record(replace(spec, seed=number))
+        recorder.print("a: 1")
+        recorder.end(summary=f"run {number}")
+    before = store.runs()
+    catalogue = store.home / CATALOGUE_FILE
+    catalogue.unlink()
+    # Nothing can take its place, as on a disk that is full or can only be read.
+    catalogue.mkdir()
+    assert store.runs() == before
+    assert store.find("last") == before[-1]
+    with pytest.raises(LogError, match=CATALOGUE_FILE):
+        store.remove(before[0].id)
+    assert store.runs() == before[1:]
 
 
 @pytest.mark.parametrize("harm", HARM.values(), ids=HARM)

@@ -90,7 +90,7 @@ class Catalogue:
         scan: Reads all run folders, for a catalogue that must be made again.
 
     Raises:
-        LogError: by every method, if the file cannot be read or written.
+        LogError: by every method but `rows`, if the file cannot be read or written.
     """
 
     def __init__(self, home: Path, scan: Callable[[], Iterable[RunInfo]]) -> None:
@@ -136,7 +136,13 @@ class Catalogue:
 
     def rows(self) -> list[RunInfo]:
         """Return every line, the oldest first."""
-        return self._do(lambda connection: [_info(row) for row in connection.execute(_SELECT)])
+        try:
+            return self._do(_all_rows)
+        except LogError:
+            # SQLite must write even to read. Where nothing can be written, or nothing more, the folders tell the same.
+            with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
+                self._fill(connection)
+                return _all_rows(connection)
 
     def _do(self, operation: Callable[[sqlite3.Connection], _Result]) -> _Result:
         try:
@@ -160,7 +166,9 @@ class Catalogue:
                 return
             fresh = self._path.with_name(f".{CATALOGUE_FILE}.{secrets.token_hex(4)}.tmp")
             try:
-                self._fill(fresh)
+                with closing(sqlite3.connect(fresh, isolation_level=None)) as connection:
+                    connection.execute("PRAGMA journal_mode = WAL")
+                    self._fill(connection)
                 # A journal of the old file would be played into the new one.
                 for suffix in ("-wal", "-shm"):
                     self._path.with_name(CATALOGUE_FILE + suffix).unlink(missing_ok=True)
@@ -168,15 +176,13 @@ class Catalogue:
             finally:
                 fresh.unlink(missing_ok=True)
 
-    def _fill(self, path: Path) -> None:
-        with closing(sqlite3.connect(path, isolation_level=None)) as connection:
-            connection.execute("PRAGMA journal_mode = WAL")
-            with _transaction(connection):
-                connection.execute(_CREATE)
-                # Runs that know their number come first, so that none of the others takes it.
-                for info in sorted(self._scan(), key=lambda info: (not info.number, info.number, info.created)):
-                    _insert(connection, info)
-                connection.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
+    def _fill(self, connection: sqlite3.Connection) -> None:
+        with _transaction(connection):
+            connection.execute(_CREATE)
+            # Runs that know their number come first, so that none of the others takes it.
+            for info in sorted(self._scan(), key=lambda info: (not info.number, info.number, info.created)):
+                _insert(connection, info)
+            connection.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
 
 
 @contextmanager
@@ -242,6 +248,10 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     # A seed may be larger than the integers of SQLite.
     row = {**asdict(info), "number": number, "seed": str(info.seed)}
     return int(connection.execute(_INSERT, tuple(row.values())).lastrowid or 0)
+
+
+def _all_rows(connection: sqlite3.Connection) -> list[RunInfo]:
+    return [_info(row) for row in connection.execute(_SELECT)]
 
 
 def _info(row: tuple[Any, ...]) -> RunInfo:

@@ -7,6 +7,7 @@ import secrets
 import shutil
 import threading
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -320,7 +321,9 @@ class RunStore:
         # Without a lock the process may still be on its way.
         if known.end not in (RUNNING, INTERRUPTED) or (known.end == INTERRUPTED and is_held(folder) is False):
             values = {name: getattr(known, name) for name in ("end", "ticks", "time_s", "samples", "summary")}
-            self._catalogue.update(info.id, **values)
+            # Where it cannot be remembered, it is looked at again the next time.
+            with suppress(LogError):
+                self._catalogue.update(info.id, **values)
         return known
 
 
