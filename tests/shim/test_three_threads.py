@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from hashlib import md5
 
+import pytest
+
 from tests.running import Done
 from tests.shim.conftest import RunOn
 
@@ -71,6 +73,7 @@ def summary(done: Done) -> str:
     return md5(b"".join(done.recording)).hexdigest()
 
 
+@pytest.mark.slow
 def test_three_threads_give_the_same_log_in_20_runs(run_on: RunOn) -> None:
     runs = [
         run_on(PROGRAM, "default", "lollipop", "robolab", live=speed is not None, presses=PRESSES, speed=speed or 0.0)

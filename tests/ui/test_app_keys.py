@@ -31,6 +31,7 @@ async def test_first_picture(size: tuple[int, int]) -> None:
         assert text.count("\n") == size[1] - 1
 
 
+@pytest.mark.slow
 async def test_every_panels_key_shows_and_hides_it() -> None:
     async with Lab(settings(LOGS)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)

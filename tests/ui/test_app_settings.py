@@ -59,6 +59,7 @@ async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
         assert app.focused is app.desk.world
 
 
+@pytest.mark.slow
 async def test_a_value_is_taken_at_once() -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
@@ -94,6 +95,7 @@ async def test_a_field_that_is_left_is_entered() -> None:
         await until(pilot, lambda: app.bridge.plan.spec.robot.back_mm == -99)
 
 
+@pytest.mark.slow
 async def test_choices_are_stepped_through_with_the_arrows() -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
