@@ -28,3 +28,19 @@ def test_a_module_beside_the_program_is_named() -> None:
     rows = text(DebugView("paused", paused, looked, source="    return speed\n"), 60)
     assert rows[:2] == ["line 4 of helper.py · 0.05 s · tick 5", "  return speed"]
     assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]
+
+
+@pytest.mark.parametrize(
+    ("width", "past", "head"),
+    [
+        (26, False, "line 13 · 4.69 s"),
+        (27, False, "line 13 · 4.69 s · tick 469"),
+        (26, True, "line 13 · 4.69 s past"),
+        (40, True, "line 13 · 4.69 s · tick 469 past"),
+    ],
+    ids=["narrow", "enough", "narrow past", "wide past"],
+)
+def test_the_tick_is_told_whole_or_not_at_all(width: int, past: bool, head: str) -> None:
+    looked = Looked(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
+    view = DebugView("paused", Paused(469, 4_690_000_000, 13, "step"), looked, past)
+    assert text(view, width)[0] == head

@@ -120,8 +120,11 @@ def _where(view: DebugView, paused: Paused, width: int) -> Line:
     at = f"line {paused.line}" if paused.line else "no line"
     if paused.file:
         at += f" of {Path(paused.file).name}"
-    text = f"{at} · {paused.time_ns / 1e9:.2f} s · tick {paused.tick}"
+    text = f"{at} · {paused.time_ns / 1e9:.2f} s"
     tail = " …" if view.busy else " past" if view.past else ""
+    # The time says as much as the tick, which is left out rather than cut in two.
+    if len(whole := f"{text} · tick {paused.tick}") <= width - len(tail):
+        text = whole
     return [(_cut(text, width - len(tail)), _HEAD), (tail, _CHANGED)]
 
 
