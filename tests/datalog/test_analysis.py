@@ -75,6 +75,18 @@ class TestSignals:
         values = 1e9 + np.tile(column(0, 1), 500)
         assert_allclose(moving_average(values, 3)[1:-1] - 1e9, np.tile(column(1 / 3, 2 / 3), 499), atol=1e-6)
 
+    def test_moving_average_is_of_its_window_only(self) -> None:
+        values = np.full(40, 50.0)
+        values[3] = 1e20
+        assert_allclose(moving_average(values, 5)[6:], 50.0)
+
+    @pytest.mark.parametrize("width", [1, 3, 7, 8001])
+    def test_moving_average_of_any_width(self, width: int) -> None:
+        values = np.arange(20.0) ** 2
+        half = width // 2
+        expected = [values[max(at - half, 0) : at + half + 1].mean() for at in range(20)]
+        assert_allclose(moving_average(values, width), expected)
+
     @pytest.mark.parametrize("width", [0, -3, 4])
     def test_moving_average_needs_an_odd_width(self, width: int) -> None:
         with pytest.raises(LogError, match="odd"):
@@ -97,6 +109,33 @@ class TestSignals:
     def test_resample_refuses(self, period: float) -> None:
         with pytest.raises(LogError, match="period"):
             resample(column(0, 100), column(1, 2), period)
+
+
+SPARSE = column(0, 1, 2, 3, 4, 5), column(1, NAN, 3, NAN, 7, NAN)
+"""Every second cell is empty, as where two sensors are read by turns."""
+BACK = column(0, 2, 1, 3), column(0, 4, 1, 9)
+"""A parabola, its times in no order."""
+
+
+class TestOrder:
+    def test_empty_cells_are_passed_over(self) -> None:
+        assert_allclose(derivative(*SPARSE), [1, NAN, 1.5, NAN, 2, NAN])
+        assert_allclose(integral(*SPARSE), [0, NAN, 4, NAN, 14, NAN])
+        assert_allclose(integral(*SPARSE, HOLD), [0, NAN, 2, NAN, 8, NAN])
+        assert_allclose(resample(*SPARSE, 1)[1], [1, 1, 3, 3, 7, 7])
+        assert_allclose(resample(*SPARSE, 1, LINEAR)[1], [1, 2, 3, 5, 7, 7])
+
+    def test_times_may_go_back(self) -> None:
+        assert_allclose(derivative(*BACK), [1, 4, 2, 5])
+        assert_allclose(integral(*BACK), [0, 3, 0.5, 9.5])
+        assert_allclose(resample(*BACK, 1)[1], [0, 1, 4, 9])
+        assert [(one.at, one.time_s) for one in crossings(*BACK, 2.5)] == [(1, 1.5)]
+
+    def test_very_large_values(self) -> None:
+        found = crossings(column(0, 1), column(-1e308, 1e308), 0)
+        assert [one.time_s for one in found] == [0.5]
+        assert_allclose(integral(column(0, 1), column(1e308, 1e308)), [0, 1e308])
+        assert summary_of(np.array([3e38, 3e38, 0], np.float32)).mean == pytest.approx(2e38)
 
 
 class TestCrossings:

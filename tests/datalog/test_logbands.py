@@ -69,3 +69,10 @@ def test_places_and_widths() -> None:
 )
 def test_log_that_does_not_know_its_noise(metadata: dict[str, object]) -> None:
     assert light_noise(metadata, 0) == 0
+
+
+def test_empty_cells_belong_to_no_band() -> None:
+    table = pa.table({"time": np.arange(12.0), "light": [50.0, None] * 3 + [100.0, None] * 3})
+    report = band_report(Log("log", table, guessed(table)), "light")
+    assert [(band.level, band.samples) for band in report.bands] == [(50, 3), (100, 3)]
+    assert (report.transitions, report.total) == (0, 6)

@@ -110,3 +110,8 @@ def test_a_column_without_a_type_is_no_variable(tmp_path: Path) -> None:
 def test_infinite_numbers_are_compared_without_a_warning() -> None:
     infinite = float("inf")
     assert log_of(a=[infinite, infinite, 3.0], b=[1.0, 2.0, 3.0]).names == ("a", "b")
+
+
+def test_what_comes_before_the_first_time_stands_there() -> None:
+    log = log_of(time=[float("inf"), 7.0, float("nan"), 8.0], a=[1.0, 2.0, 3.0, 4.0])
+    assert log.series("a").time_s.tolist() == [7.0, 7.0, 7.0, 8.0]

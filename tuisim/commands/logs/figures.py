@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from argparse import Namespace
 from dataclasses import asdict
 from typing import Any
@@ -24,7 +25,9 @@ def summary(arguments: Namespace) -> int:
             series = log.series(name)
             figures = asdict(summary_of(series.values))
             quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
-            span = {"first_s": float(series.time_s[0]), "last_s": float(series.time_s[-1])}
+            times_s = series.time_s
+            first_s, last_s = (float(times_s.min()), float(times_s.max())) if len(times_s) else (math.nan, math.nan)
+            span = {"first_s": first_s, "last_s": last_s}
             rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
     number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), ".4g")
     show_rows(rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number})

@@ -12,7 +12,16 @@ from tuisim.commands.logs.results import show_frame
 from tuisim.commands.logs.sources import names_of, the_source
 from tuisim.datalog.analysis.expressions import evaluate
 from tuisim.datalog.analysis.logreckon import reckoned_series
-from tuisim.datalog.analysis.signals import HOLD, derivative, integral, moving_average, resample, value_at
+from tuisim.datalog.analysis.signals import (
+    HOLD,
+    Between,
+    derivative,
+    even_moments,
+    integral,
+    known_in_order,
+    moving_average,
+    value_at,
+)
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.export import check_target
 from tuisim.datalog.opening import Log, Series
@@ -65,13 +74,18 @@ def even(arguments: Namespace) -> int:
     columns: dict[str, FloatArray] = {}
     names = names_of(log, arguments)
     all_series = [log.series(name) for name in names]
-    start = min(float(series.time_s[0]) for series in all_series)
-    stop = max(float(series.time_s[-1]) for series in all_series)
-    moments, _ = resample(np.array([start, stop]), np.zeros(2), arguments.period, HOLD)
+    start = min(float(series.time_s.min()) for series in all_series)
+    stop = max(float(series.time_s.max()) for series in all_series)
+    moments = even_moments(start, stop, arguments.period)
     for name, series in zip(names, all_series, strict=True):
-        columns[name] = value_at(series.time_s, series.values, moments, arguments.between)
+        columns[name] = _at(series, moments, arguments.between)
     show_frame(pd.DataFrame({"time": moments, **columns}), arguments)
     return 0
+
+
+def _at(series: Series, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
+    known = known_in_order(series.time_s, series.values)
+    return value_at(series.time_s[known], series.values[known], moments_s, between)
 
 
 def calculate(arguments: Namespace) -> int:
@@ -94,9 +108,7 @@ def wide_frame(log: Log) -> pd.DataFrame:
         return pd.DataFrame({name: numbers_of(log.table.column(name)) for name in numeric})
     series = [log.series(name) for name in log.names]
     moments = np.unique(np.concatenate([one.time_s for one in series]))
-    return pd.DataFrame(
-        {"time": moments, **{one.name: value_at(one.time_s, one.values, moments, HOLD) for one in series}}
-    )
+    return pd.DataFrame({"time": moments, **{one.name: _at(one, moments) for one in series}})
 
 
 def reckon(arguments: Namespace) -> int:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tuisim.datalog.analysis.signals import known_in_order
 from tuisim.datalog.arrays import FloatArray
 from tuisim.errors import LogError
 
@@ -30,7 +31,7 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
     that a signal that only touches it from above crosses nothing.
 
     Args:
-        time_s: Not falling, shape (n,).
+        time_s: Shape (n,), in any order.
         values: Shape (n,); those that are not finite are passed over.
         threshold: Where.
         hysteresis: A crossing counts if the signal is so far from the threshold before it and after it.
@@ -40,7 +41,7 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
     """
     if not hysteresis >= 0.0:
         raise LogError(f"the hysteresis must not be negative, got {hysteresis:g}")
-    known = np.flatnonzero(np.isfinite(values))
+    known = np.arange(len(values))[known_in_order(time_s, values)]
     signal = values[known]
     above = signal >= threshold
     # The side on which the signal certainly is; 0 while it is too near the threshold to tell.
@@ -60,6 +61,7 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
 
 
 def _meets(time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float) -> float:
-    rise = float(values[last] - values[first])
-    part = (threshold - float(values[first])) / rise if rise else 1.0
+    # Halves, whose difference is finite.
+    start, stop = float(values[first]) / 2.0, float(values[last]) / 2.0
+    part = (threshold / 2.0 - start) / (stop - start) if stop != start else 1.0
     return float(time_s[first]) + min(max(part, 0.0), 1.0) * float(time_s[last] - time_s[first])

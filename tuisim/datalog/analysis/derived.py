@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tuisim.datalog.analysis.expressions import FUNCTIONS, Functions, evaluate, names_in
-from tuisim.datalog.analysis.signals import derivative, integral, moving_average, resample, value_at
+from tuisim.datalog.analysis.signals import derivative, integral, known_in_order, moving_average, resample, value_at
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.opening.layout import is_numeric
 from tuisim.datalog.opening.log import Log, Series
@@ -103,8 +103,9 @@ def _made(log: Log, definition: Definition, names: Sequence[str], base: Series) 
     if definition.period_s is None:
         return replace(base, values=values)
     moments_s, values = resample(base.time_s, values, definition.period_s)
-    before = np.searchsorted(base.time_s, moments_s + 1e-9, side="right") - 1
-    return Series(base.name, moments_s, values, base.rows[before], base.run)
+    order = known_in_order(base.time_s, base.time_s)
+    before = np.searchsorted(base.time_s[order], moments_s + 1e-9, side="right") - 1
+    return Series(base.name, moments_s, values, base.rows[order][before], base.run)
 
 
 def _column(log: Log, name: str, base: Series) -> FloatArray:
@@ -114,8 +115,10 @@ def _column(log: Log, name: str, base: Series) -> FloatArray:
             series = log.series(wanted)
             if not len(series.rows):
                 return np.full(len(base.rows), np.nan)
-            same = series.rows is base.rows or series.time_s is base.time_s
-            return series.values if same else value_at(series.time_s, series.values, base.time_s)
+            if series.rows is base.rows or series.time_s is base.time_s:
+                return series.values
+            known = known_in_order(series.time_s, series.values)
+            return value_at(series.time_s[known], series.values[known], base.time_s)
     schema = log.table.schema
     if name in schema.names and is_numeric(schema.field(name).type):
         return log.numbers(name)[base.rows]

@@ -99,7 +99,7 @@ def _band(series: Series, number: int, plateau: Plateau, driven: FloatArray | No
         number=number,
         start_s=float(series.time_s[first]),
         stop_s=float(series.time_s[last]),
-        samples=plateau.samples,
+        samples=int(np.isfinite(series.values[first : plateau.stop]).sum()),
         level=plateau.level,
         spread=plateau.spread,
         strays=plateau.strays,

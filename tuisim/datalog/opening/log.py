@@ -121,8 +121,10 @@ class Log:
         # A sample without a time of its own stands at the one before it.
         missing = ~np.isfinite(times)
         if missing.any():
-            last = np.maximum.accumulate(np.where(missing, 0, np.arange(len(times))))
-            times = np.nan_to_num(times[last])
+            # What comes before the first time stands there.
+            first = int(np.argmin(missing))
+            last = np.maximum.accumulate(np.where(missing, first, np.arange(len(times))))
+            times = np.zeros(len(times)) if missing.all() else times[last]
         return times
 
     def numbers(self, column: str) -> FloatArray:
