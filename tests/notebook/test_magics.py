@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import html
+import re
+
 import pytest
 
 from tests.notebook.conftest import Cell
@@ -143,3 +146,16 @@ def test_pixel_arrays_are_frames_and_pictures(cell: Cell) -> None:
     dark = cell("%sim_bw_image_data -i 0").result
     # The disc lies on the black band: its 305 pixels are dark, the corners are not.
     assert (dark.shape, int(dark.to_numpy().sum())) == ((20, 20), 305)
+
+
+def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -> None:
+    (code,) = cell(program("-WHD", "if 1 < 2:\n    print('<b>')")).bundles
+    rows = re.findall(r"<tr><th>(\d+)</th><td[^>]*><pre>(.*?)</pre></td></tr>", code["text/html"])
+    assert [(number, html.unescape(line)) for number, line in rows] == [
+        ("1", ""), ("2", "if 1 < 2:"), ("3", "    print('<b>')")
+    ]  # fmt: skip
+    assert "<b>" not in code["text/html"]
+
+
+def test_one_sample_is_told_as_one(cell: Cell) -> None:
+    assert cell(program("-RW", "print('Colour: 1')")).plain == "finished · 0.000 s · 1 sample"

@@ -113,7 +113,8 @@ def told_end(run: StoredRun, *, hurry: bool = False) -> str:
     told = f"{run.state}{what} · {run.end.time_ns / 1e9 if run.end else 0.0:.3f} s"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return told
-    return f"{told} · {sum(1 for _ in samples_of(run.output.rows()))} samples"
+    samples = sum(1 for _ in samples_of(run.output.rows()))
+    return f"{told} · {samples} sample{'s' * (samples != 1)}"
 
 
 class _Follower:

@@ -37,11 +37,18 @@ def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
     return {"image/png": png.getvalue(), "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>"}
 
 
-def table_bundle(title: str, rows: Sequence[Row]) -> dict[str, Any]:
-    """Return rows of name and value as what a cell shows."""
+def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
+    """Return rows of name and value as what a cell shows.
+
+    Args:
+        title: What the table is about.
+        rows: Name and value.
+        keep_blanks: Whether blanks mean something in the values, as in a program: a browser folds them.
+    """
+    begin, end = ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
     wide = max((len(name) for name, _ in rows), default=0)
     plain = "\n".join([title, *(f"  {name:<{wide}}  {value}" for name, value in rows)])
-    cells = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in rows)
+    cells = "".join(f"<tr><th>{html.escape(name)}</th>{begin}{html.escape(value)}{end}</tr>" for name, value in rows)
     return {"text/plain": plain, "text/html": f"<table><caption>{html.escape(title)}</caption>{cells}</table>"}
 
 
@@ -176,6 +183,6 @@ class Stage:
             self._put("output", {"text/plain": "\n".join(scene.printed) or "nothing was printed"})
         for panel, rows in _TABLES.items():
             if panel in on:
-                self._put(panel, table_bundle(panel.capitalize(), rows(scene)))
+                self._put(panel, table_bundle(panel.capitalize(), rows(scene), keep_blanks=panel == "code"))
         if "controls" not in off:
             self._put("controls", {"text/plain": status})
