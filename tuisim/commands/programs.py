@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from argparse import Namespace
 
-from tuisim.assets import programs
+from tuisim.assets import programs, programs_folder
 from tuisim.commands.tables import table
 from tuisim.switches import SwitchParser
 
@@ -17,9 +17,10 @@ def add_arguments(parser: SwitchParser) -> None:
 
 def execute(arguments: Namespace) -> int:
     """Print every example program with the first line of its docstring."""
-    found = [(program.name, program.title, str(program.path)) for program in programs()]
+    found = programs()
     if arguments.json:
-        print(json.dumps([dict(zip(("name", "title", "path"), row, strict=True)) for row in found]))
+        print(json.dumps([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found]))
     else:
-        print(table(("NAME", "DOES", "FILE"), found))
+        print(table(("NAME", "DOES"), [(one.name, one.title) for one in found]))
+        print(f"They lie in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it.")
     return 0
