@@ -30,6 +30,11 @@ ENDS = {
     "spin on a motor": ("tank_drive.on(10, 10)\nwhile tank_drive.is_running: pass", "time_limit", 0),
     "spin on the clock": ("import time\nwhile time.time() > 0: pass", "time_limit", 0),
     "spin on commands": ("while True: tank_drive.on(50, 50)", "time_limit", 0),
+    "a line without an end": (
+        "print('A: 1')\nfor _ in range(10**4): print('.', end='')\nwhile True: print('x' * 10**7, end='')",
+        "output_limit",
+        0,
+    ),
     "swallows everything": ("while True:\n    try: x = 1\n    except: pass", "time_limit", 0),
     "endless cleaning up": ("try:\n    while True: pass\nfinally:\n    while True: pass", "time_limit", 0),
 }

@@ -6,7 +6,7 @@ import io
 from collections.abc import Callable
 from typing import Any
 
-from tuisim.datalog.records import STDOUT, OutputWriter
+from tuisim.datalog.records import MAX_OUTPUT_BYTES, STDOUT, OutputWriter
 
 
 class Output:
@@ -53,7 +53,8 @@ class LineStream(io.TextIOBase):
 
     def __init__(self, output: Output, stream: int = STDOUT) -> None:
         self._output, self._stream = output, stream
-        self._part = ""
+        self._part = io.StringIO()
+        """What has no newline yet; a line may be put together of any number of prints."""
 
     @property
     def name(self) -> str:
@@ -77,11 +78,14 @@ class LineStream(io.TextIOBase):
         if not isinstance(text, str):
             raise TypeError(f"write() argument must be str, not {type(text).__name__}")
         if "\n" not in text:
-            self._part += text
+            self._part.write(text)
+            if self._part.tell() > MAX_OUTPUT_BYTES:
+                # More than the file takes anyway, which says so, before it fills the memory.
+                self.finish()
             return len(text)
-        *lines, rest = (self._part + text).split("\n")
-        # Cleared first: should writing a row end the program, nothing is written twice.
-        self._part = rest
+        # Taken first: should writing a row end the program, nothing is written twice.
+        *lines, rest = (self.take_part() + text).split("\n")
+        self._part.write(rest)
         for line in lines:
             self._output.row(line, self._stream)
         self._output.after_write()
@@ -92,13 +96,12 @@ class LineStream(io.TextIOBase):
 
     def finish(self) -> None:
         """Write what has no newline yet."""
-        if self._part:
-            part, self._part = self._part, ""
+        if part := self.take_part():
             self._output.row(part, self._stream)
 
     def take_part(self) -> str:
         """Return what has no newline yet, as written elsewhere from now on."""
-        part, self._part = self._part, ""
+        part, self._part = self._part.getvalue(), io.StringIO()
         return part
 
 
