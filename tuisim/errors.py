@@ -14,6 +14,16 @@ goes to stderr, to a notice in the app, and to the notebook.
 from __future__ import annotations
 
 
+def printable(text: str) -> str:
+    """Return a text that stays on its line and that any terminal, font and file takes.
+
+    Names come from files and may hold what a terminal would obey; that becomes a question mark, white space a blank.
+    """
+    if text.isprintable():
+        return text
+    return "".join(one if one.isprintable() else " " if one.isspace() else "\ufffd" for one in text)
+
+
 class TuisimError(Exception):
     """Base of all expected errors.
 
@@ -31,7 +41,8 @@ class TuisimError(Exception):
         self.hint = hint
 
     def __str__(self) -> str:
-        return f"{self.message} ({self.hint})" if self.hint else self.message
+        said = f"{self.message} ({self.hint})" if self.hint else self.message
+        return "\n".join(map(printable, said.split("\n")))
 
 
 class ConfigError(TuisimError):

@@ -242,6 +242,11 @@ CASES: dict[str, Case] = {
         b'{"time": 0, "red": 1}\n{"time": 1, "blue": 4}\n',
         Read(2, ("red", "blue")),
     ),
+    "json with halves of characters": (
+        "a.jsonl",
+        b'{"time": 0, "\\ud800": 1, "": 2, "said": "\\udfff"}\n{"time": 1, "\\ud800": 3, "": 4}\n',
+        Read(2, ("\\ud800", "(no name)"), check=lambda log: values(log, "(no name)") == [2, 4]),
+    ),
     "json nested without end": ("a.jsonl", b"[" * 100_000 + b'\n{"time": 0, "red": 1}\n', Read(1, left_out=1)),
     "printed lines": (
         "a.txt",

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tuisim.errors import printable
+
 
 def table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """Return rows of text under their heads, columns aligned; numbers stand at the right."""
-    cells = [list(heads), *([str(cell) for cell in row] for row in rows)]
+    cells = [list(heads), *([printable(str(cell)) for cell in row] for row in rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     right = [bool(rows) and all(isinstance(row[at], int | float) for row in rows) for at in range(len(heads))]
     lines = [

@@ -12,7 +12,7 @@ from tuisim.commands.logs.sources import names_of, open_sources
 from tuisim.datalog.analysis.crossings import crossings
 from tuisim.datalog.analysis.logbands import band_report, in_words
 from tuisim.datalog.analysis.statistics import QUANTILES, summary_of
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, printable
 
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
 
@@ -42,7 +42,7 @@ def bands(arguments: Namespace) -> int:
         for name in names_of(log, arguments):
             report = band_report(log, name)
             rows += [{"log": log.title, **asdict(band)} for band in report.bands]
-            notes.append(in_words(report))
+            notes.append(printable(in_words(report)))
     formats = {
         "variable": "", "number": "", "start_s": ".2f", "stop_s": ".2f", "samples": "", "level": ".2f",
         "true_level": ".2f", "spread": ".2f", "grey": "", "width_mm": ".0f",

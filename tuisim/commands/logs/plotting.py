@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.commands.logs.sources import names_of, the_source
-from tuisim.errors import ConfigError, LogError
+from tuisim.errors import ConfigError, LogError, printable
 from tuisim.ui.paper.chart import View, chart_of
 from tuisim.ui.paper.files import CHART_FORMATS, Size, format_of, save_chart
 
@@ -47,7 +47,7 @@ def plot(arguments: Namespace) -> int:
         _show(model, view, size)
     hidden = [trace.name for trace in model.traces if not trace.on]
     if hidden and not arguments.variable:
-        print(f"note: not drawn: {', '.join(hidden)}; --variable NAME draws one", file=sys.stderr)
+        print(printable(f"note: not drawn: {', '.join(hidden)}; --variable NAME draws one"), file=sys.stderr)
     return 0
 
 

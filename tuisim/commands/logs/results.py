@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.commands.tables import table
 from tuisim.datalog.export import check_target, export_frame
+from tuisim.errors import printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,7 +45,15 @@ def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
     elif arguments.json:
         print(frame.to_json(orient="records", lines=True, double_precision=15), end="")
     else:
-        frame.to_csv(sys.stdout, index=False, lineterminator="\n")
+        frame.to_csv(_Terminal() if sys.stdout.isatty() else sys.stdout, index=False, lineterminator="\n")
+
+
+class _Terminal:
+    """Standard output that is seen by people: nothing in the cells may be a command to the terminal."""
+
+    def write(self, text: str) -> None:
+        """Write lines."""
+        sys.stdout.write("\n".join(map(printable, text.split("\n"))))
 
 
 def write_frame(frame: pd.DataFrame, arguments: Namespace) -> None:

@@ -12,7 +12,7 @@ from tuisim.datalog.opening.layout import chosen
 from tuisim.datalog.opening.loading import STDIN
 from tuisim.datalog.opening.runs import log_of_runs, telemetry_log
 from tuisim.datalog.store import RunStore
-from tuisim.errors import ConfigError, LogError
+from tuisim.errors import ConfigError, LogError, printable
 
 
 def is_file(word: str) -> bool:
@@ -76,7 +76,7 @@ def _open_file(word: str, arguments: Namespace) -> Log:
         log = loaded.log or log
         if shows and not loaded.done:
             part = f"{loaded.part:4.0%}" if loaded.part == loaded.part else ""
-            print(f"\rreading {word} {part}", end="", file=sys.stderr, flush=True)
+            print(f"\rreading {printable(word)} {part}", end="", file=sys.stderr, flush=True)
     if shows:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
     assert log is not None
@@ -85,7 +85,7 @@ def _open_file(word: str, arguments: Namespace) -> Log:
 
 def _with_notes(log: Log) -> Log:
     for note in log.notes:
-        print(f"note: {log.title}: {note}", file=sys.stderr)
+        print(printable(f"note: {log.title}: {note}"), file=sys.stderr)
     return log
 
 

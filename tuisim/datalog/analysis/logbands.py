@@ -152,5 +152,6 @@ def in_words(report: BandReport) -> str:
     for grey, bands in levels.items():
         level = sum(band.true_level * band.samples for band in bands) / sum(band.samples for band in bands)
         said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{f' ({len(bands)}x)' if len(bands) > 1 else ''}")
+    known = f"{len(levels)} level{'s' * (len(levels) != 1)}{': ' * bool(said)}{', '.join(said)}"
     edges = f"{report.transitions} of {report.total} samples lie on edges"
-    return f"{report.variable}: {len(levels)} levels: {', '.join(said)}; {edges}"
+    return f"{report.variable}: {known}; {edges}"

@@ -10,6 +10,8 @@ import pyarrow as pa
 from tuisim.datalog.opening.lines import Block
 from tuisim.datalog.opening.notes import Notes
 
+_NAMELESS = "(no name)"
+
 
 class JsonReader:
     """Reads blocks of one file; names and types of the columns are fixed by the first.
@@ -42,7 +44,7 @@ class JsonReader:
         if not found:
             return None
         names = dict.fromkeys(name for _, cells in found for name in cells)
-        return pa.table({name: self._column(name, found) for name in names})
+        return pa.table({_valid(name) or _NAMELESS: self._column(name, found) for name in names})
 
     def _column(self, name: str, found: list[tuple[int, dict[str, Any]]]) -> pa.Array:
         cells = [cells.get(name) for _, cells in found]
@@ -73,4 +75,9 @@ def _float(cell: float) -> float:
 
 
 def _text(cell: object) -> str:
-    return cell if isinstance(cell, str) else json.dumps(cell)
+    return _valid(cell) if isinstance(cell, str) else json.dumps(cell)
+
+
+def _valid(text: str) -> str:
+    """The same text, halves of characters told by their numbers."""
+    return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -9,7 +9,7 @@ import numpy as np
 
 from tuisim.datalog import units
 from tuisim.datalog.arrays import FloatArray
-from tuisim.errors import LogError
+from tuisim.errors import LogError, printable
 from tuisim.ui.analyser.aligning import DISTANCE
 from tuisim.ui.render.axes import Limits, value_limits
 from tuisim.ui.render.reduce import min_max
@@ -85,15 +85,10 @@ class Chart:
     spans: tuple[Span, ...] = ()
 
 
-def plain(text: str) -> str:
-    """Return a text that stays on its line and that any terminal, font and file takes; the rest is a question mark."""
-    return "".join(letter if letter == " " or letter.isprintable() else "\ufffd" for letter in text)
-
-
 def with_unit(name: str) -> str:
     """Return a variable's name as it is written beside a chart."""
     unit = unit_of(name)
-    return plain(f"{name} ({unit})" if unit else name)
+    return printable(f"{name} ({unit})" if unit else name)
 
 
 def unit_of(name: str) -> str:
@@ -123,7 +118,9 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
     x_label = "time (s)" if model.log.layout.time else "row"
     if model.alignment == DISTANCE:
         x_label = "distance driven (mm)"
-    return Chart(plain(model.log.title), tuple(lines), x_limits, x_label, view.facets and len(lines) > 1, view.marks)
+    return Chart(
+        printable(model.log.title), tuple(lines), x_limits, x_label, view.facets and len(lines) > 1, view.marks
+    )
 
 
 def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
@@ -156,5 +153,5 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
     limits = [value_limits(float(values[good].min()), float(values[good].max())) for values in (xs, ys)]
     cells = max(columns // _DOTS_X, 1), max(rows // _DOTS_Y, 1)
     xs, ys = seen_points(xs[good], ys[good], limits, *cells)
-    title, x_label = plain(model.log.title), with_unit(names[0])
+    title, x_label = printable(model.log.title), with_unit(names[0])
     return Chart(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from rich.style import Style
 from rich.text import Text
 
-from tuisim.ui.paper.chart import Chart, Line, plain
+from tuisim.errors import printable
+from tuisim.ui.paper.chart import Chart, Line
 from tuisim.ui.paper.layout import COLORS, color_of
 from tuisim.ui.render.chart import ChartPainter, ChartState
 from tuisim.ui.render.kinds import Run
@@ -41,7 +42,7 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
         (line,) = chart.lines
         trace = _trace(line)
         marker = trace.mark if chart.marks else BRAILLE
-        names = chart.x_label.partition(" (")[0], plain(line.name)
+        names = chart.x_label.partition(" (")[0], printable(line.name)
         shown = xy_lines(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
     else:
         parts = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
@@ -58,7 +59,7 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
 
 
 def _trace(line: Line) -> Trace:
-    trace = Trace(plain(line.name), line.number)
+    trace = Trace(printable(line.name), line.number)
     trace.rgb = color_of(line)
     return trace
 

@@ -1,0 +1,59 @@
+"""Names in logs are shown, never obeyed by the terminal."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from tuisim.cli import run_command
+from tuisim.errors import printable
+
+EVIL = "a\x1b[31m\x9bb\x07"
+SHOWN = "a\ufffd[31m\ufffdb\ufffd"
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> str:
+    """A log that needs a note, of a variable with an evil name."""
+    path = tmp_path / f"{EVIL}.jsonl"
+    path.write_text("\n".join(json.dumps({"time": at, EVIL: at}) for at in range(9)) + "\nno object\n")
+    return str(path)
+
+
+CALLS = {
+    "a table": ("summary",),
+    "a sentence": ("bands",),
+    "an error": ("summary", "--variable", "zz"),
+    "a chart": ("plot", "--size", "60x20"),
+    "rows": ("derive",),
+}
+
+
+@pytest.mark.parametrize("words", CALLS.values(), ids=CALLS)
+def test_names_are_shown(
+    log: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
+    run_command(["log", words[0], log, *words[1:]])
+    said = "".join(capsys.readouterr())
+    assert SHOWN in said
+    # The chart's title is bold.
+    assert not [part for part in ("\x1b[31m", "\x9b", "\x07") if part in said]
+
+
+def test_rows_for_a_program_are_as_they_are(log: str, capsys: pytest.CaptureFixture[str]) -> None:
+    run_command(["log", "derive", log])
+    assert EVIL in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [("Größe 😀", "Größe 😀"), ("a\tb\nc", "a b c"), ("\ud800\u202e", "\ufffd\ufffd")],
+    ids=["letters", "white space", "no letters"],
+)
+def test_printable(text: str, shown: str) -> None:
+    assert printable(text) == shown
