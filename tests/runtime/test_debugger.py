@@ -184,6 +184,32 @@ def _at_instant(held: Paused) -> Paused:
     return Paused(held.tick, held.time_ns, held.line, "instant", ordinal=held.ordinal, thread=held.thread)
 
 
+BLANKS = '''\
+import time
+
+# Nothing runs here.
+def add(a):
+    \"\"\"Nor here.\"\"\"
+
+    return a + 1
+
+for i in range(2):
+
+    time.sleep(0.05)
+    add(i)
+'''
+
+
+@pytest.mark.parametrize(
+    ("line", "held"), [(2, 4), (3, 4), (5, 7), (8, 9), (10, 11)], ids=["blank", "comment", "doc", "between", "in a loop"]
+)
+def test_a_line_without_code_holds_at_the_next_one_that_has(debug: Callable[..., Driver], line: int, held: int) -> None:
+    assert debug(BLANKS, breaks=(str(line),)).paused().line == held
+    driver = debug(BLANKS, hold_at=FIRST_LINE)
+    driver.paused()
+    assert driver.do(RunToLine(line)).line == held
+
+
 def test_history_leads_back(debug: Callable[..., Driver]) -> None:
     driver = debug(CALLS, live=False, trace_from_tick=4, hold_at=(10, 2))
     assert driver.paused().line == 9

@@ -129,7 +129,7 @@ class Child:
 def _debugger(session: Session, baton: Baton, runner: ProgramRunner) -> Debugger:
     from tuisim.runtime.debugger.debugger import Debugger
 
-    return Debugger(session, baton, runner.names, runner.prepared)
+    return Debugger(session, baton, runner.names, runner.prepared, runner.code)
 
 
 main(sys.argv[1:])

@@ -64,6 +64,8 @@ class ProgramRunner:
         self._module = types.ModuleType("__main__")
         self.prepared: dict[str, int] = {}
         """By name, the identity of what the prelude has made."""
+        self.code: types.CodeType | None = None
+        """The program; None before it is compiled."""
         self.names = self._module.__dict__
         """The program's global names."""
         self._builtins: Any = builtins
@@ -109,7 +111,6 @@ class ProgramRunner:
         file = self._session.program_file
         sys.stdout, sys.stderr = self.stdout, self.stderr
         sys.argv = [file]
-        sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
         sys.excepthook = self._thread_error
         import threading
 
@@ -118,7 +119,7 @@ class ProgramRunner:
         os._exit = self._exit_now
 
     def _execute(self) -> None:
-        code = compile_program(self._config.text, self._session.program_file)
+        self.code = code = compile_program(self._config.text, self._session.program_file)
         module = self._module
         module.__dict__.update(__file__=self._session.program_file, __builtins__=builtins)
         sys.modules["__main__"] = module
@@ -130,6 +131,8 @@ class ProgramRunner:
             error.add_note(f"The prelude `{self._config.prelude}` asked for it: --preload imports makes no devices.")
             raise
         self._session.free -= 1
+        # Not before: a program called logging.py is not what the library means by `import logging`.
+        sys.path.insert(0, os.path.dirname(os.path.abspath(self._session.program_file)))
         self.prepared |= {name: id(value) for name, value in module.__dict__.items()}
         # What is there now stays; the program's own garbage is looked for from here on.
         gc.freeze()

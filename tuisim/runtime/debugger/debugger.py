@@ -12,6 +12,7 @@ from tuisim.breaks import Break, LineBreak, parse_breaks
 from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused
 from tuisim.runtime.baton import Baton
 from tuisim.runtime.debugger.apart import apart
+from tuisim.runtime.debugger.codelines import CodeLines
 from tuisim.runtime.debugger.conditions import Condition
 from tuisim.runtime.debugger.looking import Looker
 from tuisim.runtime.debugger.stepping import NEXT_LINE, Step, step_from
@@ -39,10 +40,19 @@ class Debugger:
         baton: Its threads.
         module: Gives the global names of the program.
         prepared: By name, the identity of what was there before the program.
+        code: The program itself.
     """
 
-    def __init__(self, session: Session, baton: Baton, module: Mapping[str, Any], prepared: Mapping[str, int]) -> None:
+    def __init__(
+        self,
+        session: Session,
+        baton: Baton,
+        module: Mapping[str, Any],
+        prepared: Mapping[str, int],
+        code: types.CodeType | None,
+    ) -> None:
         self._session, self._baton = session, baton
+        self._lines = CodeLines(code)
         self._tracer = Tracer(session, baton, self._at_line)
         self._looker = Looker(session, baton, self._tracer, module, prepared)
         self._watcher = Watcher(session)
@@ -80,7 +90,7 @@ class Debugger:
                 steering.let_on()
             case protocol.RunToLine(line=line):
                 self._forget_goals()
-                self._line = line
+                self._line = self._lines.from_here(line)
                 steering.let_on()
             case protocol.RunToInstant(tick=tick, ordinal=ordinal):
                 self._forget_goals()
@@ -146,7 +156,7 @@ class Debugger:
             if isinstance(one.rule, LineBreak):
                 text = one.rule.condition
                 condition = before.get(one.text) or (Condition(text) if text else None)
-                self._by_line.setdefault(one.rule.line, []).append((one, condition))
+                self._by_line.setdefault(self._lines.from_here(one.rule.line), []).append((one, condition))
         self._watcher.set(wanted)
         self._session.output.watch = self._after_row if self._watcher.rows else None
 
