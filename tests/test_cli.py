@@ -65,6 +65,13 @@ def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(tmp_pat
     assert len(pd.read_csv(tmp_path / "rows.csv")) == 5
 
 
+def test_a_program_may_bear_the_name_of_a_module_that_the_library_imports(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "beside.py").write_text("TIMES = 2\n")
+    (tmp_path / "logging.py").write_text("from beside import TIMES\nprint(TIMES * colorLeft.rgb)\n")
+    done = here("run", "logging.py")
+    assert (done.returncode, done.stdout) == (0, "(255, 255, 255, 255, 255, 255)\n"), done.stderr
+
+
 def test_json_is_one_object_alone_on_stdout(program: Path, here: Command) -> None:
     done = here("run", program.name, "--json", "--seed", 7, "-b", "Loop")
     facts = json.loads(done.stdout)
