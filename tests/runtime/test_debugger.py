@@ -184,7 +184,7 @@ def _at_instant(held: Paused) -> Paused:
     return Paused(held.tick, held.time_ns, held.line, "instant", ordinal=held.ordinal, thread=held.thread)
 
 
-BLANKS = '''\
+BLANKS = """\
 import time
 
 # Nothing runs here.
@@ -197,11 +197,13 @@ for i in range(2):
 
     time.sleep(0.05)
     add(i)
-'''
+"""
 
 
 @pytest.mark.parametrize(
-    ("line", "held"), [(2, 4), (3, 4), (5, 7), (8, 9), (10, 11)], ids=["blank", "comment", "doc", "between", "in a loop"]
+    ("line", "held"),
+    [(2, 4), (3, 4), (5, 7), (8, 9), (10, 11)],
+    ids=["blank", "comment", "doc", "between", "in a loop"],
 )
 def test_a_line_without_code_holds_at_the_next_one_that_has(debug: Callable[..., Driver], line: int, held: int) -> None:
     assert debug(BLANKS, breaks=(str(line),)).paused().line == held
