@@ -57,6 +57,17 @@ def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
     assert "line 2" in done.stderr
 
 
+def test_json_stands_alone_on_stdout_also_for_all_cells(here: Command, tmp_path: Path) -> None:
+    lesson = write(tmp_path / "lesson.ipynb", LESSON)
+    done = here("run", lesson, "--all", "--json")
+    states = [json.loads(line)["state"] for line in done.stdout.splitlines()]
+    assert states == ["finished", "finished", "raised"]
+    # A list would be no answer to one that wants data.
+    done = here("run", lesson, "--json")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "has 3 program cells, and none is named (--all, or " in done.stderr
+
+
 @pytest.mark.slow
 def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
     cells = [("code", f"%%sim_magic_preloaded -x {100 * at}\nprint('Number: {at}')\n") for at in range(20)]

@@ -57,6 +57,7 @@ def execute(arguments: Namespace) -> int:
         HostError: a child process could not be started or spoke nonsense.
     """
     if listed := to_list(arguments.programs, run_all=arguments.all):
+        _check_only_listed(arguments, len(listed))
         print_list(arguments.programs[0], listed)
         return 0
     # All input is checked before the first program runs.
@@ -82,9 +83,16 @@ def execute(arguments: Namespace) -> int:
         export_samples(done, target)
     if telemetry is not None:
         export_telemetry(done[0], telemetry)
-    if arguments.all:
+    if arguments.all and not arguments.json:
         print_results(done)
     return code
+
+
+def _check_only_listed(arguments: Namespace, count: int) -> None:
+    """Complain if the words ask for what only a run gives."""
+    if arguments.json or arguments.export or arguments.telemetry is not None:
+        (word,) = arguments.programs
+        raise ConfigError(f"has {count} program cells, and none is named", f"--all, or {word}#1", file=word)
 
 
 def _run_all(prepared: Sequence[Prepared], arguments: Namespace, store: RunStore) -> tuple[int, list[StoredRun]]:
