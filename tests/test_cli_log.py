@@ -117,6 +117,8 @@ BAD = {
     "a column in it": (("calc", "{log}", "--expression", "lft"), "no column 'lft'"),
     "an even width": (("average", "{log}", "--width", "4"), "odd"),
     "no period": (("resample", "{log}", "--period", "0"), "above 0"),
+    "no numbers": (("derive", "{words}"), "no column of numbers (its columns are time, said)"),
+    "a name too long for the file system": (("summary", "x" * 300 + ".csv"), "File name too long"),
     "no such format": (("export", "{log}", "--out", "x.xls"), "unknown format"),
     "no robot": (("reckon", "{log}"), "robot"),
 }
@@ -124,10 +126,29 @@ BAD = {
 
 @pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
 def test_bad_input(here: Command, log: Path, words: tuple[str, ...], expected: str) -> None:
-    done = here("log", *(word.format(log=log) for word in words))
+    text = log.with_name("words.csv")
+    text.write_text("time,said\n0,a\n1,b\n")
+    done = here("log", *(word.format(log=log, words=text) for word in words))
     assert done.returncode == 2
     assert expected in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time,v\n0,0.30000000000000004\n300000,1.3\n300000,inf\n")
+    rows = [json.loads(line) for line in here("log", "derive", str(path), "--json").stdout.splitlines()]
+    assert [row["value"] for row in rows] == [0.1 + 0.2, 1.3, None]
+    assert rows[0]["derivative"] == (1.3 - (0.1 + 0.2)) / 3e5
+
+
+def test_no_column_takes_the_place_of_another(here: Command, tmp_path: Path) -> None:
+    path = tmp_path / "a.jsonl"
+    rows = ((0, None, 7), (1, "time", 5), (2, "result", 6))
+    path.write_text("".join(json.dumps({"time": t, "variable": n, "value": v}) + "\n" for t, n, v in rows))
+    frame = frame_of(here("log", "calc", str(path), "--expression", "2 * result").stdout)
+    assert list(frame.columns) == ["time", "time (2)", "result", "result (2)"]
+    assert frame.iloc[-1].tolist() == [2, 5, 6, 12]
 
 
 def test_help_lists_every_subcommand(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from argparse import Namespace
 from dataclasses import asdict
 from typing import Any
@@ -26,8 +25,7 @@ def summary(arguments: Namespace) -> int:
             figures = asdict(summary_of(series.values))
             quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
             times_s = series.time_s
-            first_s, last_s = (float(times_s.min()), float(times_s.max())) if len(times_s) else (math.nan, math.nan)
-            span = {"first_s": first_s, "last_s": last_s}
+            span = {"first_s": float(times_s.min()), "last_s": float(times_s.max())}
             rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
     number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), ".4g")
     show_rows(rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number})

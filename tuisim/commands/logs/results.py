@@ -43,9 +43,16 @@ def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
     if arguments.out:
         write_frame(frame, arguments)
     elif arguments.json:
-        print(frame.to_json(orient="records", lines=True, double_precision=15), end="")
+        _print_json(frame)
     else:
         frame.to_csv(_Terminal() if sys.stdout.isatty() else sys.stdout, index=False, lineterminator="\n")
+
+
+def _print_json(frame: pd.DataFrame) -> None:
+    """Print each row as an object; every number to its last bit, which the frame's own function does not do."""
+    names = [str(name) for name in frame.columns]
+    for cells in zip(*(frame[name].tolist() for name in frame.columns), strict=True):
+        print(json.dumps({name: _plain(cell) for name, cell in zip(names, cells, strict=True)}))
 
 
 class _Terminal:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +26,9 @@ from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.export import check_target
 from tuisim.datalog.opening import Log, Series
 from tuisim.datalog.opening.exporting import export_log
+from tuisim.datalog.opening.headings import unique_names
 from tuisim.datalog.opening.layout import is_numeric
+from tuisim.datalog.opening.notes import Notes
 from tuisim.datalog.opening.plain import numbers_of
 from tuisim.errors import ConfigError
 
@@ -66,21 +68,24 @@ def average(arguments: Namespace) -> int:
 
 def even(arguments: Namespace) -> int:
     """Every variable at even moments: one column each."""
-    import pandas as pd
-
     log = the_source(arguments)
     if arguments.period is None:
         raise ConfigError("at which period?", "such as --period 0.1", key="resample")
-    columns: dict[str, FloatArray] = {}
-    names = names_of(log, arguments)
-    all_series = [log.series(name) for name in names]
+    all_series = [log.series(name) for name in names_of(log, arguments)]
     start = min(float(series.time_s.min()) for series in all_series)
     stop = max(float(series.time_s.max()) for series in all_series)
     moments = even_moments(start, stop, arguments.period)
-    for name, series in zip(names, all_series, strict=True):
-        columns[name] = _at(series, moments, arguments.between)
-    show_frame(pd.DataFrame({"time": moments, **columns}), arguments)
+    show_frame(_beside_time(moments, all_series, arguments.between), arguments)
     return 0
+
+
+def _beside_time(moments_s: FloatArray, all_series: Sequence[Series], between: Between = HOLD) -> pd.DataFrame:
+    """What each series is at some moments: a column each, named so that none takes the place of another."""
+    import pandas as pd
+
+    names = unique_names(["time", *(series.name for series in all_series)], Notes())
+    columns = [moments_s, *(_at(series, moments_s, between) for series in all_series)]
+    return pd.DataFrame(dict(zip(names, columns, strict=True)))
 
 
 def _at(series: Series, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
@@ -95,7 +100,8 @@ def calculate(arguments: Namespace) -> int:
     log = the_source(arguments)
     frame = wide_frame(log)
     columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
-    show_frame(frame.assign(result=evaluate(arguments.expression, columns)), arguments)
+    result = unique_names([*columns, "result"], Notes())[-1]
+    show_frame(frame.assign(**{result: evaluate(arguments.expression, columns)}), arguments)
     return 0
 
 
@@ -106,9 +112,9 @@ def wide_frame(log: Log) -> pd.DataFrame:
     if not log.layout.variable:
         numeric = [n for n in log.table.column_names if is_numeric(log.table.schema.field(n).type)]
         return pd.DataFrame({name: numbers_of(log.table.column(name)) for name in numeric})
-    series = [log.series(name) for name in log.names]
+    series = [one for one in map(log.series, log.names) if len(one.rows)]
     moments = np.unique(np.concatenate([one.time_s for one in series]))
-    return pd.DataFrame({"time": moments, **{one.name: _at(one, moments) for one in series}})
+    return _beside_time(moments, series)
 
 
 def reckon(arguments: Namespace) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from tuisim.datalog.opening import Log, loading
@@ -18,7 +19,11 @@ from tuisim.errors import ConfigError, LogError, printable
 def is_file(word: str) -> bool:
     """Return whether a word means a file rather than a stored run: it is there, or could only be a file's name."""
     path = Path(word)
-    return word == STDIN or path.is_file() or path.is_fifo() or bool(path.suffix)
+    # Of a name that is too long for the file system even the question whether it is there is an error.
+    with suppress(OSError):
+        if path.is_file() or path.is_fifo():
+            return True
+    return word == STDIN or bool(path.suffix)
 
 
 def open_sources(arguments: Namespace) -> Iterator[Log]:
@@ -96,12 +101,16 @@ def names_of(log: Log, arguments: Namespace) -> tuple[str, ...]:
         LogError: there is no such variable.
     """
     wanted: Sequence[str] = arguments.variable
+    with_rows = [name for name in log.names if len(log.series(name).rows)]
+    if not with_rows:
+        hint = f"its columns are {', '.join(log.table.column_names)}"
+        raise LogError("no column of numbers", hint, file=log.title)
     if not wanted:
-        return log.names
+        return tuple(with_rows)
     found: list[str] = []
     for word in wanted:
-        matching = [name for name in log.names if name == word or name.partition(" #")[0] == word]
+        matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
         if not matching:
-            raise LogError(f"no variable {word!r}", f"there are {', '.join(log.names)}", file=log.title)
+            raise LogError(f"no variable {word!r}", f"there are {', '.join(with_rows)}", file=log.title)
         found += matching
     return tuple(dict.fromkeys(found))
