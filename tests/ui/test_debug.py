@@ -107,6 +107,20 @@ async def test_one_line_back_and_on_again(home: object) -> None:
         await press(pilot, app, "n", 3)
 
 
+@pytest.mark.parametrize("key", ["n", "u"], ids=["a line on", "on to the end of the program"])
+async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> None:
+    app = Lab(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 3, 4, 5, 6)
+        await press(pilot, app, "N", 5)
+        assert "past" in drawn(app)
+        await press(pilot, app, key, 6)
+        assert not app.debugging.is_away
+        assert "past" not in drawn(app) and "…" not in drawn(app)
+        await press(pilot, app, "n", 3)
+
+
 async def test_into_and_out_of_calls(home: object) -> None:
     app = Lab(settings(CALLS))
     async with app.run_test(size=(120, 40)) as pilot:

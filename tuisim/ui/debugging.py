@@ -9,7 +9,7 @@ from tuisim import protocol
 from tuisim.breaks import Break, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.errors import TuisimError
 from tuisim.protocol import UNKNOWN_ORDINAL, Looked, Message, Paused
-from tuisim.ui import breakstore
+from tuisim.ui import breakstore, travel
 from tuisim.ui.snapshot import PAUSED
 from tuisim.ui.stands import Position, StandIn
 
@@ -51,7 +51,7 @@ class Debugging:
         self._position: Position | None = None
         """The instant that is looked back at, to the line."""
         self._frame, self._thread = 0, ""
-        self._stand_in = StandIn(self._arrived, self._not_there)
+        self._stand_in = StandIn(self._arrived, self._not_there, self._came_to_now)
         self._wanted: Position | None = None
         """The instant that the stand-in was last sent to."""
         self._first: Message | None = None
@@ -238,7 +238,7 @@ class Debugging:
         if self._position is not None and timeline.at not in (None, self._position.tick):
             self._position = None
         if not self.looks_back:
-            if self.standing and self.standing.past:
+            if self.standing and self.standing.past and not self.busy:
                 self._back_to_now()
             return
         if timeline.at is not None and self._position is None and self._lab.desk.shown("debug"):
@@ -267,9 +267,12 @@ class Debugging:
         self.show()
 
     def _arrived(self, paused: Paused, looked: Looked) -> None:
-        timeline = self._lab.bridge.timeline
+        timeline, here = self._lab.bridge.timeline, Position(paused.tick, paused.ordinal)
         if self._wanted is None:
-            self._position = Position(paused.tick, paused.ordinal)
+            if not self._is_past(here):
+                self._came_to_now()
+                return
+            self._position = here
             timeline.go(paused.tick)
         elif timeline.at != self._wanted.tick:
             # Somebody has gone elsewhere meanwhile.
@@ -279,6 +282,17 @@ class Debugging:
         self._lab.situation_changed()
         if self._more_back:
             self.lines_back(0)
+
+    def _is_past(self, at: Position) -> bool:
+        """Whether an instant is a former one; a re-run may come farther than the run at hand."""
+        now = self._paused
+        if now is None or now.ordinal == UNKNOWN_ORDINAL:
+            return at.tick <= (self._lab.bridge.timeline.newest if now is None else now.tick)
+        return at.is_before(Position(now.tick, now.ordinal))
+
+    def _came_to_now(self) -> None:
+        travel.to_now(self._lab)
+        self._back_to_now()
 
     def _not_there(self, why: str) -> None:
         self._wanted, self._more_back = None, 0

@@ -45,6 +45,7 @@ class Position:
 
 Arrived = Callable[[Paused, Looked], None]
 Failed = Callable[[str], None]
+Passed = Callable[[], None]
 
 
 class StandIn:
@@ -53,10 +54,11 @@ class StandIn:
     Args:
         arrived: Told where it stands and what the program looks like there.
         failed: Told why it cannot stand there.
+        passed: Told that it went on and met the end of the program.
     """
 
-    def __init__(self, arrived: Arrived, failed: Failed) -> None:
-        self._arrived, self._failed = arrived, failed
+    def __init__(self, arrived: Arrived, failed: Failed, passed: Passed) -> None:
+        self._arrived, self._failed, self._passed = arrived, failed, passed
         self._run: RunHandle | None = None
         self._folder: Path | None = None
         self._of: Recording | None = None
@@ -70,6 +72,7 @@ class StandIn:
         self._then: protocol.Message | None = None
         """How to go on once it stands."""
         self._aim: Position | None = None
+        self._goes_on = False
         self.busy = False
         """Whether an answer is still to come."""
 
@@ -77,7 +80,7 @@ class StandIn:
 
     def go(self, recording: Recording, at: Position, look: protocol.Look) -> None:
         """Stand at an instant of a recording and look."""
-        self._look, self._back, self._then = look, 0, None
+        self._look, self._back, self._then, self._goes_on = look, 0, None, False
         self._go(recording, at, -1)
 
     def look(self, look: protocol.Look) -> None:
@@ -89,7 +92,7 @@ class StandIn:
 
     def go_on(self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Look) -> None:
         """Stand at an instant, go on from there as a command says, and look where that ends."""
-        self._look, self._back = look, 0
+        self._look, self._back, self._goes_on = look, 0, True
         stands = self._paused and Position(self._paused.tick, self._paused.ordinal)
         if self._run is not None and self._of is recording and stands == at:
             self.busy, self._paused = True, None
@@ -100,7 +103,7 @@ class StandIn:
 
     def lines_back(self, recording: Recording, at: Position, count: int, look: protocol.Look) -> None:
         """Stand so many lines before an instant."""
-        self._look, self._back, self._then = look, count, None
+        self._look, self._back, self._then, self._goes_on = look, count, None, False
         self._go(recording, at, max(0, at.tick - FIRST_WINDOW_TICKS))
 
     # How it gets there
@@ -149,7 +152,10 @@ class StandIn:
                     self._arrived(self._paused, event)
                 case Ended():
                     self.close()
-                    self._failed("The program has ended before that")
+                    if self._goes_on:
+                        self._passed()
+                    else:
+                        self._failed("The program has ended before that")
                     return
 
     def _stands(self, paused: Paused) -> None:
