@@ -247,6 +247,23 @@ CASES: dict[str, Case] = {
         b'{"time": 0, "\\ud800": 1, "": 2, "said": "\\udfff"}\n{"time": 1, "\\ud800": 3, "": 4}\n',
         Read(2, ("\\ud800", "(no name)"), check=lambda log: values(log, "(no name)") == [2, 4]),
     ),
+    "a json array": ("a.json", b'[{"time": 0, "red": 1}, {"time": 1, "red": 2}]', Read(2)),
+    "a json array with an object a line": (
+        "a.json",
+        b'[\n {"time": 0, "red": 1},\n {"time": 1, "red": 2}\n]\n',
+        Read(2),
+    ),
+    "truths in json": (
+        "a.jsonl",
+        b'{"on": true}\n{"on": false}\n',
+        Read(2, ("on",), check=lambda log: values(log, "on") == [1, 0]),
+    ),
+    "truths": (
+        "a.csv",
+        b"time,on\n0,True\n1,false\n2,\n" + b"4,TRUE\n" * 50_000 + b"5,maybe\n",
+        Read(50_004, ("on",), 1, "1 cells of 'on' hold neither true", lambda log: values(log, "on")[:2] == [1, 0]),
+    ),
+    "times that cannot be read": ("a.csv", b"time,red\nnoon,1\none,2\n", Read(2, note="'time' cannot be read")),
     "json nested without end": ("a.jsonl", b"[" * 100_000 + b'\n{"time": 0, "red": 1}\n', Read(1, left_out=1)),
     "printed lines": (
         "a.txt",

@@ -100,6 +100,15 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 def _named(part: pa.Table, notes: Notes) -> pa.Table:
     # Renaming alone would lose what the file says about itself.
     renamed = part.rename_columns(unique_names(part.column_names, notes))
+    for at, field in enumerate(part.schema):
+        if pa.types.is_decimal(field.type):
+            renamed = renamed.set_column(
+                at, renamed.field(at).with_type(pa.float64()), part.column(at).cast(pa.float64())
+            )
+        elif pa.types.is_string_view(field.type):
+            renamed = renamed.set_column(
+                at, renamed.field(at).with_type(pa.string()), part.column(at).cast(pa.string())
+            )
     return renamed.replace_schema_metadata(part.schema.metadata)
 
 

@@ -13,7 +13,7 @@ import pyarrow.csv as pa_csv
 from tuisim.datalog.opening.headings import unique_names
 from tuisim.datalog.opening.lines import Block
 from tuisim.datalog.opening.notes import Notes
-from tuisim.datalog.opening.numbers import EMPTY_CELLS, are_numbers, parsed_numbers
+from tuisim.datalog.opening.numbers import EMPTY_CELLS, are_booleans, are_numbers, parsed_booleans, parsed_numbers
 from tuisim.datalog.opening.plain import texts_array
 from tuisim.datalog.opening.texts import CODED, text_kind
 
@@ -127,17 +127,21 @@ class CsvReader:
             numeric = are_numbers(cells, self._decimal_comma)
             if numeric is None:
                 return pa.nulls(len(cells), pa.float64())
-            self._kinds[name] = pa.float64() if numeric else text_kind(cells)
+            truths = not numeric and are_booleans(cells)
+            self._kinds[name] = pa.float64() if numeric else pa.bool_() if truths else text_kind(cells)
         kind = self._kinds[name]
         if cells.type == kind:
             return cells
         if kind == CODED:
             return cells.dictionary_encode()
-        numbers, wrong = parsed_numbers(cells, self._decimal_comma)
+        truths = kind == pa.bool_()
+        numbers, wrong = parsed_booleans(cells) if truths else parsed_numbers(cells, self._decimal_comma)
         if (count := _count(wrong)) > 0:
             at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
             where = [rows[index] for index in at] if rows else _rows_at(block, at)
-            self._notes.add(f"cells of {name!r} hold no number", where, count)
+            self._notes.add(
+                f"cells of {name!r} hold {'neither true nor false' if truths else 'no number'}", where, count
+            )
         return numbers
 
 

@@ -1,4 +1,4 @@
-"""Tables as JSON: one object a line."""
+"""Tables as JSON: one object a line, or an array of them."""
 
 from __future__ import annotations
 
@@ -30,13 +30,17 @@ class JsonReader:
         found: list[tuple[int, dict[str, Any]]] = []
         broken: list[int] = []
         for row, line in block.lines():
+            text = line.strip()
+            if text in ("[", "]", "[]"):
+                continue
             try:
-                value = json.loads(line)
+                value = json.loads(text.removesuffix(","))
             except (ValueError, RecursionError):
                 broken.append(row)
                 continue
-            if isinstance(value, dict):
-                found.append((row, value))
+            objects = value if isinstance(value, list) else [value]
+            if objects and all(isinstance(one, dict) for one in objects):
+                found += [(row, one) for one in objects]
             else:
                 broken.append(row)
         if broken:
@@ -64,7 +68,8 @@ class JsonReader:
 
 
 def _is_number(cell: object) -> bool:
-    return isinstance(cell, int | float) and not isinstance(cell, bool)
+    # What is true or false is 1 or 0.
+    return isinstance(cell, int | float)
 
 
 def _float(cell: float) -> float:

@@ -19,6 +19,8 @@ ROW = ""
 _TIME_NAMES = ("time", "time_s", "t", "seconds", "sec", "elapsed", "timestamp", "datetime", "date", "index", "x")
 """Names of time columns, the surest first; ends such as `_ms` tell the unit."""
 
+_TEXT_TIMES = frozenset(_TIME_NAMES) - {"index", "x"}
+
 _UNITS_S = {**SECONDS, "sec": 1.0, "µs": 1e-6}
 _VARIABLE_NAMES = ("variable", "name", "sensor", "channel", "signal", "key", "metric")
 _VALUE_NAMES = ("value", "val", "y", "reading", "measurement")
@@ -51,7 +53,7 @@ def is_numeric(kind: pa.DataType) -> bool:
 
 def is_time(kind: pa.DataType) -> bool:
     """Return whether a column holds moments or spans of time."""
-    return bool(pa.types.is_temporal(kind))
+    return bool(pa.types.is_temporal(kind) and not pa.types.is_interval(kind))
 
 
 def guessed(table: pa.Table) -> Layout:
@@ -90,6 +92,14 @@ def _named_time(table: pa.Table) -> str:
             if name and _is_usable(table, name):
                 return name
     return ROW
+
+
+def unread_time(table: pa.Table, layout: Layout) -> str:
+    """Return the column that should be the time by its name, but whose texts say none; empty if there is none."""
+    if layout.time:
+        return ""
+    named = (name for name in table.column_names if name.lower() in _TEXT_TIMES)
+    return next((name for name in named if _is_text(table.schema.field(name).type)), "")
 
 
 def _rising(table: pa.Table, besides: str = "") -> str:

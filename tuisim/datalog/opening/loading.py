@@ -17,7 +17,7 @@ from tuisim.datalog.formats import companion_of
 from tuisim.datalog.opening.binary import ARROW_MAGIC, PARQUET_MAGIC, arrow_parts, metadata_in, parquet_parts
 from tuisim.datalog.opening.csv_text import CsvReader
 from tuisim.datalog.opening.json_lines import JsonReader
-from tuisim.datalog.opening.layout import chosen
+from tuisim.datalog.opening.layout import chosen, unread_time
 from tuisim.datalog.opening.lines import BLOCK_BYTES, Block, LineCutter
 from tuisim.datalog.opening.log import Log
 from tuisim.datalog.opening.notes import Notes
@@ -117,6 +117,8 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
         layout = chosen(table, *named)
     except LogError as error:
         raise LogError(str(error), file=title) from error
+    if named[0] is None and (unread := unread_time(table, layout)):
+        notes.say(f"the times in {unread!r} cannot be read: the rows are counted")
     metadata = metadata_in(parts[0].schema) or _metadata_beside(Path(title))
     return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
 

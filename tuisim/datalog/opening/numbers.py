@@ -39,6 +39,25 @@ def parsed_numbers(cells: pa.Array, decimal_comma: bool) -> tuple[pa.Array, pa.A
         return pc.cast(pc.if_else(good, texts, nothing), pa.float64()), wrong
 
 
+def parsed_booleans(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
+    """Return cells as booleans, with nulls for those that hold none, and which cells were wrong.
+
+    Args:
+        cells: Texts such as `true` or `False`.
+    """
+    texts: Any = pc.utf8_lower(pc.utf8_trim_whitespace(cells))
+    known = pc.is_in(texts, value_set=texts_array(("true", "false")))
+    empty = pc.or_(pc.is_null(cells), pc.is_in(pc.utf8_trim_whitespace(cells), value_set=texts_array(EMPTY_CELLS)))
+    values = pc.if_else(known, pc.equal(texts, "true"), pa.nulls(len(texts), pa.bool_()))
+    return values, pc.invert(pc.or_(known, empty))
+
+
+def are_booleans(cells: pa.Array) -> bool:
+    """Return whether cells hold nothing but true and false, at least one of them."""
+    values, wrong = parsed_booleans(cells)
+    return values.null_count < len(values) and not pc.any(wrong).as_py()
+
+
 def are_numbers(cells: pa.Array, decimal_comma: bool) -> bool | None:
     """Return whether most of the cells are numbers, None if all are empty."""
     numbers, wrong = parsed_numbers(cells, decimal_comma)
