@@ -99,6 +99,25 @@ def test_plateaus(values: list[float], expected: list[tuple[int, int, float]]) -
     assert [(plateau.start, plateau.stop, plateau.level) for plateau in found] == expected
 
 
+@pytest.mark.parametrize("giant", [65535.0, -1e9, 1e300])
+def test_a_stray_giant_hides_no_step(giant: float) -> None:
+    values = np.repeat([100.0, 86.27, 100.0, 50.2, 0.0], 10)
+    values[[14, 33, 34]] = giant
+    found = plateaus(values)
+    assert [(plateau.start, plateau.stop, plateau.level, plateau.strays) for plateau in found] == [
+        (0, 10, 100.0, 0),
+        (10, 20, 86.27, 1),
+        (20, 30, 100.0, 0),
+        (30, 40, 50.2, 2),
+        (40, 50, 0.0, 0),
+    ]
+
+
+@pytest.mark.filterwarnings("error")
+def test_values_near_the_largest_number_do_no_harm() -> None:
+    plateaus(np.tile([1e308, -1e308], 20))
+
+
 def test_level_of_equal_samples_is_exact() -> None:
     grey = 86.27450980392157
     assert [plateau.level for plateau in plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))] == [

@@ -38,6 +38,9 @@ _NEAR_SAMPLES = 12
 _FEW_SAMPLES = 100
 """Up to so many are sorted as a list."""
 
+_GIANT = 1000.0
+"""A sample so many times the range beyond it is told from others no better by being farther off."""
+
 _STEP_OF_RANGE = 0.005
 """A step below this part of the range is no step, whatever the noise."""
 
@@ -91,6 +94,7 @@ def noise_of(values: FloatArray) -> float:
     return max(float(by_median), by_calm)
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
     """Return the plateaus of a log, in order; what is between them are edges.
 
@@ -103,11 +107,14 @@ def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
     if not len(clean):
         return []
     noise = noise_of(clean) if noise is None else noise
-    scale = float(np.ptp(clean))
+    low, high = _levels(clean)
+    scale = high - low
     # Without noise the price of a cut is what the smallest step that counts is worth.
-    least_step = max(scale * _STEP_OF_RANGE, _DUST * float(np.max(np.abs(clean))), 1e-12)
+    least_step = max(scale * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
     sigma = max(noise, least_step / _CERTAINTY)
-    pieces = _cut(clean, sigma)
+    # Squares of giants would leave no digits for the others.
+    far = _GIANT * max(scale, sigma)
+    pieces = _cut(np.clip(clean, low - far, high + far), sigma)
     # Twice: what a drift has cut into short pieces can hide a stray between them.
     for _ in range(2):
         pieces = _without_strays(clean, pieces, least_step, sigma)
@@ -126,6 +133,16 @@ def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
     return [
         Plateau(int(finite[p.start]), int(finite[p.stop - 1]) + 1, p.level, p.spread, p.drift, p.strays) for p in found
     ]
+
+
+def _levels(values: FloatArray) -> tuple[float, float]:
+    """Return the lowest and highest level: what stray samples, however far off, do not reach."""
+    if len(values) > _STRAY_SAMPLES:
+        parts = [values[at : len(values) - _STRAY_SAMPLES + at] for at in range(_STRAY_SAMPLES + 1)]
+        low, high = float(np.maximum.reduce(parts).min()), float(np.minimum.reduce(parts).max())
+        if low <= high:
+            return low, high
+    return float(values.min()), float(values.max())
 
 
 Pieces = list[tuple[int, int]]
