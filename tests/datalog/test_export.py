@@ -266,3 +266,14 @@ def test_importing_is_light(module: str) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@each_format
+def test_words_and_truths_of_other_tables_come_back(tmp_path: Path, suffix: str) -> None:
+    frame = pd.DataFrame(
+        {"grey": ["white", "=1+1", "pale, grey"], "sure": [True, False, True], "level": [100.0, 5.5, 1 / 3]}
+    )
+    export_frame(frame, tmp_path / f"a{suffix}", {"columns": list(frame.columns)})
+    got = read_log(tmp_path / f"a{suffix}")
+    assert got.to_dict("list") == frame.to_dict("list")
+    assert got["sure"].dtype == bool

@@ -59,8 +59,18 @@ def _read_csv(path: Path) -> pd.DataFrame:
     frame = pd.read_csv(path, dtype="str", keep_default_na=False, encoding="utf-8")
     for name in frame.columns:
         if name not in (*TIMEDELTA, *TEXT):
-            frame[name] = [_number(text) for text in frame[name].tolist()]
+            frame[name] = _cells(frame[name].tolist())
     return _typed(frame)
+
+
+def _cells(texts: list[str]) -> list[Any]:
+    """Return a column as numbers or truths if it holds nothing else, otherwise as it is."""
+    if texts and not set(texts) - {"True", "False"}:
+        return [text == "True" for text in texts]
+    try:
+        return [_number(text) for text in texts]
+    except ValueError:
+        return texts
 
 
 def _number(text: str) -> int | float:
