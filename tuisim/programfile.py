@@ -78,8 +78,13 @@ def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
             return
 
 
-def _beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
-    """The switches of a magic line with the files that they name found from the program's folder."""
+def beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the switches of a magic line with the files that they name found from a folder.
+
+    Args:
+        folder: Where the program is, or the notebook that holds it.
+        switches: By field of `Settings`.
+    """
     found = dict(switches)
     for field_name in _FILE_FIELDS & found.keys():
         word = found[field_name]
@@ -186,7 +191,7 @@ def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
         ConfigError: its magic line is wrong.
     """
     program = parse_program(text, name, str(path) if path else "")
-    return replace(program, switches=_beside(path.parent if path else Path.cwd(), program.switches))
+    return replace(program, switches=beside(path.parent if path else Path.cwd(), program.switches))
 
 
 def _decode(data: bytes, shown: str) -> str:

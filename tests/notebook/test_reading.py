@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
+from tuisim.notebook.reading import notebook_programs
 
 LESSON = [
     ("markdown", "# Lesson\n"),
@@ -55,6 +56,13 @@ def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
         ["lesson.ipynb#3", "raised", "0"],
     ]
     assert "line 2" in done.stderr
+
+
+def test_files_in_magics_are_looked_for_beside_the_notebook(tmp_path: Path) -> None:
+    cells = [("code", "%sim_magic -b ./maze.png"), ("code", "%%sim_magic -r bot.toml\npass\n")]
+    (found,) = notebook_programs(Path(write(tmp_path / "lesson.ipynb", cells)))
+    wanted = {"background": str(tmp_path / "maze.png"), "robot": str(tmp_path / "bot.toml")}
+    assert found.source.switches == wanted
 
 
 def test_json_stands_alone_on_stdout_also_for_all_cells(here: Command, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 from tuisim.errors import ConfigError
 from tuisim.notebook.words import lasting_after, parse_line
-from tuisim.programfile import PRELUDES, ProgramSource
+from tuisim.programfile import PRELUDES, ProgramSource, beside
 from tuisim.switches import nearest
 
 MAX_NOTEBOOK_BYTES = 64 << 20
@@ -73,7 +73,8 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
             title = headings[-1] if headings else title
         if kind != "code":
             continue
-        for magic, said in _magics(text, f"{path}, cell {place}"):
+        for magic, words in _magics(text, f"{path}, cell {place}"):
+            said = beside(path.parent, words)
             lasting = lasting_after(lasting, said)
             if magic["cell"]:
                 number = len(found) + 1
