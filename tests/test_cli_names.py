@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.cli import run_command
-from tuisim.errors import printable
+from tuisim.errors import MOST_LISTED, listed, printable
 
 EVIL = "a\x1b[31m\x9bb\x07"
 SHOWN = "a\ufffd[31m\ufffdb\ufffd"
@@ -57,3 +57,9 @@ def test_rows_for_a_program_are_as_they_are(log: str, capsys: pytest.CaptureFixt
 )
 def test_printable(text: str, shown: str) -> None:
     assert printable(text) == shown
+
+
+def test_of_many_names_some_are_listed() -> None:
+    assert listed(iter("ab")) == "a, b"
+    assert listed(()) == "none"
+    assert listed(map(str, range(10_000))).endswith(f", {MOST_LISTED - 1} and {10_000 - MOST_LISTED} more")

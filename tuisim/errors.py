@@ -13,6 +13,17 @@ goes to stderr, to a notice in the app, and to the notebook.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+MOST_LISTED = 20
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return names in words: the first ones, and how many more there are; `none` if there are none."""
+    every = list(names)
+    more = len(every) - MOST_LISTED
+    return ", ".join(every[:MOST_LISTED]) + (f" and {more} more" if more > 0 else "") or "none"
+
 
 def printable(text: str) -> str:
     """Return a text that stays on its line and that any terminal, font and file takes.

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.commands.logs.sources import names_of, the_source
-from tuisim.errors import ConfigError, LogError, printable
+from tuisim.errors import ConfigError, LogError, listed, printable
 from tuisim.ui.paper.chart import View, chart_of
 from tuisim.ui.paper.files import CHART_FORMATS, Size, format_of, save_chart
 
@@ -47,7 +47,7 @@ def plot(arguments: Namespace) -> int:
         _show(model, view, size)
     hidden = [trace.name for trace in model.traces if not trace.on]
     if hidden and not arguments.variable:
-        print(printable(f"note: not drawn: {', '.join(hidden)}; --variable NAME draws one"), file=sys.stderr)
+        print(printable(f"note: not drawn: {listed(hidden)}; --variable NAME draws one"), file=sys.stderr)
     return 0
 
 
@@ -55,7 +55,7 @@ def _check_seen(model: Model) -> None:
     """Make sure that there is something to draw."""
     ticked = model.traces.ticked()
     if not any(len(trace.pyramid.times_s) for trace in ticked):
-        raise LogError(f"no numbers in {', '.join(trace.name for trace in ticked)}", file=model.log.title)
+        raise LogError(f"no numbers in {listed(trace.name for trace in ticked)}", file=model.log.title)
     if not any(len(trace.pyramid.between(*model.x_limits())[0]) for trace in ticked):
         low, high = model.traces.span_s()
         raise LogError("no samples in that time", f"they lie between {low:g} s and {high:g} s", file=model.log.title)

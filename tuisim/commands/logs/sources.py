@@ -13,7 +13,7 @@ from tuisim.datalog.opening.layout import chosen
 from tuisim.datalog.opening.loading import STDIN
 from tuisim.datalog.opening.runs import log_of_runs, telemetry_log
 from tuisim.datalog.store import RunStore
-from tuisim.errors import ConfigError, LogError, printable
+from tuisim.errors import ConfigError, LogError, listed, printable
 
 
 def is_file(word: str) -> bool:
@@ -103,7 +103,7 @@ def names_of(log: Log, arguments: Namespace) -> tuple[str, ...]:
     wanted: Sequence[str] = arguments.variable
     with_rows = [name for name in log.names if len(log.series(name).rows)]
     if not with_rows:
-        hint = f"its columns are {', '.join(log.table.column_names)}"
+        hint = f"its columns are {listed(log.table.column_names)}"
         raise LogError("no column of numbers", hint, file=log.title)
     if not wanted:
         return tuple(with_rows)
@@ -111,6 +111,6 @@ def names_of(log: Log, arguments: Namespace) -> tuple[str, ...]:
     for word in wanted:
         matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
         if not matching:
-            raise LogError(f"no variable {word!r}", f"there are {', '.join(with_rows)}", file=log.title)
+            raise LogError(f"no variable {word!r}", f"there are {listed(with_rows)}", file=log.title)
         found += matching
     return tuple(dict.fromkeys(found))

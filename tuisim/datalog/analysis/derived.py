@@ -15,7 +15,7 @@ from tuisim.datalog.analysis.signals import derivative, integral, known_in_order
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.opening.layout import is_numeric
 from tuisim.datalog.opening.log import Log, Series
-from tuisim.errors import LogError
+from tuisim.errors import LogError, listed
 
 TIME = "time"
 """Name of the times of the samples in an expression."""
@@ -124,7 +124,7 @@ def _column(log: Log, name: str, base: Series) -> FloatArray:
         return log.numbers(name)[base.rows]
     numbers = [at.name for at in schema if is_numeric(at.type)]
     there = dict.fromkeys((*(known.partition(" #")[0] for known in log.names), *numbers, TIME))
-    raise LogError(f"no variable {name!r}", f"there are {', '.join(there)}", file=log.title)
+    raise LogError(f"no variable {name!r}", f"there are {listed(there)}", file=log.title)
 
 
 def _of_signal(base: Series, change: Any, values: Any) -> FloatArray:

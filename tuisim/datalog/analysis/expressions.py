@@ -7,14 +7,16 @@ not in the tables below does not exist, so that an expression can reach nothing 
 from __future__ import annotations
 
 import ast
+import math
 import operator
+import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 from tuisim.datalog.arrays import FloatArray
-from tuisim.errors import LogError
+from tuisim.errors import LogError, listed
 
 MAX_CHARS = 1000
 ALLOWED = "numbers, columns, + - * / // % ** < <= > >= == != and or not, a if b else c, and functions"
@@ -167,7 +169,8 @@ class _Evaluation:
         """
         match node:
             case ast.Constant(value=bool() | int() | float() as number):
-                return float(number)
+                # A whole number may have more digits than the largest float.
+                return float(number) if number <= sys.float_info.max else math.inf
             case ast.Name(id=name):
                 return self._named(self._names.get(name, name))
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
@@ -200,7 +203,7 @@ class _Evaluation:
             return np.asarray(self._columns[name], np.float64)
         if name in CONSTANTS:
             return CONSTANTS[name]
-        raise LogError(f"no column {name!r}", f"there are {', '.join(self._columns) or 'none'}")
+        raise LogError(f"no column {name!r}", f"there are {listed(self._columns)}")
 
     def _called(self, name: str, arguments: list[ast.expr]) -> Any:
         if name not in self._functions:

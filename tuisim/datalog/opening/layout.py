@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from tuisim.datalog.opening.plain import numbers_of
 from tuisim.datalog.units import SECONDS
-from tuisim.errors import LogError
+from tuisim.errors import LogError, listed
 
 ROW = ""
 """Instead of a time column: the samples are counted."""
@@ -185,4 +185,4 @@ def _require(table: pa.Table, name: str) -> None:
     if name not in table.column_names:
         near = get_close_matches(name, table.column_names, 1)
         hint = f"did you mean {near[0]!r}? " if near else ""
-        raise LogError(f"no column {name!r}", f"{hint}there are {', '.join(table.column_names)}")
+        raise LogError(f"no column {name!r}", f"{hint}there are {listed(table.column_names)}")

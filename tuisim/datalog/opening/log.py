@@ -14,7 +14,7 @@ from tuisim.datalog.opening.layout import ROW, Layout
 from tuisim.datalog.opening.members import Member, members
 from tuisim.datalog.opening.moments import seconds_of
 from tuisim.datalog.opening.plain import numbers_of
-from tuisim.errors import LogError
+from tuisim.errors import LogError, listed
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ class Log:
         if name not in self._kept.series:
             member = self._members().get(name)
             if member is None:
-                raise LogError(f"no variable {name!r}", f"there are {', '.join(self.names) or 'none'}", file=self.title)
+                raise LogError(f"no variable {name!r}", f"there are {listed(self.names)}", file=self.title)
             self._kept.series[name] = self._series(member)
         return self._kept.series[name]
 

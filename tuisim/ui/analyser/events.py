@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.datalog.analysis.crossings import Crossing, crossings
-from tuisim.errors import LogError
+from tuisim.errors import LogError, listed
 
 if TYPE_CHECKING:
     from tuisim.datalog.opening import Log, Series
@@ -88,7 +88,7 @@ def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
             raise LogError(f"no threshold: {part.strip()!r}", FORM)
         names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
         if threshold.name not in log.names and threshold.name not in names:
-            raise LogError(f"no variable {threshold.name!r}", f"there are {', '.join(names)}", file=log.title)
+            raise LogError(f"no variable {threshold.name!r}", f"there are {listed(names)}", file=log.title)
         found.append(threshold)
     return tuple(found)
 

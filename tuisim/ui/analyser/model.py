@@ -17,7 +17,7 @@ from tuisim.datalog.analysis.statistics import Summary, summary_of
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.notes import Note, read_notes, write_notes
 from tuisim.datalog.opening.layout import is_numeric
-from tuisim.errors import LogError
+from tuisim.errors import LogError, listed
 from tuisim.ui.analyser.aligning import TIME, aligned
 from tuisim.ui.analyser.deriving import derive
 from tuisim.ui.analyser.events import Events
@@ -136,7 +136,7 @@ class Model:
         if name not in self.log.table.column_names or not is_numeric(self.log.table.column(name).type):
             numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
             known = dict.fromkeys((*self.log.names, *numbers))
-            raise LogError(f"no variable {name!r}", f"there are {', '.join(known)}", file=self.log.title)
+            raise LogError(f"no variable {name!r}", f"there are {listed(known)}", file=self.log.title)
         return self.log.numbers(name)[series.rows]
 
     def run_of(self, row: int) -> int:

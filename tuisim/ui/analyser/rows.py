@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tuisim.errors import LogError
+from tuisim.errors import LogError, listed
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -53,7 +53,7 @@ def conditions_of(text: str, columns: list[str]) -> list[Condition]:
             raise LogError(f"no condition: {part!r}", FORM)
         condition = Condition(match["column"], match["op"], match["value"].strip("'\""))
         if condition.column not in columns:
-            raise LogError(f"no column {condition.column!r}", f"there are {', '.join(columns)}")
+            raise LogError(f"no column {condition.column!r}", f"there are {listed(columns)}")
         found.append(condition)
     return found
 

@@ -12,7 +12,7 @@ from tuisim.datalog.analysis.bands import Plateau, plateaus
 from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.export import check_place
-from tuisim.errors import ExportError, LogError
+from tuisim.errors import ExportError, LogError, listed
 from tuisim.ui.paper.chart import Chart, Span, View, chart_of
 from tuisim.ui.paper.facts import log_facts, run_facts
 from tuisim.ui.paper.files import FACET_PX, write_whole
@@ -144,7 +144,7 @@ def _chart(model: Model) -> list[str]:
     return [
         f"<figure>{svg_of(laid_out(chart, _WIDTH_PX, height, titled=False), inside=True)}</figure>",
         paragraph("The bands are shaded, with their levels.", soft=True) if spans else "",
-        paragraph(f"Not drawn: {', '.join(hidden)}", soft=True) if hidden else "",
+        paragraph(f"Not drawn: {listed(hidden)}", soft=True) if hidden else "",
     ]
 
 
