@@ -105,6 +105,17 @@ async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_p
         await until(pilot, lambda: app.bridge.state == ENDED)
 
 
+async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(tmp_path: Path) -> None:
+    async with Lab(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.alone == "code")
+        await pilot.press("i", "f", "enter", "ctrl+r")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.error_line == 1)
+        await pilot.pause()
+        assert app.desk.alone == "code"
+
+
 async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     example = programs()[0]

@@ -134,6 +134,11 @@ class CodeArea(TextArea):
             self._breaks = dict(breaks)
             self.refresh()
 
+    @property
+    def error_line(self) -> int:
+        """The line that is marked as wrong, 0 for none."""
+        return self._error
+
     def set_error(self, line: int) -> None:
         """Mark the line of an error, 0 for none."""
         before, self._error = self._error, line

@@ -41,9 +41,10 @@ class EditorWishes(TerminalApp):
             case "save":
                 self.work.save()
             case "run":
-                # The robot is to be seen.
-                self.desk.give_all("")
                 cast("Lab", self).action_act("run")
+                # The robot is to be seen, or where the text is wrong.
+                if not (self.desk.code and self.desk.code.error_line):
+                    self.desk.give_all("")
             case "new" | "open":
                 cast("Lab", self).action_act(message.what)
             case _:

@@ -155,6 +155,11 @@ class Code(Vertical):
         """Mark the line of the run's text at which it ended with an error, as far as it is there; 0 for none."""
         self.mark_error(self._line_shown(line))
 
+    @property
+    def error_line(self) -> int:
+        """The line that is marked as wrong, 0 for none."""
+        return self._area.error_line
+
     def mark_error(self, line: int) -> None:
         """Mark the line of an error; 0 takes the mark away."""
         self._area.set_error(line)
