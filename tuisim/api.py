@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config import build_run_spec
-from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import STDOUT
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
@@ -42,7 +41,7 @@ class SimulatedRun:
     @property
     def time_s(self) -> float:
         """Simulated seconds that it took."""
-        return self.stored.end.time_ns / NS_PER_S if self.stored.end else 0.0
+        return self.stored.time_s
 
     @property
     def output(self) -> str:

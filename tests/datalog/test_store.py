@@ -160,6 +160,8 @@ def test_killed_run_keeps_its_rows(record: Callable[..., Recorder], spec: RunSpe
     assert store.runs() == [info]
     run = store.load_run("1")
     assert (run.end, run.state, len(run.output.all_rows()), run.telemetry.count) == (None, INTERRUPTED, 2, 4)
+    assert run.time_s == info.time_s
+    assert run.time_s > 0
 
 
 def test_end_that_comes_late_counts(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:

@@ -120,6 +120,12 @@ def test_other_magics_tell_mistakes_in_one_line(line: str, cell: Cell) -> None:
     assert shown.err.count("\n") == 1
 
 
+def test_what_is_not_logged_is_told_in_words(cell: Cell) -> None:
+    assert "no pixel arrays are logged" in cell("%sim_image_pair").err
+    cell(program("-RWH", "print('image_data left')"))
+    assert "no pixel arrays 1 (0 … 0 are logged" in cell("%sim_bw_image_data -i 1").err
+
+
 def test_a_new_mat_brings_its_own_start(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands -x 700")
     assert cell("%sim_robot_state").result["x_mm"] == 700

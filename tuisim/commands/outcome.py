@@ -6,7 +6,6 @@ import json
 import sys
 from typing import Any
 
-from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import STDERR, STDOUT
 from tuisim.datalog.runfile import RunEnd, StoredRun
 from tuisim.datalog.samples import parse_sample
@@ -48,7 +47,7 @@ def describe(run: StoredRun) -> dict[str, Any]:
         "seed": run.spec.seed,
         "state": run.state,
         "tick": last.tick if last else 0,
-        "time_s": (end.time_ns if end else last.tick * NS_PER_S // run.spec.profile.tick_hz if last else 0) / NS_PER_S,
+        "time_s": run.time_s,
         "x_mm": last.x_mm if last else run.spec.world.start.x_mm,
         "y_mm": last.y_mm if last else run.spec.world.start.y_mm,
         "heading_deg": last.heading_deg if last else run.spec.world.start.heading_deg,

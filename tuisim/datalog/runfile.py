@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from tuisim.atomic import replacing
+from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
 from tuisim.datalog.lock import is_held
 from tuisim.datalog.records import ACTIONS_FILE
@@ -140,6 +141,14 @@ class StoredRun:
         if self.end is not None:
             return self.end.end
         return state_without_end(self.folder)
+
+    @property
+    def time_s(self) -> float:
+        """Simulated seconds: to its end, or while there is none to the newest tick."""
+        if self.end is not None:
+            return self.end.time_ns / NS_PER_S
+        last = self.telemetry.last()
+        return -(-last.tick * NS_PER_S // self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
 
     def noise_at(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a telemetry record."""

@@ -97,6 +97,13 @@ def picture_of(vals: Iterable[int]) -> Image:
     return Image.frombytes("RGBA", (side, side), data)
 
 
+def _check_logged(index: int, count: int) -> None:
+    if not count:
+        raise LogError("no pixel arrays are logged", "print('image_data both') in the program logs some")
+    if not -count <= index < count:
+        raise LogError(f"no pixel arrays {index}", f"0 … {count - 1} are logged; -1 means the last")
+
+
 def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
     """Return the pictures of left and right that were logged at one moment.
 
@@ -108,8 +115,7 @@ def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
         LogError: there is no such moment.
     """
     moments = frame[["run", "clock"]].drop_duplicates().to_numpy()
-    if not -len(moments) <= index < len(moments):
-        raise LogError(f"no pixel arrays {index}", f"{len(moments)} are logged; print('image_data both') logs more")
+    _check_logged(index, len(moments))
     run, clock = moments[index]
     here = frame[(frame.run == run) & (frame.clock == clock)].drop_duplicates("side")
     return [picture_of(vals) for vals in here.vals]
@@ -129,7 +135,6 @@ def bw_image_data(frame: pd.DataFrame, index: int = -1, threshold: int = 127) ->
     import numpy as np
     import pandas as pd
 
-    if not -len(frame) <= index < len(frame):
-        raise LogError(f"no pixel array {index}", f"{len(frame)} are logged; print('image_data both') logs more")
+    _check_logged(index, len(frame))
     grey = np.asarray(picture_of(frame.vals.iloc[index]).convert("L"))
     return pd.DataFrame((grey <= threshold).astype(int))

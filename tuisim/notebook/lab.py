@@ -101,7 +101,7 @@ class Lab:
             "heading_deg": pose.heading_deg,
             "left_position_deg": record.left_position_deg if record else 0.0,
             "right_position_deg": record.right_position_deg if record else 0.0,
-            "time_s": self._last.end.time_ns / 1e9 if self._last and self._last.end else 0.0,
+            "time_s": self._last.time_s if self._last else 0.0,
             "background": self.spec.world.background,
             "profile": self.spec.profile.name,
             "seed": self.spec.seed,

@@ -110,7 +110,7 @@ def told_end(run: StoredRun, *, hurry: bool = False) -> str:
         hurry: Leave out the samples, if they would take long to count.
     """
     what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
-    told = f"{run.state}{what} · {run.end.time_ns / 1e9 if run.end else 0.0:.3f} s"
+    told = f"{run.state}{what} · {run.time_s:.3f} s"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return told
     samples = sum(1 for _ in samples_of(run.output.rows()))
