@@ -353,3 +353,16 @@ def test_named_columns(tmp_path: Path) -> None:
     log = open_log(path, "clock_ms", ("blue",))
     assert log.names == ("blue",)
     assert times(log, "blue") == [0.1, 0.2]
+
+
+@pytest.mark.parametrize("content", [parquet(), arrow(), gzip.compress(CSV.encode())], ids=["parquet", "arrow", "gzip"])
+def test_a_pipe_brings_text_only(content: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content)))
+    with pytest.raises(LogError, match="only text can be read from a pipe"):
+        open_log("-")
+
+
+def test_standard_input_that_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", None)
+    with pytest.raises(LogError, match="is closed"):
+        open_log("-")

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 import pyarrow as pa
 
@@ -162,6 +162,9 @@ def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
 
 def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
     if str(source) == STDIN:
+        # A shell may close it, whatever its type says.
+        if cast("Any", sys.stdin) is None:
+            raise LogError("is closed", "name a file instead of -", file="standard input")
         yield from text_parts(sys.stdin.buffer, 0, "", notes)
         return
     path = Path(source)
@@ -202,6 +205,8 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
     read = 0
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
+        if not read and data.startswith((PARQUET_MAGIC, ARROW_MAGIC, _GZIP_MAGIC)):
+            raise LogError("only text can be read from a pipe", "name the Parquet, Arrow or compressed file itself")
         read += len(data)
         block = cutter.feed(data) if data else cutter.finish()
         if block is not None:
