@@ -13,7 +13,8 @@ from tuisim.commands.follow import Follower
 from tuisim.commands.notebooks import print_list, print_results, to_list
 from tuisim.commands.prepare import Prepared, prepare_runs
 from tuisim.commands.press import parse_press, press_actions
-from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
+from tuisim.commands.targets import check_targets
+from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
@@ -68,13 +69,7 @@ def execute(arguments: Namespace) -> int:
             field_files(one.spec)
     check_breaks(arguments.breaks, arguments.watches, prepared)
     telemetry = arguments.telemetry
-    for target in (*arguments.export, telemetry):
-        if target is not None:
-            check_target(target)
-    targets = [os.path.realpath(target) for target in (*arguments.export, telemetry) if target is not None]
-    for target in targets:
-        if targets.count(target) > 1:
-            raise ConfigError(f"{target} is named twice", "give each export its own file", key="--export")
+    check_targets(target for target in (*arguments.export, telemetry) if target is not None)
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
     store = RunStore()

@@ -13,7 +13,8 @@ from tempfile import TemporaryDirectory
 from tuisim.commands.logs.comparing import diff_text
 from tuisim.commands.outcome import describe, last_state
 from tuisim.commands.tables import table
-from tuisim.datalog.export import EXPORTERS, check_target, export_samples, export_telemetry
+from tuisim.commands.targets import check_targets
+from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
 from tuisim.datalog.runfile import RUNNING, StoredRun
 from tuisim.datalog.store import COMPACT_TICKS, RunStore, compact_run
@@ -64,9 +65,9 @@ def execute(arguments: Namespace) -> int:
             for run in _load(store, words):
                 _show(run, as_json=arguments.json)
         case "rm" if words:
-            # All are looked up before the first is gone.
-            for found in [store.find(word) for word in words]:
-                store.remove(found.id)
+            # All are looked up before the first is gone; one may be named twice.
+            for run_id in dict.fromkeys([store.find(word).id for word in words]):
+                store.remove(run_id)
         case "rerun" if words:
             return max(_rerun(run, as_json=arguments.json) for run in _load(store, words))
         case "compact" if words or arguments.all:
@@ -171,9 +172,7 @@ def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> Non
         raise ConfigError("needs a run and a file", hint, key="export")
     if telemetry is not None and len(names) > 1:
         raise ConfigError("takes one run", f"got {len(names)}", key="--telemetry")
-    for target in (*files, telemetry):
-        if target is not None:
-            check_target(target)
+    check_targets(target for target in (*files, telemetry) if target is not None)
     runs = _load(store, names)
     for note in (note for run in runs for note in run.notes):
         print(f"note: {note}", file=sys.stderr)
