@@ -220,3 +220,14 @@ def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: P
     again = rerun(run, RunStore())
     over(again)
     assert same(run, RunStore().load_run(again.run_id)).same
+
+
+def test_a_differing_line_is_numbered_as_people_see_it(home: Path) -> None:
+    spec, runs = build_run_spec(Settings(robot="Explorer")), []
+    for word in ("one", "two"):
+        handle = start_run(Program("arm.py", f"print('first'){ARM}print('{word}')\n"), spec, RunOptions())
+        over(handle)
+        runs.append(RunStore().load_run(handle.run_id))
+    found = diff_runs(*runs).output
+    assert found is not None
+    assert (found.row, found.first, found.second) == (2, "one", "two")

@@ -40,7 +40,7 @@ class RowDifference:
     """The first place at which two runs' rows differ; None stands for a run that has no more."""
 
     row: int
-    """Counted from 1."""
+    """Counted from 1, of those that people see: a row of a motor has the number of the line that comes next."""
     first: str | None
     second: str | None
     times_s: tuple[float | None, float | None]
@@ -202,13 +202,16 @@ def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
 
 
 def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDifference | None:
-    for number, (left, right) in enumerate(zip_longest(one, two), 1):
+    number = 1
+    for left, right in zip_longest(one, two):
         if left is None and prefix:
             return None
         if left is None or right is None or left[0] != right[0]:
             _, was, was_s = left or (None, None, None)
             _, now, now_s = right or (None, None, None)
             return RowDifference(number, was, now, (was_s, now_s))
+        # Rows of motors, lights and pictures are compared too, but nobody has seen them to count.
+        number += not isinstance(left[0], OutputRow) or left[0].stream in TEXT_STREAMS
     return None
 
 
