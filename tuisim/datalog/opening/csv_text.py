@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pyarrow as pa
@@ -19,6 +19,8 @@ from tuisim.datalog.opening.texts import CODED, text_kind
 
 SEPARATORS = (",", ";", "\t", "|")
 _SNIFFED_LINES = 30
+_MOST_LINES, _MOST_JOINS = 100, 100
+"""Lines that a row may have, and how often one of several lines may turn out to be none."""
 
 
 class CsvReader:
@@ -33,6 +35,7 @@ class CsvReader:
         self._names: list[str] = []
         self._separator = ","
         self._decimal_comma = False
+        self._joins_left = _MOST_JOINS
         self._kinds: dict[str, pa.DataType] = {}
         """By column; missing while all its cells were empty."""
 
@@ -99,8 +102,7 @@ class CsvReader:
         """Cells line by line; short rows are filled up, long ones cut, both are noted."""
         width = len(self._names)
         rows, numbers, short, long = [], [], [], []
-        for row, line in block.lines():
-            cells = self._cells(line)
+        for row, cells in self._records(block):
             if len(cells) < width:
                 short.append(row)
                 cells += [""] * (width - len(cells))
@@ -113,6 +115,39 @@ class CsvReader:
         if long:
             self._notes.add("rows have too many cells: the rest is left out", long)
         return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
+
+    def _records(self, block: Block) -> Iterator[tuple[int, list[str]]]:
+        """Yield each row that is not blank with its cells; one in quotes may go on in the next lines."""
+        lines = block.text.decode("utf-8").split("\n")
+        after = 0
+        for at, line in enumerate(lines):
+            if at < after or not line or line.isspace():
+                continue
+            cells, after = self._joined(lines, at) if '"' in line else (None, at + 1)
+            yield block.first_row + at, self._cells(line.rstrip("\r")) if cells is None else cells
+
+    def _joined(self, lines: Sequence[str], at: int) -> tuple[list[str] | None, int]:
+        """The cells of a row of several lines and where the next row is; None if it is but one line."""
+        ahead = [line + "\n" for line in lines[at : at + _MOST_LINES]]
+        reader = csv.reader(ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True)
+        try:
+            cells = next(reader)
+        except csv.Error:
+            cells = []
+        further = lines[at + 1 : at + reader.line_num]
+        if further and len(cells) == len(self._names) and not any(map(self._is_row, further)):
+            return cells, at + reader.line_num
+        if further:
+            # A quote that is never closed is but a character; looking for its end in each line would take too long.
+            self._joins_left -= 1
+        return None, at + 1
+
+    def _is_row(self, line: str) -> bool:
+        """Whether a line seems to be a row by itself rather than text between quotes."""
+        cells = line.split(self._separator)
+        if len(cells) != len(self._names):
+            return False
+        return '"' not in line or bool(are_numbers(texts_array(cells[:1]), self._decimal_comma))
 
     def _cells(self, line: str) -> list[str]:
         try:
