@@ -298,6 +298,7 @@ HELD_THEN_STOPPED = {
     "at a line": (CALLS, {"hold_at": FIRST_LINE}),
     "at a tick": (CALLS, {"hold_at": (3, BEFORE_NEXT_TICK)}),
     "in a thread": (THREADS, {"breaks": ("5",)}),
+    "in a print of a thread": (THREADS, {"breaks": ("print matches A 0",)}),
     "in a print": (DRIVE, {"breaks": ("sample N",)}),
     "with a loop around": (
         "while True:\n    try:\n        x = 1\n    except BaseException:\n        pass",
@@ -309,10 +310,11 @@ HELD_THEN_STOPPED = {
 @pytest.mark.parametrize(("text", "how"), HELD_THEN_STOPPED.values(), ids=HELD_THEN_STOPPED)
 def test_stop_works_wherever_it_holds(debug: Callable[..., Driver], text: str, how: dict[str, object]) -> None:
     driver = debug(text, **how)
-    driver.paused()
+    held = driver.paused()
     begun = time.monotonic()
     driver.run.stop()
-    assert driver.finish().end == "stopped"
+    ended = driver.finish()
+    assert (ended.end, ended.tick) == ("stopped", held.tick)
     assert time.monotonic() - begun < 1.5
 
 

@@ -249,7 +249,7 @@ class Debugger:
         if reason:
             file = "" if own else frame.f_code.co_filename
             moment = self._moment(line, reason, text, value, self._tracer.ordinal, file)
-            self._hold(moment, frame)
+            self._hold_in_thread(moment)
 
     def _is_reached(self, ordinal: int) -> bool:
         assert self._instant is not None
@@ -261,7 +261,7 @@ class Debugger:
         met = self._watcher.after_row(row, stream)
         if met is not None and self._session.stop_reason is None:
             line = self._session.program_line()
-            self._hold(self._moment(line, "break", *met, self._tracer.ordinal))
+            self._hold_in_thread(self._moment(line, "break", *met, self._tracer.ordinal))
 
     def _apart(self, work: Callable[[], bytes]) -> bytes | None:
         return apart(self._session, self._baton, work, CONDITION_LIMIT_S, self._take_more)
@@ -280,7 +280,20 @@ class Debugger:
         session.now = max(session.now, session.sim.due_ns(session.sim.tick))
         self._hold(self._moment(session.sim.line, reason, text, value, ordinal))
 
-    def _hold(self, moment: Paused, frame: types.FrameType | None = None) -> None:
+    def _hold_in_thread(self, moment: Paused) -> None:
+        """Stand still in the midst of what a thread does: a stop there ends all of them at once.
+
+        Raises:
+            StopProgram: the run is to stop.
+        """
+        try:
+            self._hold(moment)
+        except StopProgram as stop:
+            if self._baton.current is not self._baton.main:
+                self._baton.hand_to_main(stop)
+            raise
+
+    def _hold(self, moment: Paused) -> None:
         """Stand still until told to go on.
 
         Raises:
@@ -289,9 +302,4 @@ class Debugger:
         session = self._session
         self._trace_from = None if self._tracer.on else self._trace_from
         session.steering.hold(session, moment)
-        try:
-            session.checkpoint()
-        except StopProgram as stop:
-            if frame is not None and self._baton.current is not self._baton.main:
-                self._baton.hand_to_main(stop)
-            raise
+        session.checkpoint()
