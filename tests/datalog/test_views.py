@@ -6,12 +6,14 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.datalog.run_recorder import Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import TICK_RECORD
 from tuisim.datalog.records import (
@@ -198,3 +200,14 @@ def test_instant_has_what_the_sensors_need(spec: RunSpec) -> None:
     instant = instant_of(record, spec, NoiseSpec(5, 6))
     assert (instant.tick, instant.pose, instant.seed, instant.noise) == (12, record.pose, 3, NoiseSpec(5, 6))
     assert instant.turn_rate_dps == 100.0 * 56 / (2 * 180)
+
+
+def test_runs_that_are_over_keep_no_files_open(record: Callable[..., Recorder], spec: RunSpec) -> None:
+    recorder = record(spec)
+    recorder.drive(50, 50, 3)
+    recorder.print("a: 1")
+    recorder.end()
+    before = len(os.listdir("/proc/self/fd"))
+    views = [(TelemetryView(recorder.run.folder), OutputView(recorder.run.folder)) for _ in range(5)]
+    assert {(ticks.array().size, len(output.all_rows())) for ticks, output in views} == {(4, 1)}
+    assert len(os.listdir("/proc/self/fd")) == before

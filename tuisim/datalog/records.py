@@ -68,8 +68,10 @@ MOTORS = 8
 
 TELEMETRY_FILE = "telemetry.bin"
 OUTPUT_FILE = "output.bin"
-_TELEMETRY_CHUNK = 64 * 16384
-_OUTPUT_CHUNK = 1 << 16
+TELEMETRY_CHUNK = 64 * 16384
+OUTPUT_CHUNK = 1 << 16
+"""Bytes after the header that a recording has at least while it is written; then it is cut to its true size."""
+
 MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
 
@@ -118,7 +120,7 @@ class TelemetryWriter:
     """Appends tick records. The hot loop packs into `map` itself, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
-        self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, _TELEMETRY_CHUNK)
+        self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
         self._length = self._file.length
         self.count = 0
 
@@ -145,7 +147,7 @@ class OutputWriter:
     """Appends printed lines, each published at once."""
 
     def __init__(self, folder: Path) -> None:
-        self._file = _GrowingMap(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, _OUTPUT_CHUNK)
+        self._file = _GrowingMap(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
         self.length = 0
 
     def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: int) -> None:

@@ -8,10 +8,11 @@ once, when its content is wanted.
 from __future__ import annotations
 
 import mmap
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
@@ -20,8 +21,10 @@ from tuisim.core.state import TICK_RECORD, Instant
 from tuisim.datalog.compact import Packed, find_packed
 from tuisim.datalog.records import (
     HEADER_BYTES,
+    OUTPUT_CHUNK,
     OUTPUT_FILE,
     OUTPUT_MAGIC,
+    TELEMETRY_CHUNK,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
     TICK_FIELDS,
@@ -80,9 +83,17 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
 
 
 class _Mapped:
-    """A recording mapped for reading, and mapped again when it has outgrown the map; or unpacked."""
+    """A recording mapped for reading, and mapped again when it has outgrown the map; or unpacked, or read.
 
-    def __init__(self, path: Path, magic: bytes, record_bytes: int) -> None:
+    Args:
+        path: The file.
+        magic: What it begins with.
+        record_bytes: Of one record; 1 if they differ.
+        first_bytes: What a file has at least after its header while it is written.
+    """
+
+    def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
+        self._first_bytes = first_bytes
         self._path = path
         self._magic = magic
         self._record_bytes = record_bytes
@@ -118,7 +129,7 @@ class _Mapped:
     def _open(self) -> None:
         try:
             with open(self._path, "rb") as handle:
-                found = mmap.mmap(handle.fileno(), 0, access=mmap.ACCESS_READ)
+                found = self._content(handle)
         except FileNotFoundError:
             # Looked for in this order, a recording that is being packed is always found.
             self.packed = find_packed(self._path)
@@ -129,6 +140,13 @@ class _Mapped:
         if found[:HEADER_BYTES].strip(b"\0"):
             # The old map is not closed: arrays may still look at it, and it goes with the last of them.
             self._map = found
+
+    def _content(self, handle: BinaryIO) -> mmap.mmap | bytes:
+        size = os.fstat(handle.fileno()).st_size
+        if 0 < size < HEADER_BYTES + self._first_bytes:
+            # It is over, and small. A map would keep a file open, and of those a process may have few.
+            return handle.read()
+        return mmap.mmap(handle.fileno(), 0, access=mmap.ACCESS_READ)
 
 
 class TelemetryView:
@@ -142,7 +160,7 @@ class TelemetryView:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._file = _Mapped(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size)
+        self._file = _Mapped(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
 
     @property
     def count(self) -> int:
@@ -201,7 +219,7 @@ class OutputView:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._file = _Mapped(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1)
+        self._file = _Mapped(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1, OUTPUT_CHUNK)
         self._seen = 0
 
     @property
