@@ -116,3 +116,12 @@ def test_bad_input(here: Command, log: Path, tmp_path: Path, words: tuple[str, .
     assert expected in done.stderr
     assert len(done.stderr.splitlines()) == 1
     assert list(tmp_path.iterdir()) == [log]
+
+
+@pytest.mark.parametrize("times", ["1e18 1000000000000000128", "1e18 1e18", "0 5e-324"], ids=["two", "one", "tiny"])
+def test_times_that_lie_too_near(here: Command, tmp_path: Path, times: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time,red\n" + "".join(f"{time},{at}\n" for at, time in enumerate(times.split())))
+    for words in (("plot", "--size", "60x12"), ("plot", "--out", str(tmp_path / "a.svg"))):
+        done = here("log", words[0], str(path), *words[1:])
+        assert (done.returncode, done.stderr) == (0, "")

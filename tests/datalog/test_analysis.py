@@ -105,7 +105,7 @@ class TestSignals:
         got = value_at(column(1, 2), column(5, 7), column(0.5, 1.5, 9), LINEAR)
         assert_allclose(got, [NAN, 6, 7])
 
-    @pytest.mark.parametrize("period", [0.0, -1.0, NAN, 1e-9])
+    @pytest.mark.parametrize("period", [0.0, -1.0, NAN, math.inf, 1e-9])
     def test_resample_refuses(self, period: float) -> None:
         with pytest.raises(LogError, match="period"):
             resample(column(0, 100), column(1, 2), period)

@@ -11,7 +11,9 @@ import pyarrow.parquet as pq
 import pytest
 from numpy.testing import assert_allclose
 
+from tuisim.datalog.export import EXPORTERS
 from tuisim.datalog.opening import open_log
+from tuisim.datalog.opening.exporting import export_log
 from tuisim.datalog.opening.moments import seconds_of
 
 NAN = float("nan")
@@ -41,6 +43,21 @@ KINDS: dict[str, tuple[pa.Array, list[float]]] = {
 @pytest.mark.parametrize(("column", "expected"), KINDS.values(), ids=KINDS)
 def test_kinds(column: pa.Array, expected: list[float]) -> None:
     assert_allclose(seconds_of(pa.chunked_array([column]), 1.0), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("suffix", EXPORTERS)
+def test_columns_of_any_kind_are_exported(tmp_path: Path, suffix: str) -> None:
+    columns = {
+        "time": pa.array([dt.time(1), None], pa.time32("s")),
+        "date": pa.array([dt.datetime(2024, 1, 1), None]),
+        "variable": pa.array([b"\xff", None]),
+        "red": [1.0, 2.0],
+        "pixels": [[1, 2], None],
+    }
+    pq.write_table(pa.table(columns), tmp_path / "a.parquet")
+    log = open_log(tmp_path / "a.parquet")
+    export_log(log, log.table, tmp_path / f"b{suffix}")
+    assert open_log(tmp_path / f"b{suffix}").series("red").values.tolist() == [1, 2]
 
 
 def test_decimal_numbers_and_short_texts_of_parquet(tmp_path: Path) -> None:

@@ -84,9 +84,15 @@ def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
     names = [str(name) for name in frame.columns]
     columns = [frame[name].astype("str") if name in TIMEDELTA else frame[name] for name in frame.columns]
     for values in zip(*(column.tolist() for column in columns), strict=True):
-        # A missing number is the only value that is not equal to itself.
-        row = {name: value if value == value else None for name, value in zip(names, values, strict=True)}
-        handle.write(json.dumps(row, ensure_ascii=False).encode() + b"\n")
+        row = {name: _plain(value) for name, value in zip(names, values, strict=True)}
+        # Moments and the like become the text that says them.
+        handle.write(json.dumps(row, ensure_ascii=False, default=str).encode() + b"\n")
+
+
+def _plain(value: Any) -> Any:
+    """Return a cell for JSON: lists as such, nothing for what is missing, which is not equal to itself."""
+    plain = value.tolist() if hasattr(value, "tolist") else value
+    return plain if plain == plain else None
 
 
 def _read_jsonl(path: Path) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final, Literal
 
 import numpy as np
@@ -142,7 +143,7 @@ def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
     Raises:
         LogError: the period is not above 0, or so short that there were too many moments.
     """
-    if not period_s > 0.0:
+    if not 0.0 < period_s < math.inf:
         raise LogError(f"the period must be above 0 s, got {period_s:g}")
     # A hair more, so that the last moment is not lost to rounding.
     count = (stop_s - start_s) / period_s * (1.0 + 1e-12) + 1e-9 + 1

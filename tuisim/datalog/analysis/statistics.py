@@ -47,5 +47,5 @@ def summary_of(values: FloatArray, quantiles: Sequence[float] = QUANTILES) -> Su
         # Summed up, equal values may come out a little off.
         mean = low if low == high else float(finite.mean(dtype=np.float64))
         std = float(finite.std(ddof=1, dtype=np.float64)) if len(finite) > 1 and low != high else 0.0
-    found = tuple(float(value) for value in np.quantile(finite, quantiles)) if quantiles else ()
+        found = tuple(float(value) for value in np.quantile(finite, quantiles)) if quantiles else ()
     return Summary(len(finite), left_out, low, mean, high, std, found)

@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from tuisim.datalog.export import LOG_FORMAT, export_frame
 from tuisim.datalog.formats import TEXT, TIMEDELTA, WHOLE
+from tuisim.datalog.opening.layout import is_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,7 +56,7 @@ def typed_frame(table: pa.Table) -> pd.DataFrame:
         if name in TIMEDELTA and pd.api.types.is_string_dtype(column.dtype):
             spans = pd.to_timedelta(column, errors="coerce")
             frame[name] = column if spans.isna().any() else spans.astype("timedelta64[ns]")
-        elif name in TEXT and pd.api.types.is_string_dtype(column.dtype):
+        elif name in TEXT and is_text(table.schema.field(name).type):
             frame[name] = column.astype("str")
         elif name in WHOLE and pd.api.types.is_float_dtype(column.dtype):
             numbers = column.to_numpy()

@@ -66,7 +66,7 @@ def guessed(table: pa.Table) -> Layout:
     names = table.column_names
     time = _named_time(table)
     run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
-    variable = next((n for n in _VARIABLE_NAMES if n in names and _is_text(table.schema.field(n).type)), "")
+    variable = next((n for n in _VARIABLE_NAMES if n in names and is_text(table.schema.field(n).type)), "")
     value = next((n for n in _VALUE_NAMES if n in names and is_numeric(table.schema.field(n).type)), "")
     if variable and value and value != time:
         rising = "" if time else _rising(table, besides=value)
@@ -99,7 +99,7 @@ def unread_time(table: pa.Table, layout: Layout) -> str:
     if layout.time:
         return ""
     named = (name for name in table.column_names if name.lower() in _TEXT_TIMES)
-    return next((name for name in named if _is_text(table.schema.field(name).type)), "")
+    return next((name for name in named if is_text(table.schema.field(name).type)), "")
 
 
 def _rising(table: pa.Table, besides: str = "") -> str:
@@ -116,7 +116,8 @@ def _is_usable(table: pa.Table, name: str) -> bool:
     return column.null_count < table.num_rows and (is_numeric(column.type) or _is_moment(table, name))
 
 
-def _is_text(kind: pa.DataType) -> bool:
+def is_text(kind: pa.DataType) -> bool:
+    """Return whether a column holds texts, also as codes."""
     if pa.types.is_dictionary(kind):
         kind = kind.value_type
     return bool(pa.types.is_string(kind) or pa.types.is_large_string(kind))
@@ -127,7 +128,7 @@ def _is_moment(table: pa.Table, name: str) -> bool:
     kind = table.schema.field(name).type
     if is_time(kind):
         return True
-    if not _is_text(kind) or not table.num_rows:
+    if not is_text(kind) or not table.num_rows:
         return False
     from tuisim.datalog.opening.moments import seconds_of_texts
 

@@ -26,6 +26,10 @@ _SEEN = 5.0
 """A variable that takes up less than one such part of a scale has the other one."""
 
 
+_LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
+"""Times that differ by less than this part of themselves, or by less than this, are one moment."""
+
+
 class LogTrace(Trace):
     """One variable of one run.
 
@@ -173,4 +177,9 @@ class LogTraces(Traces):
         if not ends:
             return 0.0, 1.0
         low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
-        return (low, high) if high > low else (low - 0.5, high + 0.5)
+        size = max(abs(low), abs(high))
+        if high - low > max(_LEAST_OF_TIMES * size, _LEAST_S):
+            return low, high
+        # Half a second more or less makes no difference to a very large time.
+        room = max(0.5, size * _LEAST_OF_TIMES)
+        return low - room, high + room

@@ -12,7 +12,8 @@ Limits = tuple[float, float]
 
 def nice_step(span: float, count: int) -> float:
     """Return a round distance that divides `span` (above 0) into about `count` parts, at most."""
-    rough = span / max(count, 1)
+    # Parts of the smallest numbers come out as nothing.
+    rough = max(span / max(count, 1), 1e-300)
     magnitude = 10.0 ** math.floor(math.log10(rough))
     return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
 
