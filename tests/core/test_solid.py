@@ -175,6 +175,7 @@ QUIET = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_to
 
 @settings(max_examples=150, deadline=None, suppress_health_check=QUIET)
 @given(**CASE)
+@pytest.mark.slow
 def test_outline_never_enters_anything(**case: Any) -> None:
     check_case(**case)
 

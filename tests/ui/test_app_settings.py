@@ -110,6 +110,7 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
         assert app.bridge.pose.x_mm == 150
 
 
+@pytest.mark.slow
 async def test_settings_are_not_changed_during_a_run() -> None:
     async with Lab(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
@@ -173,6 +174,7 @@ async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
         assert app.bridge.plan.spec.world.solid
 
 
+@pytest.mark.slow
 async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
     drive = "tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)\n"
     async with Lab(settings(drive, speed=0.0)).run_test(size=(120, 40)) as pilot:

@@ -166,6 +166,7 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         await until(pilot, lambda: any("of the edited program: it went another way" in n for n in notices(app)))
 
 
+@pytest.mark.slow
 async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
     async with Lab(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot)

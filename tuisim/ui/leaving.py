@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -11,8 +12,12 @@ from textual import on
 from textual.app import App
 from textual.css.query import NoMatches
 from textual.driver import Driver
+from textual.filter import LineFilter
 
 from tuisim.ui.driver import TerminalDriver
+from tuisim.ui.harmless import Harmless
+
+_HARMLESS = Harmless()
 
 
 def is_leaving(app: App[Any]) -> bool:
@@ -26,6 +31,10 @@ class TerminalApp(App[None]):
 
     def __init__(self) -> None:
         super().__init__(driver_class=TerminalDriver)
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Return what all that is drawn goes through."""
+        return [*super().get_line_filters(), _HARMLESS]
 
     def leave_on_signals(self) -> None:
         """End the app as by a key when it is told to from outside."""

@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Sequence
 from typing import ClassVar
 
-from textual.filter import LineFilter
-
 from tuisim.errors import TuisimError
-from tuisim.ui.analyser.harmless import Harmless
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.screen import Analyser
 from tuisim.ui.analyser.subject import Wanted
 from tuisim.ui.leaving import TerminalApp
-
-_HARMLESS = Harmless()
 
 
 class AnalyserApp(TerminalApp):
@@ -35,10 +29,6 @@ class AnalyserApp(TerminalApp):
         self.wanted = wanted
         self.failure: TuisimError | None = None
         """What kept the log from being opened."""
-
-    def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return what all that is drawn goes through."""
-        return [*super().get_line_filters(), _HARMLESS]
 
     def on_mount(self) -> None:
         """Show the analyser; leaving it ends the app."""

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import pytest
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
+from textual.app import App
 from textual.color import Color
 
+from tests.ui.app_help import settings
 from tuisim.ui.analyser.app import AnalyserApp
-from tuisim.ui.analyser.harmless import Harmless
 from tuisim.ui.analyser.subject import Wanted
+from tuisim.ui.app import Lab
+from tuisim.ui.harmless import Harmless
 
 
 def test_controls_are_left_out_and_nothing_moves() -> None:
@@ -20,5 +26,9 @@ def test_controls_are_left_out_and_nothing_moves() -> None:
     assert [cell_len(segment.text) for segment in after] == [cell_len(segment.text) for segment in before]
 
 
-def test_all_that_the_analyser_draws_goes_through_it() -> None:
-    assert any(isinstance(one, Harmless) for one in AnalyserApp(Wanted()).get_line_filters())
+APPS: dict[str, Callable[[], App[None]]] = {"analyser": lambda: AnalyserApp(Wanted()), "lab": lambda: Lab(settings())}
+
+
+@pytest.mark.parametrize("make", APPS.values(), ids=APPS)
+async def test_all_that_is_drawn_goes_through_it(make: Callable[[], App[None]]) -> None:
+    assert any(isinstance(one, Harmless) for one in make().get_line_filters())
