@@ -60,7 +60,11 @@ class MatPicker(ListDialog):
     def _begin(self) -> None:
         view = self.query_one(PixelView)
         view.styles.height = max(1, round(view.size.width * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2))
-        self.call_after_refresh(self._show, self._shown)
+        self.call_after_refresh(self._show_again)
+
+    def _show_again(self) -> None:
+        # What is shown by then: another mat may have been chosen meanwhile.
+        self._show(self._shown)
 
     @on(OptionList.OptionHighlighted)
     def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
@@ -97,8 +101,14 @@ class MatPicker(ListDialog):
 
     def _decoded(self, key: tuple[str, int, int], picture: Pixels) -> None:
         self._pictures[key] = picture
-        if self.is_attached and key[0] == self._shown:
-            self.query_one(PixelView).set_picture(picture)
+        if not self.is_attached or key[0] != self._shown:
+            return
+        view = self.query_one(PixelView)
+        if key[1:] == (view.size.width, 2 * view.size.height):
+            view.set_picture(picture)
+        else:
+            # The view was given its height while the picture was made.
+            self._show_again()
 
     def _told(self, name: str, text: str) -> None:
         if self.is_attached and name == self._shown:
