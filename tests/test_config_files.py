@@ -92,6 +92,7 @@ own_profiles = st.builds(
     remote=st.lists(presses, max_size=3).map(tuple),
     program=st.sampled_from([None, "log_greys.py"]),
 )
+@pytest.mark.slow
 def test_a_world_makes_the_same_run_again(
     robot: Any, program: str | None, flags: Any, start: Any, tmp_path: Path, **chosen: Any
 ) -> None:

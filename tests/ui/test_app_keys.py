@@ -95,6 +95,7 @@ async def test_a_key_that_does_nothing_says_why() -> None:
             assert notices(app) == [reason], key
 
 
+@pytest.mark.slow
 async def test_nudge() -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -193,6 +194,7 @@ def test_numbers_that_may_be_typed(text: str) -> None:
     assert parse_field("x", text) == float(text.replace(",", "."))
 
 
+@pytest.mark.slow
 async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
     async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

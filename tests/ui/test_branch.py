@@ -105,6 +105,7 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
             assert old[:both].tobytes() == new[:both].tobytes()
 
 
+@pytest.mark.slow
 async def test_a_paused_run_branches_paused_and_is_kept() -> None:
     async with Lab(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot)

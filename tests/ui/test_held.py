@@ -48,6 +48,7 @@ async def held(pilot: Pilot[Any]) -> Lab:
     return app
 
 
+@pytest.mark.slow
 async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> None:
     async with Lab(settings(STEPS, autorun=True, speed=8.0)).run_test(size=(120, 40)) as pilot:
         app = await held(pilot)
@@ -159,6 +160,7 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
         await until(pilot, lambda: app.bridge.state == RUNNING)
 
 
+@pytest.mark.slow
 async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_same_tick() -> None:
     async with Lab(settings(LINES)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
