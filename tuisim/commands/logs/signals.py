@@ -18,9 +18,8 @@ from tuisim.datalog.analysis.signals import (
     derivative,
     even_moments,
     integral,
-    known_in_order,
+    known_at,
     moving_average,
-    value_at,
 )
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.export import check_target
@@ -84,13 +83,8 @@ def _beside_time(moments_s: FloatArray, all_series: Sequence[Series], between: B
     import pandas as pd
 
     names = unique_names(["time", *(series.name for series in all_series)], Notes())
-    columns = [moments_s, *(_at(series, moments_s, between) for series in all_series)]
+    columns = [moments_s, *(known_at(series.time_s, series.values, moments_s, between) for series in all_series)]
     return pd.DataFrame(dict(zip(names, columns, strict=True)))
-
-
-def _at(series: Series, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
-    known = known_in_order(series.time_s, series.values)
-    return value_at(series.time_s[known], series.values[known], moments_s, between)
 
 
 def calculate(arguments: Namespace) -> int:

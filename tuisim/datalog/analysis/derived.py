@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tuisim.datalog.analysis.expressions import FUNCTIONS, Functions, evaluate, names_in
-from tuisim.datalog.analysis.signals import derivative, integral, known_in_order, moving_average, resample, value_at
+from tuisim.datalog.analysis.signals import derivative, integral, known_at, known_in_order, moving_average, resample
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.opening.layout import is_numeric
 from tuisim.datalog.opening.log import Log, Series
@@ -117,8 +117,7 @@ def _column(log: Log, name: str, base: Series) -> FloatArray:
                 return np.full(len(base.rows), np.nan)
             if series.rows is base.rows or series.time_s is base.time_s:
                 return series.values
-            known = known_in_order(series.time_s, series.values)
-            return value_at(series.time_s[known], series.values[known], base.time_s)
+            return known_at(series.time_s, series.values, base.time_s)
     schema = log.table.schema
     if name in schema.names and is_numeric(schema.field(name).type):
         return log.numbers(name)[base.rows]

@@ -133,8 +133,7 @@ def resample(
     if not len(values):
         return np.empty(0), np.empty(0)
     moments = even_moments(float(time_s.min()), float(time_s.max()), period_s)
-    known = known_in_order(time_s, values)
-    return moments, value_at(time_s[known], values[known], moments, between)
+    return moments, known_at(time_s, values, moments, between)
 
 
 def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
@@ -151,6 +150,19 @@ def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
         raise LogError(f"a period of {period_s:g} s gives {count:.0f} rows", f"at most {MAX_RESAMPLED}")
     moments: FloatArray = start_s + np.arange(int(count), dtype=np.float64) * period_s
     return moments
+
+
+def known_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
+    """Return what a signal is at some moments, shape (m,), as `value_at`, whatever was read of it.
+
+    Args:
+        time_s: Shape (n,), in any order.
+        values: Shape (n,); those that are not finite are passed over.
+        moments_s: Shape (m,).
+        between: What the signal is between two samples.
+    """
+    known = known_in_order(time_s, values)
+    return value_at(time_s[known], values[known], moments_s, between)
 
 
 def value_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:

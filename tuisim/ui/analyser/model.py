@@ -12,7 +12,7 @@ import numpy as np
 
 from tuisim.datalog.analysis.bands import Plateau, plateaus
 from tuisim.datalog.analysis.logbands import Band, BandReport, band_report, in_words
-from tuisim.datalog.analysis.signals import known_in_order, value_at
+from tuisim.datalog.analysis.signals import known_at
 from tuisim.datalog.analysis.statistics import Summary, summary_of
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.notes import Note, read_notes, write_notes
@@ -131,8 +131,7 @@ class Model:
             other = self.traces.named(name).series
             if other is series:
                 return other.values
-            there = known_in_order(other.time_s, other.values)
-            return value_at(other.time_s[there], other.values[there], series.time_s)
+            return known_at(other.time_s, other.values, series.time_s)
         if name not in self.log.table.column_names or not is_numeric(self.log.table.column(name).type):
             numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
             known = dict.fromkeys((*self.log.names, *numbers))
