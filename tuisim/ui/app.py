@@ -99,8 +99,6 @@ class Lab(Wishes):
         """Begin what costs time, after the first paint."""
         if self.is_headless:
             self.pacer.asks = False
-        else:
-            self.leave_on_signals()
         self.situation_changed()
         self.set_timer(AFTER_FIRST_PAINT_S, self._begin)
 

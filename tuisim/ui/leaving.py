@@ -36,8 +36,10 @@ class TerminalApp(App[None]):
         """Return what all that is drawn goes through."""
         return [*super().get_line_filters(), _HARMLESS]
 
-    def leave_on_signals(self) -> None:
+    def on_ready(self) -> None:
         """End the app as by a key when it is told to from outside."""
+        if self.is_headless:
+            return
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGHUP):
             # As a shell shows a program that the signal has ended.

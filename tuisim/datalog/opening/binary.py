@@ -101,15 +101,17 @@ def _named(part: pa.Table, notes: Notes) -> pa.Table:
     # Renaming alone would lose what the file says about itself.
     renamed = part.rename_columns(unique_names(part.column_names, notes))
     for at, field in enumerate(part.schema):
-        if pa.types.is_decimal(field.type):
-            renamed = renamed.set_column(
-                at, renamed.field(at).with_type(pa.float64()), part.column(at).cast(pa.float64())
-            )
-        elif pa.types.is_string_view(field.type):
-            renamed = renamed.set_column(
-                at, renamed.field(at).with_type(pa.string()), part.column(at).cast(pa.string())
-            )
+        usual = _usual(field.type)
+        if usual != field.type:
+            renamed = renamed.set_column(at, renamed.field(at).with_type(usual), part.column(at).cast(usual))
     return renamed.replace_schema_metadata(part.schema.metadata)
+
+
+def _usual(kind: pa.DataType) -> pa.DataType:
+    """Return the type that columns of a kind are worked with; most are their own."""
+    if pa.types.is_decimal(kind):
+        return pa.float64()
+    return pa.string() if pa.types.is_string_view(kind) else kind
 
 
 def _short(error: Exception) -> str:

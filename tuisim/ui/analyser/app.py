@@ -34,11 +34,6 @@ class AnalyserApp(TerminalApp):
         """Show the analyser; leaving it ends the app."""
         self.push_screen(_First(self.wanted), lambda _: self.exit())
 
-    def on_ready(self) -> None:
-        """Listen to who may end the app from outside."""
-        if not self.is_headless:
-            self.leave_on_signals()
-
 
 class _First(Analyser):
     """The only screen: an error before there is anything to see ends the app."""
