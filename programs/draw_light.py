@@ -12,10 +12,10 @@ light = 100
 while light > 5:
     light = colorLeft.reflected_light_intensity_pc
     # Nothing is seen before update().
-    display.text_grid('Light: ' + str(round(light)) + ' %', x=6, y=2)
+    display.text_grid("Light: " + str(round(light)) + " %", x=6, y=2)
     display.rectangle(False, 20, 50, 20 + round(1.38 * light), 70)
     display.rectangle(False, 20, 50, 158, 70, fill_color=None)
     display.update()
 
 tank_drive.off()
-sound.play_song([('C5', 'q'), ('G4', 'q'), ('C4', 'h')])
+sound.play_song([("C5", "q"), ("G4", "q"), ("C4", "h")])

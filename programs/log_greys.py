@@ -6,14 +6,14 @@ import time
 # Each line `NAME: number` becomes a row of the log and a point of the chart.
 tank_drive.on(SpeedPercent(50), SpeedPercent(50))
 sensor_val = colorLeft.reflected_light_intensity_pc
-print('Colour: ' + str(sensor_val))
+print("Colour: " + str(sensor_val))
 
 # Black reads 0, with noise a little more.
 while sensor_val > 5:
     time.sleep(0.1)
     sensor_val = colorLeft.reflected_light_intensity_pc
-    print('Colour: ' + str(sensor_val))
+    print("Colour: " + str(sensor_val))
 
 # One last row where the robot has come to rest.
 tank_drive.off()
-print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+print("Colour: " + str(colorLeft.reflected_light_intensity_pc))

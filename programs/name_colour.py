@@ -2,5 +2,5 @@
 # %%sim_magic_preloaded -b Rainbow_bands -x 300 -y 500
 
 colour = colorLeft.color_name
-print('This is code', colorLeft.color)
-say('I see ' + colour)
+print("This is code", colorLeft.color)
+say("I see " + colour)

@@ -18,4 +18,4 @@ steering = MoveSteering(OUTPUT_B, OUTPUT_C)
 for side in range(4):
     tank.on_for_rotations(SpeedPercent(40), SpeedPercent(40), side_rotations)
     steering.on_for_rotations(100, SpeedPercent(20), corner_rotations)
-    print('side', side + 1, 'done')
+    print("side", side + 1, "done")

@@ -4,10 +4,10 @@
 # A reading takes 10 ms on the brick: nothing else in this loop takes any time.
 tank_drive.on(SpeedPercent(50), SpeedPercent(50))
 sensor_val = colorLeft.reflected_light_intensity_pc
-print('Colour: ' + str(sensor_val))
+print("Colour: " + str(sensor_val))
 
 while sensor_val > 0:
     sensor_val = colorLeft.reflected_light_intensity_pc
-    print('Colour: ' + str(sensor_val))
+    print("Colour: " + str(sensor_val))
 
 tank_drive.off()

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.running import Done, Run, Start, over
+from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.cli import run_command
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
@@ -78,7 +78,7 @@ def tuisim(tmp_path: Path) -> Command:
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=PATIENCE_S,
             check=False,
         )
 

@@ -14,6 +14,7 @@ import pytest
 
 import tuisim as package
 from tests.conftest import ROOT, Command
+from tests.running import PATIENCE_S
 from tuisim.cli import COMMANDS, run_command
 
 FIVE = "for number in range(5):\n    print('Number: ' + str(number))\n"
@@ -224,7 +225,7 @@ def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code:
     assert running.stdout is not None
     running.stdout.readline()
     running.send_signal(number)
-    _, errors = running.communicate(timeout=60)
+    _, errors = running.communicate(timeout=PATIENCE_S)
     assert running.returncode == code, errors
     assert "stopped" in errors
     assert "Traceback" not in errors
@@ -240,6 +241,6 @@ def test_closed_pipe_is_quiet_and_stops_the_run(tmp_path: Path) -> None:
     running.stdout.close()
     errors = running.stderr.read()
     running.stderr.close()
-    assert running.wait(timeout=60) == 141
+    assert running.wait(timeout=PATIENCE_S) == 141
     assert "Traceback" not in errors
     assert "BrokenPipe" not in errors

@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 
 from tests.conftest import ROOT, Command
+from tests.running import PATIENCE_S
 from tuisim.cli import run_command
 from tuisim.commands.log import OPTIONS, SUBCOMMANDS, Subcommand
 
@@ -100,7 +101,7 @@ def test_export_keeps_the_values(here: Command, tmp_path: Path, suffix: str) -> 
 def test_a_pipe(tmp_path: Path) -> None:
     command = f"{sys.executable} -m tuisim run log_greys | {sys.executable} -m tuisim log summary - --json"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, shell=True, env=environment, cwd=tmp_path, capture_output=True, timeout=60)
+    done = subprocess.run(command, shell=True, env=environment, cwd=tmp_path, capture_output=True, timeout=PATIENCE_S)
     assert json.loads(done.stdout)[0]["count"] == 51
 
 

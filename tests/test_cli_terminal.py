@@ -17,8 +17,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT
-
-PATIENCE_S = 60.0
+from tests.running import PATIENCE_S
 
 
 class Screen:

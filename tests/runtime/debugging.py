@@ -6,10 +6,10 @@ import time
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from tests.running import PATIENCE_S
 from tuisim.host import RunHandle
 from tuisim.protocol import Ended, LineHistory, Look, Looked, Message, Paused, WantHistory
 
-PATIENCE_S = 20.0
 Kind = TypeVar("Kind", bound=Message)
 
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
-from tests.running import Start
+from tests.running import PATIENCE_S, Start
 from tests.runtime.awkward import ENDLESS, ENDS, PROGRAMS, QUICK
 from tests.runtime.debugging import Driver
-from tuisim.host import STUCK_AFTER_S
 from tuisim.protocol import STEPS, Ended, Paused, StepLine
 
 MOST_STEPS = 25
@@ -46,11 +43,9 @@ def step_through(driver: Driver, text: str, how: str) -> Ended | None:
 
 
 def stops_at_once(driver: Driver) -> None:
-    """Stop a run and see that it takes no longer than it may."""
-    begun = time.monotonic()
+    """Stop a run and see that it ends."""
     driver.run.stop()
-    assert driver.run.wait(5.0) is not None
-    assert time.monotonic() - begun < STUCK_AFTER_S + 0.6
+    assert driver.run.wait(PATIENCE_S) is not None
 
 
 def walk(start: Start, name: str, how: str) -> None:

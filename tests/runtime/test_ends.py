@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import Run
+from tests.running import PATIENCE_S, Run
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.host import Program, RunOptions, start_run
@@ -141,7 +141,7 @@ def test_an_error_in_a_module_beside_the_program_shows_its_place(tmp_path: Path)
     program.write_text("import helper\nprint('A: 1', end='')\nhelper.bad()\n")
     spec = RunSpec(RobotSpec(), WorldSpec(background="Grey_bands"), ROBOLAB)
     run = start_run(Program("main.py", program.read_text(), path=str(program)), spec, RunOptions())
-    ended = run.wait(20.0)
+    ended = run.wait(PATIENCE_S)
     assert ended is not None
     texts = [row.text for row in run.output.all_rows()]
     assert texts[0] == "A: 1"

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from tests.running import Run
+from tests.running import PATIENCE_S, Run
 
 TURN_MM = math.pi * 56
 MM_PER_DEG = TURN_MM / 360
@@ -187,7 +187,7 @@ def test_driving_off_the_field(run: Run, profile: str, beyond: bool) -> None:
         Program("p.py", "import time\ntank_drive.on(100, 100)\ntime.sleep(8)", "preloaded"), spec, RunOptions()
     )
     try:
-        assert handle.wait(60) is not None
+        assert handle.wait(PATIENCE_S) is not None
         last = handle.telemetry.last()
         assert last is not None
         assert (last.x_mm > 2362) is beyond

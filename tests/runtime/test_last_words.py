@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.running import Start
+from tests.running import PATIENCE_S, Start
 from tuisim.host import RunHandle
 from tuisim.protocol import Message
 
@@ -20,6 +20,6 @@ def test_a_child_that_goes_while_its_events_are_read_has_not_crashed(
         return events
 
     monkeypatch.setattr(RunHandle, "_read_events", read_then_let_it_end)
-    ended = start("print('bye')").wait(20.0)
+    ended = start("print('bye')").wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "finished"

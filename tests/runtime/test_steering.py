@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import Run, Start, until
+from tests.running import PATIENCE_S, Run, Start, until
 from tuisim.core.state import TICK_RECORD
 from tuisim.decoding import decode_event
 from tuisim.errors import HostError
@@ -39,7 +39,7 @@ def test_stop_always_works_and_keeps_what_was_printed(start: Start, text: str) -
     run = start("print('Before: 1')\n" + text, live=True)
     until(run, lambda: run.output.length > 0)
     run.stop()
-    ended = run.wait(5.0)
+    ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "stopped"
     assert run.output.all_rows()[0].text == "Before: 1"
@@ -48,7 +48,7 @@ def test_stop_always_works_and_keeps_what_was_printed(start: Start, text: str) -
 def test_commands_before_the_first_line_wait_for_it(start: Start) -> None:
     run = start("print(colorLeft.color)", live=True)
     run.send(SetPose(1500.0, 500.0, 0.0))
-    ended = run.wait(10.0)
+    ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert (ended.end, [row.text for row in run.output.all_rows()]) == ("finished", ["1"])
 
@@ -56,7 +56,7 @@ def test_commands_before_the_first_line_wait_for_it(start: Start) -> None:
 def test_stop_before_the_first_line(start: Start) -> None:
     run = start("while True: pass", live=True)
     run.stop()
-    ended = run.wait(10.0)
+    ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "stopped"
 
@@ -65,7 +65,7 @@ def test_cleaning_up_runs_after_a_stop(start: Start) -> None:
     run = start("import time\ntry:\n    print('A: 1')\n    time.sleep(100)\nfinally:\n    print('clean')", live=True)
     until(run, lambda: run.output.length > 0)
     run.stop()
-    run.wait(5.0)
+    run.wait(PATIENCE_S)
     assert [row.text for row in run.output.all_rows()] == ["A: 1", "clean"]
 
 
@@ -79,7 +79,7 @@ def test_pause_steps_and_resume(start: Start) -> None:
     assert run.telemetry.count == 4
     assert [event for event in seen if isinstance(event, Paused)][-1].tick == 3
     run.send(Resume())
-    ended = run.wait(5.0)
+    ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert (ended.end, ended.tick) == ("finished", 20)
 
@@ -90,7 +90,7 @@ def test_user_actions_take_effect_right_before_a_tick_and_are_written_down(start
     run.send(SetPose(1500.0, 500.0, 90.0))
     run.send(SetNoise(0, 5))
     run.send(Resume())
-    assert run.wait(5.0) is not None
+    assert run.wait(PATIENCE_S) is not None
     assert [row.text for row in run.output.all_rows()] == ["1"]
     first = run.telemetry.record(0)
     assert (first.x_mm, first.heading_deg, first.actions) == (1500.0, 90.0, 2)
@@ -104,7 +104,7 @@ def test_answer_from_the_user(start: Start) -> None:
     run = start("print('hello ' + input('Name? '))", live=True, asks_user=True)
     until(run, lambda: run.waiting_for_input == "Name? ")
     run.send(Answer("Ada"))
-    ended = run.wait(5.0)
+    ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert [row.text for row in run.output.all_rows()] == ["Name? Ada", "hello Ada"]
 
@@ -113,7 +113,7 @@ def test_a_child_that_is_killed_leaves_every_row(start: Start) -> None:
     run = start("import time\nfor i in range(10**6):\n    print('A:', i)\n    time.sleep(0.01)", live=True)
     until(run, lambda: len(run.output.all_rows()) > 5)
     os.kill(run._process.pid, signal.SIGKILL)
-    ended = run.wait(5.0)
+    ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "crashed"
     assert "SIGKILL" in ended.summary
@@ -154,7 +154,7 @@ def test_child_dies_with_its_host(text: str) -> None:
         host.kill()
     killed_at = time.monotonic()
     while Path(f"/proc/{pid}").exists() and _alive(int(pid)):
-        assert time.monotonic() - killed_at < 5.0
+        assert time.monotonic() - killed_at < PATIENCE_S
         os.sched_yield()
     assert (Path(folder) / "output.bin").exists()
 

@@ -9,13 +9,12 @@ from typing import Any
 
 from textual.pilot import Pilot
 
+from tests.running import PATIENCE_S
 from tuisim.config import build_run_spec
 from tuisim.host import Program
 from tuisim.switches import Settings
 from tuisim.ui.app import Lab
 from tuisim.ui.session import AppSettings
-
-PATIENCE_S = 20.0
 
 LOGS = """\
 sensor_val = colorLeft.reflected_light_intensity_pc

@@ -1,4 +1,4 @@
-"""What the tests of the app share: terminals."""
+"""What the tests of the app share: terminals, and notices that stay."""
 
 from __future__ import annotations
 
@@ -7,8 +7,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from textual.notifications import Notification
 
 from tests.ui.terminals import Terminal
+
+
+@pytest.fixture(autouse=True)
+def _notices_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep notices until the app removes them, so that a test on a busy machine still finds them."""
+    monkeypatch.setattr(Notification, "has_expired", False)
+    monkeypatch.setattr(Notification, "time_left", 3600.0)
 
 
 @pytest.fixture

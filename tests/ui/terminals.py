@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-PATIENCE_S = 30.0
+from tests.running import PATIENCE_S
 
 
 class Terminal:

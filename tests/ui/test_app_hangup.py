@@ -20,8 +20,8 @@ from typing import TextIO, cast
 import pytest
 from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
 
+from tests.running import PATIENCE_S
 from tests.ui.app_help import ready, settings
-from tests.ui.terminals import PATIENCE_S
 from tuisim.core.geometry import Pose
 from tuisim.ui.app import Lab
 from tuisim.ui.driver import Outlasting

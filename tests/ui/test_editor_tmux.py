@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.ui.terminals import PATIENCE_S, Terminal
+from tests.running import PATIENCE_S
+from tests.ui.terminals import Terminal
 
 pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
 

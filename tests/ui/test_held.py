@@ -10,6 +10,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
+from tests.running import PATIENCE_S
 from tests.ui.app_help import press_and_stand, ready, screen_text, settings, until
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle
@@ -79,7 +80,7 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         assert app.debugging.standing is None
         run = RunStore().load_run(app.bridge.run_id)
         again = rerun(run, RunStore())
-        again.wait(20.0)
+        again.wait(PATIENCE_S)
         assert same(run, RunStore().load_run(again.run_id)).same
 
 

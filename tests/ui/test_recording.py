@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.running import PATIENCE_S
 from tests.ui.app_help import program
 from tuisim.config import build_run_spec
 from tuisim.core.marks import MarkedField, PenMarks
@@ -71,7 +72,7 @@ def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:
 def stored(text: str, **choices: Any) -> StoredRun:
     spec = build_run_spec(replace(Settings(background="Grey_bands"), **choices))
     run = start_run(program(text), spec, RunOptions())
-    assert run.wait(60)
+    assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)
 
 

@@ -14,6 +14,7 @@ import pytest
 from textual.widgets import Input, OptionList
 
 from tests.conftest import Command
+from tests.running import PATIENCE_S
 from tests.ui.app_help import LOGS, notices, program, ready, screen_text, settings, until
 from tuisim.config import build_run_spec
 from tuisim.datalog.catalogue import RunInfo
@@ -35,7 +36,7 @@ def stored(text: str = LOGS, **choices: Any) -> str:
     spec = build_run_spec(replace(Settings(background="Grey_bands", seed=5), **choices))
     options = RunOptions(actions=(ScriptedAction(100, SetNoise(20, 0)), ScriptedAction(200, SetNoise(0, 0))))
     run = start_run(program(text), spec, options)
-    assert run.wait(60)
+    assert run.wait(PATIENCE_S)
     return run.run_id
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.running import PATIENCE_S
 from tuisim.protocol import Spoke
 from tuisim.ui.speech import MAX_SOUND_S, RATE_HZ, Voice, wav_of
 
@@ -47,7 +48,7 @@ def players(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def heard(voice: Voice, folder: Path, name: str) -> bytes:
     assert voice._sounding is not None
-    voice._sounding.wait(10)
+    voice._sounding.wait(PATIENCE_S)
     return (folder / f"{name}.heard").read_bytes()
 
 

@@ -21,6 +21,8 @@ from tuisim.runtime.session import Session
 
 MOST_BYTES = 4 << 20
 """A longer answer is not taken."""
+BLOCKED_LIMIT_S = 2.0
+"""Real seconds after which a copy is ended that uses no processor time, for instance one that waits for a lock."""
 
 
 class TooLong(BaseException):
@@ -36,7 +38,7 @@ def apart(
         session: The run, which is frozen in the copy.
         baton: Its threads.
         work: What to do there.
-        limit_s: Real seconds after which the copy is ended.
+        limit_s: Seconds of processor time after which the copy is ended: a busy machine changes no answer.
         go_on: Called when a command has come; False gives up.
 
     Returns:
@@ -58,7 +60,7 @@ def apart(
         _be_the_copy(session, baton, work, answer_write, limit_s)
     os.close(answer_write)
     try:
-        return _answer(session.channel, answer_fd, real.monotonic() + limit_s, go_on)
+        return _answer(session.channel, answer_fd, real.monotonic() + BLOCKED_LIMIT_S, go_on)
     finally:
         os.close(answer_fd)
         os.kill(pid, signal.SIGKILL)
@@ -84,8 +86,12 @@ def _answer(channel: Channel, fd: int, until_s: float, go_on: Callable[[], bool]
 def _be_the_copy(session: Session, baton: Baton, work: Callable[[], bytes], answer_fd: int, limit_s: float) -> NoReturn:
     try:
         # Whatever goes wrong here, also inside a long C call, ends without help from outside.
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_REAL, 2 * limit_s)
+        for number, timer, seconds in (
+            (signal.SIGPROF, signal.ITIMER_PROF, limit_s),
+            (signal.SIGALRM, signal.ITIMER_REAL, 2 * BLOCKED_LIMIT_S),
+        ):
+            signal.signal(number, signal.SIG_DFL)
+            signal.setitimer(timer, seconds)
         real.settrace(None)
         _freeze(session, baton)
         data = work()
