@@ -63,3 +63,53 @@ def test_of_many_names_some_are_listed() -> None:
     assert listed(iter("ab")) == "a, b"
     assert listed(()) == "none"
     assert listed(map(str, range(10_000))).endswith(f", {MOST_LISTED - 1} and {10_000 - MOST_LISTED} more")
+
+
+PROGRAM = f"""# %%sim_magic_preloaded
+# {EVIL}
+tank_drive.on_for_seconds(20, 30, 0.1)
+print('{EVIL}')
+say('{EVIL}')
+raise ValueError('{EVIL}')
+"""
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A program that raises, in a home with two stored runs of it that differ; all that is text in them is evil."""
+    folder = tmp_path_factory.mktemp("stored")
+    program = folder / f"{EVIL}.py"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TUISIM_HOME", str(folder))
+        for more in ("", f"# {EVIL}"):
+            program.write_text(PROGRAM + more)
+            run_command(["run", str(program)])
+    return program
+
+
+STORED_CALLS = {
+    "the state of a run": ("runs", "show", "last"),
+    "the list of runs": ("runs",),
+    "where runs differ": ("log", "diff", "1", "2"),
+    "a re-run": ("runs", "rerun", "1"),
+    "a run that is not there": ("runs", "show", EVIL),
+    "a report": ("log", "report", "last"),
+    "a run": ("run", "PROGRAM", "--break", "5", "--watch", repr(EVIL)),
+    "runs as JSON": ("runs", "show", "1", "--json"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", STORED_CALLS.values(), ids=STORED_CALLS)
+def test_stored_text_is_shown(
+    stored: Path, words: tuple[str, ...], capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(stored.parent)
+    monkeypatch.setenv("TUISIM_HOME", str(stored.parent))
+    run_command([str(stored) if word == "PROGRAM" else word for word in words])
+    said = "".join(capfd.readouterr()).splitlines()
+    # What the program printed and its traceback are passed on as a shell would.
+    raised = ("  File ", "    raise ", "ValueError: ") if words[0] == "run" else ()
+    own = [line for line in said if line != EVIL and not line.startswith(raised)]
+    assert own
+    assert not [line for line in own if not line.isprintable()]

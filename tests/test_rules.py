@@ -58,6 +58,24 @@ def test_functions_are_small(path: Path) -> None:
     assert not long
 
 
+PRINTS = {"echo.py": "the one place", "follow.py": "passes on what a program prints", "sources.py": "progress"}
+"""Files of the commands that may write to the terminal by themselves."""
+
+
+@pytest.mark.parametrize("path", [*sorted((PACKAGE / "commands").rglob("*.py"))], ids=name_of)
+def test_commands_print_by_echo(path: Path) -> None:
+    if path.name in PRINTS:
+        return
+    tree = tree_of(path)
+    prints = [node.lineno for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id == "print"]
+    writes = [
+        node.lineno
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and node.attr == "write" and ast.unparse(node.value).startswith("sys.")
+    ]
+    assert not prints + writes
+
+
 def caught(handler: ast.ExceptHandler) -> set[str]:
     """Names that a handler catches; empty for a bare except."""
     if handler.type is None:

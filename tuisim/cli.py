@@ -16,7 +16,7 @@ from importlib import import_module
 from pathlib import Path
 
 from tuisim import __version__
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.errors import ConfigError, TuisimError, printable
 from tuisim.switches import SwitchParser
 
 COMMANDS: Mapping[str, str] = {
@@ -226,6 +226,6 @@ def run_command(words: Sequence[str]) -> int:
             return TuisimError.exit_code
         if os.environ.get("TUISIM_DEBUG"):
             raise
-        text = " ".join(f"{type(error).__name__}: {error}".split("\n"))
+        text = printable(f"{type(error).__name__}: {error}")
         print(f"tuisim: a mistake in tuisim itself: {text} (TUISIM_DEBUG=1 shows where)", file=sys.stderr)
         return EXIT_OUR_MISTAKE

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 
 from tuisim.assets import backgrounds
+from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.switches import SwitchParser
 
@@ -24,9 +24,9 @@ def execute(arguments: Namespace) -> int:
              "heading_deg": mat.start.heading_deg}
             for mat in mats
         ]  # fmt: skip
-        print(json.dumps(poses))
+        echo_json(poses)
     else:
         starts = [f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in mats]
         rows = [(mat.name, start, mat.title) for mat, start in zip(mats, starts, strict=True)]
-        print(table(("NAME", "START x, y, heading", "SHOWS"), rows))
+        echo_lines(table(("NAME", "START x, y, heading", "SHOWS"), rows))
     return 0

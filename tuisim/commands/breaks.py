@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.breaks import parse_breaks, parse_watch
+from tuisim.commands.echo import echo_error
 from tuisim.core.simulation import NS_PER_S
 from tuisim.errors import ConfigError
 from tuisim.host import RunHandle
@@ -81,8 +81,8 @@ class BreakTeller:
                 self._held = event
                 self._handle.send(Look(self._options.watches))
             case Looked() if self._held is not None:
-                sys.stderr.write("".join(line + "\n" for line in self._told(self._held, event)))
-                sys.stderr.flush()
+                for line in self._told(self._held, event):
+                    echo_error(line)
                 self._held = None
                 self._go_on()
 

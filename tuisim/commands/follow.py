@@ -10,13 +10,11 @@ from itertools import groupby
 from types import FrameType
 from typing import TextIO
 
+from tuisim.commands.echo import echo_error
 from tuisim.commands.outcome import EXIT_BROKEN_PIPE
 from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
 from tuisim.host import RunHandle
 from tuisim.protocol import Ended, Message
-
-_ON_STDERR = (STDERR, SPEECH)
-"""By stream, how a row is shown on stderr; the others are not."""
 
 POLL_S = 0.05
 """How long a printed line may wait before it is passed on."""
@@ -90,8 +88,13 @@ class Follower:
         for to_stdout, group in groupby(rows, key=lambda row: row.stream == STDOUT):
             if to_stdout:
                 self._write("".join(row.text + "\n" for row in group))
-            else:
-                sys.stderr.write("".join(line_of(row) + "\n" for row in group if row.stream in _ON_STDERR))
+                continue
+            for row in group:
+                # What it prints is the program's affair, as in a shell; what it says stands in a line of ours.
+                if row.stream == STDERR:
+                    sys.stderr.write(row.text + "\n")
+                elif row.stream == SPEECH:
+                    echo_error(line_of(row))
 
     def _write(self, text: str) -> None:
         if self._cut == EXIT_BROKEN_PIPE or self.lost:

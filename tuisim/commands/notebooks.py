@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tuisim.commands import outcome
+from tuisim.commands.echo import echo, echo_lines
 from tuisim.commands.tables import table
 from tuisim.datalog.runfile import StoredRun
 from tuisim.notebook.reading import NotebookProgram, chosen_programs, is_notebook
@@ -21,8 +22,9 @@ def to_list(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProg
 def print_list(word: str, programs: Sequence[NotebookProgram]) -> None:
     """Print the programs of a notebook and how to name one."""
     rows = [(p.number, p.title, p.source.switches.get("background", ""), p.source.prelude) for p in programs]
-    print(table(("cell", "title", "mat", "names"), rows))
-    print(f"\ntuisim '{word}#1' opens the first; tuisim run '{word}#1' runs it, tuisim run {word} --all runs all")
+    echo_lines(table(("cell", "title", "mat", "names"), rows))
+    echo()
+    echo(f"tuisim '{word}#1' opens the first; tuisim run '{word}#1' runs it, tuisim run {word} --all runs all")
 
 
 def print_results(runs: Sequence[StoredRun]) -> None:
@@ -31,4 +33,4 @@ def print_results(runs: Sequence[StoredRun]) -> None:
         (facts["program"], facts["state"], facts["samples"], f"{facts['time_s']:.3f}", facts["run"])
         for facts in map(outcome.describe, runs)
     ]
-    print(table(("cell", "state", "samples", "time s", "run"), rows))
+    echo_lines(table(("cell", "state", "samples", "time s", "run"), rows))

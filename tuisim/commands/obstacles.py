@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 from dataclasses import asdict
 
+from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.config import OBSTACLES, load_obstacles
 from tuisim.config.obstacles import obstacle_file
@@ -29,13 +29,13 @@ def execute(arguments: Namespace) -> int:
     chosen = OBSTACLES if word is None else {word: load_obstacles(word)}
     if arguments.json:
         sets = [{"name": name, "obstacles": [asdict(box) for box in boxes]} for name, boxes in chosen.items()]
-        print(json.dumps(sets))
+        echo_json(sets)
     elif word is not None:
-        print("\n".join(obstacle_file(chosen[word])))
+        echo_lines("\n".join(obstacle_file(chosen[word])))
     else:
         rows = [
             (name, "; ".join(f"{b.x_mm:g}, {b.y_mm:g}, {b.width_mm:g}, {b.height_mm:g}" for b in boxes) or "nothing")
             for name, boxes in chosen.items()
         ]
-        print(table(("NAME", "BOXES x, y, width, height in mm"), rows))
+        echo_lines(table(("NAME", "BOXES x, y, width, height in mm"), rows))
     return 0

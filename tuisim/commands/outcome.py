@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from typing import Any
 
+from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.datalog.records import STDERR, STDOUT
 from tuisim.datalog.runfile import RunEnd, StoredRun
 from tuisim.datalog.samples import parse_sample
@@ -76,8 +75,8 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
     """Print how a run ended: the program's own traceback and the last state on stderr, or JSON on stdout."""
     facts = describe(run)
     if facts["error"] and not any(row.stream == STDERR for row in run.output.rows()):
-        print(facts["error"].rstrip("\n"), file=sys.stderr)
+        echo_error_lines(facts["error"].rstrip("\n"))
     if as_json:
-        print(json.dumps({**facts, "exit_code": exit_code}), flush=True)
+        echo_json({**facts, "exit_code": exit_code}, flush=True)
     else:
-        print(last_state(facts), file=sys.stderr)
+        echo_error(last_state(facts))

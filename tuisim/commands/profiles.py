@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 from dataclasses import asdict
 
+from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.config import load_profile
 from tuisim.config.profiles import SOURCES
@@ -31,15 +31,15 @@ def execute(arguments: Namespace) -> int:
     shown = [load_profile(word) for word in arguments.profiles] or list(PROFILES.values())
     profiles = [asdict(profile) for profile in shown]
     if arguments.json:
-        print(json.dumps(profiles))
+        echo_json(profiles)
         return 0
-    print(table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in profiles]), end="\n\n")
+    echo_lines(table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in profiles]) + "\n")
     rows = [
         [key.removesuffix("_ns"), *(_shown(key, profile[key]) for profile in profiles), SOURCES.get(key, "")]
         for key in profiles[0]
         if key not in _APART
     ]
-    print(table(("", *(profile["name"] for profile in profiles), "WHERE IT COMES FROM"), rows))
+    echo_lines(table(("", *(profile["name"] for profile in profiles), "WHERE IT COMES FROM"), rows))
     return 0
 
 

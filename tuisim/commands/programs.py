@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 
 from tuisim.assets import programs, programs_folder
+from tuisim.commands.echo import echo, echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.switches import SwitchParser
 
@@ -19,8 +19,8 @@ def execute(arguments: Namespace) -> int:
     """Print every example program with the first line of its docstring."""
     found = programs()
     if arguments.json:
-        print(json.dumps([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found]))
+        echo_json([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found])
     else:
-        print(table(("NAME", "DOES"), [(one.name, one.title) for one in found]))
-        print(f"They lie in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it.")
+        echo_lines(table(("NAME", "DOES"), [(one.name, one.title) for one in found]))
+        echo(f"They lie in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it.")
     return 0

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 from dataclasses import asdict
 
+from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.config import ROBOTS, load_robot
 from tuisim.config.robots import robot_file
@@ -29,12 +29,12 @@ def execute(arguments: Namespace) -> int:
     chosen = None if arguments.robot is None else load_robot(arguments.robot)
     if arguments.json:
         robots = [chosen] if chosen else ROBOTS.values()
-        print(json.dumps([asdict(robot) for robot in robots]))
+        echo_json([asdict(robot) for robot in robots])
     elif chosen:
-        print("\n".join(robot_file(chosen)))
+        echo_lines("\n".join(robot_file(chosen)))
     else:
         heads = ("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter", "PORTS")
-        print(table(heads, list(map(_row, ROBOTS.values()))))
+        echo_lines(table(heads, list(map(_row, ROBOTS.values()))))
     return 0
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from tuisim.commands import outcome
 from tuisim.commands.breaks import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
+from tuisim.commands.echo import echo_error
 from tuisim.commands.follow import Follower
 from tuisim.commands.notebooks import print_list, print_results, to_list
 from tuisim.commands.prepare import Prepared, prepare_runs
@@ -126,6 +127,6 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int,
     finally:
         handle.close()
     if follower.lost:
-        print(f"tuisim: {follower.lost} (run {handle.number} has every line)", file=sys.stderr)
+        echo_error(f"tuisim: {follower.lost} (run {handle.number} has every line)")
     code = cut or (outcome.EXIT_LIMIT if teller.stopped else outcome.exit_code_of(ended))
     return max(code, outcome.EXIT_BAD_OUTPUT) if follower.lost else code, handle.run_id

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
 from tuisim.commands.logs.comparing import diff_text
 from tuisim.commands.outcome import describe, last_state
 from tuisim.commands.tables import table
@@ -88,9 +87,9 @@ def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
 def _list(store: RunStore, *, as_json: bool) -> None:
     runs = store.runs()
     if as_json:
-        print(json.dumps([asdict(run) for run in runs]))
+        echo_json([asdict(run) for run in runs])
     elif not runs:
-        print(f"no runs yet in {store.home}")
+        echo(f"no runs yet in {store.home}")
     else:
         rows = [
             (
@@ -100,7 +99,7 @@ def _list(store: RunStore, *, as_json: bool) -> None:
             for run in runs
         ]
         heads = ("RUN", "UTC", "PROGRAM", "MAT", "PROFILE", "SEED", "END", "SECONDS", "SAMPLES", "", "")
-        print(table(heads, rows))
+        echo_lines(table(heads, rows))
 
 
 def _cut(text: str) -> str:
@@ -115,17 +114,17 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     facts = describe(run)
     rows = [row for row in run.output.rows() if row.stream in STREAMS]
     if as_json:
-        print(json.dumps(facts | {"output": [_plain(row) for row in rows]}))
+        echo_json(facts | {"output": [_plain(row) for row in rows]})
         return
-    print(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
+    echo(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
           f"seed {facts['seed']}")  # fmt: skip
-    print(last_state(facts))
+    echo(last_state(facts))
     for note in facts["notes"]:
-        print(f"note: {note}")
+        echo(f"note: {note}")
     for row in rows:
-        print(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == STDERR else ''}{line_of(row)}")
+        echo(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == STDERR else ''}{line_of(row)}")
     if facts["error"]:
-        print(facts["error"].rstrip("\n"))
+        echo_lines(facts["error"].rstrip("\n"))
 
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
@@ -138,7 +137,10 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
         finally:
             handle.close()
         found = same(run, scratch.load_run(handle.run_id))
-    print(json.dumps({"run": run.number, **found.to_plain()}) if as_json else diff_text(found))
+    if as_json:
+        echo_json({"run": run.number, **found.to_plain()})
+    else:
+        echo_lines(diff_text(found))
     return 0 if found.same else 1
 
 
@@ -152,15 +154,15 @@ def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
             sizes = compact_run(run)
         except LogError as error:
             # The others are none the worse for it.
-            print(f"tuisim: {error}", file=sys.stderr)
+            echo_error(f"tuisim: {error}")
             code = error.exit_code
             continue
         before, after, ticks = before + sizes[0], after + sizes[1], ticks + run.telemetry.count
     if as_json:
-        print(json.dumps({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after}))
+        echo_json({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after})
     else:
         each = f", {after / ticks:.2f} bytes a tick" if ticks else ""
-        print(f"{len(names)} run{'s' if len(names) != 1 else ''}: {before:,} → {after:,} bytes{each}")
+        echo(f"{len(names)} run{'s' if len(names) != 1 else ''}: {before:,} → {after:,} bytes{each}")
     return code
 
 
@@ -175,7 +177,7 @@ def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> Non
     check_targets(target for target in (*files, telemetry) if target is not None)
     runs = _load(store, names)
     for note in (note for run in runs for note in run.notes):
-        print(f"note: {note}", file=sys.stderr)
+        echo_error(f"note: {note}")
     for file in files:
         export_samples(runs, file)
     if telemetry is not None:

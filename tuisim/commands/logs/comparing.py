@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 from pathlib import Path
 
+from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.datalog.diff import RowDifference, RunDiff, TickDifference, diff_runs
 from tuisim.datalog.store import RunStore
@@ -25,7 +25,10 @@ def diff(arguments: Namespace) -> int:
     store = RunStore()
     first, second = (store.load_run(Path(word) if "/" in word else word) for word in words)
     found = diff_runs(first, second)
-    print(json.dumps(found.to_plain()) if arguments.json else diff_text(found))
+    if arguments.json:
+        echo_json(found.to_plain())
+    else:
+        echo_lines(diff_text(found))
     return 0 if found.same else 1
 
 

@@ -6,12 +6,13 @@ from argparse import Namespace
 from dataclasses import asdict
 from typing import Any
 
+from tuisim.commands.echo import echo_lines
 from tuisim.commands.logs.results import show_rows
 from tuisim.commands.logs.sources import names_of, open_sources
 from tuisim.datalog.analysis.crossings import crossings
 from tuisim.datalog.analysis.logbands import band_report, in_words
 from tuisim.datalog.analysis.statistics import QUANTILES, summary_of
-from tuisim.errors import ConfigError, printable
+from tuisim.errors import ConfigError
 
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
 
@@ -40,14 +41,14 @@ def bands(arguments: Namespace) -> int:
         for name in names_of(log, arguments):
             report = band_report(log, name)
             rows += [{"log": log.title, **asdict(band)} for band in report.bands]
-            notes.append(printable(in_words(report)))
+            notes.append(in_words(report))
     formats = {
         "variable": "", "number": "", "start_s": ".2f", "stop_s": ".2f", "samples": "", "level": ".2f",
         "true_level": ".2f", "spread": ".2f", "grey": "", "width_mm": ".0f",
     }  # fmt: skip
     show_rows(rows, arguments, formats)
     if not arguments.json and not arguments.out:
-        print("\n".join(notes))
+        echo_lines("\n".join(notes))
     return 0
 
 

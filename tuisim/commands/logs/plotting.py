@@ -10,8 +10,9 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tuisim.commands.echo import echo_chart, echo_error
 from tuisim.commands.logs.sources import names_of, the_source
-from tuisim.errors import ConfigError, LogError, listed, printable
+from tuisim.errors import ConfigError, LogError, listed
 from tuisim.ui.paper.chart import View, chart_of
 from tuisim.ui.paper.files import CHART_FORMATS, Size, format_of, save_chart
 
@@ -47,7 +48,7 @@ def plot(arguments: Namespace) -> int:
         _show(model, view, size)
     hidden = [trace.name for trace in model.traces if not trace.on]
     if hidden and not arguments.variable:
-        print(printable(f"note: not drawn: {listed(hidden)}; --variable NAME draws one"), file=sys.stderr)
+        echo_error(f"note: not drawn: {listed(hidden)}; --variable NAME draws one")
     return 0
 
 
@@ -119,4 +120,4 @@ def _show(model: Model, view: View, size: Size | None) -> None:
     # Written by ourselves: the console would end the process where a pipe is closed.
     with console.capture() as captured:
         console.print(text_of(chart, width, height, colors=colors), soft_wrap=True)
-    sys.stdout.write(captured.get())
+    echo_chart(captured.get())

@@ -6,6 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from tuisim.commands.analyse import asked
+from tuisim.commands.echo import echo
 from tuisim.commands.logs.sources import names_of
 from tuisim.errors import ConfigError
 from tuisim.ui.analyser.subject import Wanted, opening
@@ -36,5 +37,5 @@ def report(arguments: Namespace) -> int:
     names = names_of(subject.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or default_name(subject))
     write_report(subject, target, names)
-    print(target)
+    echo(str(target))
     return 0

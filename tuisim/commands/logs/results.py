@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import math
-import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from tuisim.commands.echo import CsvOut, echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.datalog.export import check_target, export_frame
-from tuisim.errors import printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,10 +30,10 @@ def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Namespace, formats: 
 
         write_frame(pd.DataFrame(list(rows), columns=list(rows[0]) if rows else list(formats)), arguments)
     elif arguments.json:
-        print(json.dumps([{name: _plain(value) for name, value in row.items()} for row in rows]))
+        echo_json([{name: _plain(value) for name, value in row.items()} for row in rows])
     else:
         heads = [name.upper().replace("_", " ") for name in formats]
-        print(table(heads, [[_written(row[name], how) for name, how in formats.items()] for row in rows]))
+        echo_lines(table(heads, [[_written(row[name], how) for name, how in formats.items()] for row in rows]))
 
 
 def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
@@ -45,22 +43,14 @@ def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
     elif arguments.json:
         _print_json(frame)
     else:
-        frame.to_csv(_Terminal() if sys.stdout.isatty() else sys.stdout, index=False, lineterminator="\n")
+        frame.to_csv(CsvOut(), index=False, lineterminator="\n")
 
 
 def _print_json(frame: pd.DataFrame) -> None:
     """Print each row as an object; every number to its last bit, which the frame's own function does not do."""
     names = [str(name) for name in frame.columns]
     for cells in zip(*(frame[name].tolist() for name in frame.columns), strict=True):
-        print(json.dumps({name: _plain(cell) for name, cell in zip(names, cells, strict=True)}))
-
-
-class _Terminal:
-    """Standard output that is seen by people: nothing in the cells may be a command to the terminal."""
-
-    def write(self, text: str) -> None:
-        """Write lines."""
-        sys.stdout.write("\n".join(map(printable, text.split("\n"))))
+        echo_json({name: _plain(cell) for name, cell in zip(names, cells, strict=True)})
 
 
 def write_frame(frame: pd.DataFrame, arguments: Namespace) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from tuisim.commands.echo import echo_error
 from tuisim.datalog.opening import Log, loading
 from tuisim.datalog.opening.layout import chosen
 from tuisim.datalog.opening.loading import STDIN
@@ -90,7 +91,7 @@ def _open_file(word: str, arguments: Namespace) -> Log:
 
 def _with_notes(log: Log) -> Log:
     for note in log.notes:
-        print(printable(f"note: {log.title}: {note}"), file=sys.stderr)
+        echo_error(f"note: {log.title}: {note}")
     return log
 
 
