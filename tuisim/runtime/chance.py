@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import types
 from collections.abc import Callable
+from functools import wraps
 from itertools import count
 from typing import Any
 
 from tuisim.core.noise import stream
+from tuisim.runtime.standin import replace
 
 
 def patch_urandom(seed: int) -> None:
     """Let the system's random bytes come from the seed: uuid4, secrets and numpy draw on them."""
     draws = count()
-    vars(os)["urandom"] = lambda size: stream(seed, next(draws), "urandom", size)
+    real_urandom = os.urandom
+
+    def urandom(size: Any) -> bytes:
+        length = operator.index(size)
+        # For less than nothing the real one says what is wrong.
+        return stream(seed, next(draws), "urandom", length) if length >= 0 else real_urandom(length)
+
+    replace(os, "urandom", urandom, (1, 1))
 
 
 def finish_random(seed: int, module: types.ModuleType) -> None:
@@ -23,8 +33,8 @@ def finish_random(seed: int, module: types.ModuleType) -> None:
     seeds = count()
     real_seed: Callable[..., None] = generator.seed
 
+    @wraps(real_seed)
     def seed_from_run(self: Any, a: Any = None, version: int = 2) -> None:
-        """Seed the generator; without a value, by the run's seed and how many were seeded before."""
         real_seed(self, f"{seed}/{next(seeds)}" if a is None else a, version)
 
     # The module's own functions belong to a generator that is there already.
@@ -32,4 +42,9 @@ def finish_random(seed: int, module: types.ModuleType) -> None:
     generator.seed = seed_from_run
     vars(module)["seed"] = vars(module)["_inst"].seed
     system: Any = module.SystemRandom
-    system.random = lambda self: int.from_bytes(os.urandom(7), "big") / (1 << 56)
+
+    @wraps(system.random)
+    def system_random(self: Any) -> float:
+        return int.from_bytes(os.urandom(7), "big") / (1 << 56)
+
+    system.random = system_random

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import builtins
+import copyreg
+import operator
 import os
 import time
 import types
 from collections.abc import Callable, Mapping
+from functools import wraps
 from typing import Any
 
 from tuisim.core.simulation import NS_PER_S
 from tuisim.runtime.session import THREADS, Session
+from tuisim.runtime.standin import replace
 
 EPOCH_S = 1_577_836_800
 """Every run begins on 1 January 2020, 00:00 UTC."""
+
+LONGEST_SLEEP_S = 9_000_000_000
+"""The real functions count nanoseconds in 63 bits."""
 
 POLL_NS = 1_000_000
 """How often an event loop with threads behind it looks for what they did."""
@@ -21,10 +28,8 @@ POLL_NS = 1_000_000
 
 def patch_time(session: Session) -> None:
     """Replace the functions of `time` in place; what was imported from it before stays real."""
-    module: Any = time
-    real_localtime, real_gmtime = time.localtime, time.gmtime
-    real_strftime, real_ctime, real_asctime = time.strftime, time.ctime, time.asctime
     cost = session.sim.spec.profile.clock_read_ns
+    real_sleep = time.sleep
 
     def clock_ns() -> int:
         session.charge(cost)
@@ -34,27 +39,44 @@ def patch_time(session: Session) -> None:
         session.charge(cost)
         return session.now / NS_PER_S
 
+    def wall_ns() -> int:
+        session.charge(cost)
+        return EPOCH_S * NS_PER_S + session.now
+
     def wall() -> float:
         session.charge(cost)
         return EPOCH_S + session.now / NS_PER_S
 
-    def sleep(seconds: float) -> None:
-        """Let simulated time pass."""
-        if seconds < 0:
-            raise ValueError("sleep length must be non-negative")
-        session.spend(round(seconds * NS_PER_S))
+    def sleep(seconds: Any) -> None:
+        length = seconds if isinstance(seconds, float) else operator.index(seconds)
+        if not 0 <= length < LONGEST_SLEEP_S:
+            # Says what is wrong.
+            real_sleep(seconds)
+        session.spend(round(length * NS_PER_S))
 
-    module.sleep = sleep
-    module.time, module.time_ns = wall, lambda: EPOCH_S * NS_PER_S + clock_ns()
+    replace(time, "sleep", sleep, (1, 1))
+    replace(time, "time", wall, (0, 0))
+    replace(time, "time_ns", wall_ns, (0, 0))
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):
-        setattr(module, name, clock)
-        setattr(module, f"{name}_ns", clock_ns)
-    module.clock_gettime, module.clock_gettime_ns = lambda _clock: wall(), lambda _clock: module.time_ns()
-    module.localtime = lambda seconds=None: real_localtime(wall() if seconds is None else seconds)
-    module.gmtime = lambda seconds=None: real_gmtime(wall() if seconds is None else seconds)
-    module.ctime = lambda seconds=None: real_ctime(wall() if seconds is None else seconds)
-    module.asctime = lambda when=None: real_asctime(module.localtime() if when is None else when)
-    module.strftime = lambda form, when=None: real_strftime(form, module.localtime() if when is None else when)
+        replace(time, name, clock, (0, 0))
+        replace(time, f"{name}_ns", clock_ns, (0, 0))
+    # The real ones look whether there is such a clock.
+    gettime, gettime_ns = time.clock_gettime, time.clock_gettime_ns
+    replace(time, "clock_gettime", lambda clock: (gettime(clock), wall())[1], (1, 1))
+    replace(time, "clock_gettime_ns", lambda clock: (gettime_ns(clock), wall_ns())[1], (1, 1))
+    _patch_calendar(wall)
+
+
+def _patch_calendar(wall: Callable[[], float]) -> None:
+    """Let the functions that write a time down take the simulated one where they are given none."""
+    localtime, gmtime, ctime = time.localtime, time.gmtime, time.ctime
+    strftime, asctime = time.strftime, time.asctime
+
+    replace(time, "localtime", lambda seconds=None: localtime(wall() if seconds is None else seconds), (0, 1))
+    replace(time, "gmtime", lambda seconds=None: gmtime(wall() if seconds is None else seconds), (0, 1))
+    replace(time, "ctime", lambda seconds=None: ctime(wall() if seconds is None else seconds), (0, 1))
+    replace(time, "asctime", lambda *when: asctime(*when or (localtime(wall()),)), (0, 1))
+    replace(time, "strftime", lambda form, *when: strftime(form, *when or (localtime(wall()),)), (1, 2))
 
 
 def patch_datetime(session: Session, program_file: str) -> None:
@@ -87,7 +109,7 @@ def patch_datetime(session: Session, program_file: str) -> None:
             shadow.append(_simulated_datetime(session, found))
         return shadow[0]
 
-    builtins.__import__ = import_module
+    replace(builtins, "__import__", import_module)
 
 
 def _simulated_datetime(session: Session, module: types.ModuleType) -> types.ModuleType:
@@ -101,36 +123,65 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
 
     class LikeTheReal(type):
         def __instancecheck__(cls, instance: object) -> bool:
-            return isinstance(instance, cls.__mro__[1])
+            return isinstance(instance, real_of[cls]) if cls in real_of else super().__instancecheck__(instance)
 
         def __subclasscheck__(cls, subclass: type) -> bool:
-            return issubclass(subclass, cls.__mro__[1])
-
-    class datetime(real_datetime, metaclass=LikeTheReal):  # type: ignore[misc,valid-type]  # noqa: N801
-        @classmethod
-        def now(cls, tz: Any = None) -> Any:
-            return cls.fromtimestamp(seconds(), tz)
-
-        @classmethod
-        def utcnow(cls) -> Any:
-            return cls.utcfromtimestamp(seconds())
-
-        @classmethod
-        def today(cls) -> Any:
-            return cls.fromtimestamp(seconds())
+            return issubclass(subclass, real_of[cls]) if cls in real_of else super().__subclasscheck__(subclass)
 
     class date(real_date, metaclass=LikeTheReal):  # type: ignore[misc,valid-type]  # noqa: N801
         @classmethod
         def today(cls) -> Any:
+            """Current date or datetime:  same as self.__class__.fromtimestamp(time.time())."""
+            return cls.fromtimestamp(seconds())
+
+    class datetime(real_datetime, metaclass=LikeTheReal):  # type: ignore[misc,valid-type]  # noqa: N801
+        @classmethod
+        def now(cls, tz: Any = None) -> Any:
+            """Returns new datetime object representing current time local to tz."""
+            return cls.fromtimestamp(seconds(), tz)
+
+        @classmethod
+        def utcnow(cls) -> Any:
+            """Return a new datetime representing UTC day and time."""
+            return cls.utcfromtimestamp(seconds())
+
+        @classmethod
+        def today(cls) -> Any:
+            """Current date or datetime:  same as self.__class__.fromtimestamp(time.time())."""
             return cls.fromtimestamp(seconds())
 
     shadow = types.ModuleType("datetime", module.__doc__)
     vars(shadow).update(vars(module))
-    for replacement in (datetime, date):
-        replacement.__module__ = "datetime"
-        replacement.__qualname__ = replacement.__name__
-        setattr(shadow, replacement.__name__, replacement)
+    real_of: dict[type, type] = {datetime: real_datetime, date: real_date}
+    for replacement, real in real_of.items():
+        _look_like(replacement, real)
+        setattr(shadow, real.__name__, replacement)
+
+    def reduce_class(replaced: Any) -> Any:
+        # Pickled as the real classes: what is written can be read without this program.
+        return (type, (replaced.min,)) if replaced in real_of else replaced.__qualname__
+
+    copyreg.pickle(LikeTheReal, reduce_class)
     return shadow
+
+
+def _look_like(replacement: Any, real: Any) -> None:
+    """Let a replaced class and what is made of it be shown and pickled as the real ones."""
+    replacement.__module__, replacement.__qualname__, replacement.__doc__ = "datetime", real.__name__, real.__doc__
+    for name, part in vars(replacement).items():
+        if isinstance(part, classmethod):
+            part.__func__.__qualname__ = f"{real.__name__}.{name}"
+
+    def show(self: Any) -> str:
+        text = real.__repr__(self)
+        # The real class is shown with its module, classes derived from it are not.
+        return f"datetime.{text}" if type(self) is replacement else str(text)
+
+    def reduce(self: Any, protocol: Any) -> Any:
+        made, *rest = real.__reduce_ex__(self, protocol)
+        return (real if made is replacement else made, *rest)
+
+    replacement.__repr__, replacement.__reduce_ex__ = show, reduce
 
 
 def finish_selectors(session: Session, module: types.ModuleType) -> None:
@@ -144,6 +195,7 @@ def finish_selectors(session: Session, module: types.ModuleType) -> None:
 def _simulated_select(session: Session, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
     """Return a `select` that looks at the real files without waiting, and waits on the simulated clock."""
 
+    @wraps(look)
     def select(self: Any, timeout: float | None = None) -> Any:
         ready = look(self, 0)
         if ready or (timeout is not None and timeout <= 0):

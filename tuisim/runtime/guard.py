@@ -5,7 +5,10 @@ from __future__ import annotations
 import os
 import resource
 import types
+from functools import wraps
 from typing import Any, NoReturn
+
+from tuisim.runtime.standin import replace
 
 MEMORY_LIMIT_BYTES = 1 << 30
 """Address space of the child; beyond it the program gets a MemoryError."""
@@ -39,11 +42,12 @@ def refuse_processes() -> None:
     """Let the calls of `os` that start processes say that they are not allowed."""
     for name in _PROCESS_CALLS:
         if hasattr(os, name):
-            setattr(os, name, _refusal(f"os.{name}"))
+            replace(os, name, _refusal(f"os.{name}"))
     # The debugger forks to look at values: nothing of the program's may run then.
-    os.register_at_fork = lambda **_functions: None
+    replace(os, "register_at_fork", lambda **_functions: None)
 
 
 def refuse_subprocess(module: types.ModuleType) -> None:
     """The same for `subprocess`, after its import."""
-    vars(module)["Popen"].__init__ = _refusal("subprocess.Popen")
+    popen: Any = vars(module)["Popen"]
+    popen.__init__ = wraps(popen.__init__)(_refusal("subprocess.Popen"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import builtins
 import gc
+import operator
 import os
 import sys
 import types
@@ -23,6 +24,7 @@ from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program
 from tuisim.runtime.output import LineStream, Output
 from tuisim.runtime.report import report_error
 from tuisim.runtime.session import Session
+from tuisim.runtime.standin import replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +70,6 @@ class ProgramRunner:
         """The program; None before it is compiled."""
         self.names = self._module.__dict__
         """The program's global names."""
-        self._builtins: Any = builtins
         setattr(builtins, LOOP_HOOK, loop_hook)
 
     def run(self) -> Outcome:
@@ -115,8 +116,8 @@ class ProgramRunner:
         import threading
 
         threading.excepthook = lambda args: self._thread_error(args.exc_type, args.exc_value, args.exc_traceback)
-        self._builtins.input = self._input
-        os._exit = self._exit_now
+        replace(builtins, "input", self._input, (0, 1))
+        replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
     def _execute(self) -> None:
         self.code = code = compile_program(self._config.text, self._session.program_file)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import _thread
 import sys
 from collections.abc import Callable
+from functools import wraps
 from typing import Any
 
 from tuisim.runtime.baton import FOREVER, Baton, SimulatedLock, Task
+from tuisim.runtime.standin import replace
 
 
 def patch_threads(baton: Baton) -> None:
@@ -23,28 +25,40 @@ def patch_threads(baton: Baton) -> None:
         def __init__(self) -> None:
             super().__init__(baton)
 
+        def __reduce_ex__(self, _protocol: object) -> Any:
+            raise TypeError("cannot pickle '_thread.lock' object")
+
         def __repr__(self) -> str:
             # As Python's own, but for the address, which no two runs have in common.
             return f"<{'locked' if self.locked() else 'unlocked'} _thread.lock object>"
 
     LockType.__module__, LockType.__name__, LockType.__qualname__ = "_thread", "lock", "lock"
 
-    def start_new_thread(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any = None) -> int:
+    def start_new_thread(function: Any, args: Any, kwargs: Any = None) -> int:
+        if not callable(function):
+            raise TypeError("first arg must be callable")
+        if not isinstance(args, tuple):
+            raise TypeError("2nd arg must be a tuple")
+        if not isinstance(kwargs, dict | None):
+            raise TypeError("optional 3rd arg must be a dictionary")
         task = baton.spawn(lambda: _run_bare(function, args, kwargs or {}), daemon=True)
         # The library spins until its new thread has begun: let it begin.
         baton.give_way()
-        return id(task)
+        return task.ident
 
-    low.allocate_lock = low.allocate = LockType
-    low.lock = low.LockType = LockType
-    low.start_new_thread = low.start_new = start_new_thread
+    for name in ("allocate_lock", "allocate"):
+        replace(low, name, LockType, (0, 0))
+    for name in ("start_new_thread", "start_new"):
+        replace(low, name, start_new_thread, (2, 3))
+    low.LockType = LockType
+    if hasattr(low, "lock"):
+        low.lock = LockType
     # Without the C queue, `queue` falls back on its own locks, which are these.
     sys.modules["_queue"] = None  # type: ignore[assignment]
 
     import threading
 
     module: Any = threading
-    module._allocate_lock = module.Lock = LockType
     module._CRLock = None
     module.RLock = module._RLock = module._PyRLock
     _patch_thread_class(baton, module.Thread)
@@ -63,6 +77,7 @@ def _run_bare(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any) 
 def _patch_thread_class(baton: Baton, thread: Any) -> None:
     tasks: dict[int, Task] = {}
 
+    @wraps(thread.start)
     def start(self: Any) -> None:
         if not self._initialized:
             raise RuntimeError("thread.__init__() not called")
@@ -76,6 +91,7 @@ def _patch_thread_class(baton: Baton, thread: Any) -> None:
         tasks[id(self)] = baton.spawn(self._bootstrap, daemon=bool(self.daemon))
         self._started.wait()
 
+    @wraps(thread.join)
     def join(self: Any, timeout: float | None = None) -> None:
         if not self._initialized:
             raise RuntimeError("Thread.__init__() not called")
@@ -87,6 +103,7 @@ def _patch_thread_class(baton: Baton, thread: Any) -> None:
         if task is not None:
             baton.join(task, FOREVER if timeout is None else max(0, round(timeout * 1e9)))
 
+    @wraps(thread.is_alive)
     def is_alive(self: Any) -> bool:
         if not self._started.is_set():
             return False
