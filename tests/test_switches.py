@@ -32,6 +32,7 @@ from tuisim.switches import SWITCHES, Settings, parse_words, settings_of
         ("-r my.toml -o box.json", {"robot": "my.toml", "obstacles": "box.json"}),
         ("--profile own.toml", {"profile": "own.toml"}),
         ("-AcizZXD", {"panels_on": ("arrays", "chart", "instrumentation", "noise", "settings", "positioning", "code")}),
+        ("--xpos 5 --ypos 6 --world --hide", {"x_mm": 5.0, "y_mm": 6.0, "panels_off": ("world", "controls")}),
         ("-WqCu", {"panels_off": ("world",), "quiet": True, "clear_trace": True, "rays": True}),
         ("--speed max", {"speed": 0.0}),
         ("--speed 0.25 --fps 10 --colors 16", {"speed": 0.25, "fps": 10, "colors": "16"}),
@@ -77,7 +78,7 @@ def test_every_switch_sets_a_field_and_no_flag_is_used_twice() -> None:
     names = {field.name for field in fields(Settings)}
     # What an infrared sensor meets is too much for a switch: a world file says it.
     assert {switch.field for switch in SWITCHES} == names - {"beacon", "remote"}
-    flags = [flag for switch in SWITCHES for flag in switch.flags]
+    flags = [flag for switch in SWITCHES for flag in (*switch.flags, *switch.magic_flags)]
     assert len(flags) == len(set(flags))
 
 

@@ -30,6 +30,7 @@ COMMANDS: Mapping[str, str] = {
     "obstacles": "list the obstacles, or show some as a file",
     "programs": "list the example programs",
     "profiles": "list the profiles, what each call costs and why",
+    "kernel": "add the Jupyter kernel in which a course's notebooks run as they are",
 }
 """Every command and what it does."""
 

@@ -96,6 +96,8 @@ class Switch:
     panel: str = ""
     """The panel that a switch without a value puts on or off; otherwise it sets its field to `value`."""
     value: bool = True
+    magic_flags: tuple[str, ...] = ()
+    """Further names in a magic line, where the command line means something else by them."""
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
@@ -200,8 +202,8 @@ SWITCHES: tuple[Switch, ...] = (
     Switch(WORLD, ("--walls",), "walls", "walls on the edges of the field", "on|off", _on_off),
     Switch(WORLD, ("--solid",), "solid", "obstacles and walls stop the robot"),
     Switch(WORLD, ("--no-solid",), "solid", "the robot drives through them", value=False),
-    Switch(WORLD, ("-x", "--x"), "x_mm", "start x in mm", "MM", _position),
-    Switch(WORLD, ("-y", "--y"), "y_mm", "start y in mm", "MM", _position),
+    Switch(WORLD, ("-x", "--x", "--xpos"), "x_mm", "start x in mm", "MM", _position),
+    Switch(WORLD, ("-y", "--y", "--ypos"), "y_mm", "start y in mm", "MM", _position),
     Switch(WORLD, ("-a", "--angle"), "heading_deg", "start heading, counter-clockwise from +x", "DEG", _angle),
     Switch(WORLD, ("-N", "--sensornoise"), "light_noise", "light noise, 0 … 128", "N", whole(0, MAX_LIGHT_NOISE)),
     Switch(WORLD, ("-M", "--motornoise"), "motor_noise", "motor noise, 0 … 500", "N", whole(0, MAX_MOTOR_NOISE)),
@@ -227,8 +229,8 @@ SWITCHES: tuple[Switch, ...] = (
     Switch(PANEL, ("-Z", "--settings"), "panels_on", "show the settings", panel="settings"),
     Switch(PANEL, ("-X", "--positioning"), "panels_on", "show the positioning", panel="positioning"),
     Switch(PANEL, ("-D", "--code"), "panels_on", "show the code", panel="code"),
-    Switch(PANEL, ("-W", "--hideworld"), "panels_off", "hide the world", panel="world"),
-    Switch(PANEL, ("-H", "--hidecontrols"), "panels_off", "hide the simulator controls", panel="controls"),
+    Switch(PANEL, ("-W", "--hideworld"), "panels_off", "hide the world", panel="world", magic_flags=("--world",)),
+    Switch(PANEL, ("-H", "--hidecontrols", "--hide"), "panels_off", "hide the simulator controls", panel="controls"),
 )
 """Every shared switch, in the order of the help."""
 
@@ -254,8 +256,12 @@ class SwitchParser(argparse.ArgumentParser):
         self.add_argument(dest, nargs="*", metavar="PROGRAM", help=what)
         self.add_argument("--world", metavar="FILE", help="a world file; it may also stand before the program")
 
-    def add_switches(self) -> None:
-        """Add every shared switch; one that is not given leaves no trace in the namespace."""
+    def add_switches(self, *, magic: bool = False) -> None:
+        """Add every shared switch; one that is not given leaves no trace in the namespace.
+
+        Args:
+            magic: Whether this is about a magic line, not the command line.
+        """
         groups = {group: self.add_argument_group(group) for group in dict.fromkeys(s.group for s in SWITCHES)}
         for switch in SWITCHES:
             how: dict[str, Any] = {"dest": switch.field, "default": argparse.SUPPRESS, "help": switch.help}
@@ -265,7 +271,7 @@ class SwitchParser(argparse.ArgumentParser):
                 how |= {"type": _converter(switch), "metavar": switch.metavar}
             else:
                 how |= {"action": "store_const", "const": switch.value}
-            groups[switch.group].add_argument(*switch.flags, **how)
+            groups[switch.group].add_argument(*switch.flags, *(switch.magic_flags if magic else ()), **how)
 
 
 def _converter(switch: Switch) -> Callable[[str], Any]:
@@ -284,13 +290,13 @@ def given(namespace: argparse.Namespace) -> dict[str, Any]:
 
 
 def parse_words(words: Sequence[str]) -> dict[str, Any]:
-    """Return the switches in `words`, by field of `Settings`.
+    """Return the switches in the words of a magic line, by field of `Settings`.
 
     Raises:
         ConfigError: a word is no switch, or a value is wrong.
     """
     parser = SwitchParser(prog="tuisim", add_help=False, allow_abbrev=False)
-    parser.add_switches()
+    parser.add_switches(magic=True)
     return given(parser.parse_args(list(words)))
 
 

@@ -14,6 +14,7 @@ from jupyter_client.manager import KernelManager, start_new_kernel
 
 import tuisim
 from tests.conftest import ROOT
+from tuisim.cli import run_command
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,3 +114,14 @@ def kernel() -> Iterator[Kernel]:
     yield kernel
     client.stop_channels()
     manager.shutdown_kernel(now=True)
+
+
+@pytest.fixture(scope="session")
+def course_kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The name of the kernel that `tuisim kernel install` adds."""
+    prefix = tmp_path_factory.mktemp("jupyter")
+    assert run_command(["kernel", "install", "--prefix", str(prefix), "--name", "course"]) == 0
+    patch = pytest.MonkeyPatch()
+    patch.setenv("JUPYTER_PATH", str(prefix / "share" / "jupyter"))
+    yield "course"
+    patch.undo()

@@ -42,8 +42,11 @@ COLOURS = {
 }  # fmt: skip
 """By place on Rainbow_bands, the name; the sensor takes cyan for blue and magenta for red."""
 
+LOAD = "from nbev3devsim.load_nbev3devwidget import roboSim, eds\n\n%load_ext nbev3devsim\n"
+"""What the lesson's own first cell loads: the old simulator."""
+
 CELLS = {
-    "load": "%load_ext tuisim\n%matplotlib inline",
+    "load": f"{LOAD}%matplotlib inline",
     "instruments": "%%sim_magic_preloaded -b Rainbow_bands -iHR\n"
     "tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 2)\n",
     "arrays": "%sim_magic -b Testcard -A -H",
@@ -76,10 +79,12 @@ CELLS = {
 }
 
 
-def execute(cells: Mapping[str, str]) -> dict[str, NotebookNode]:
+def execute(cells: Mapping[str, str], kernel: str = "python3") -> dict[str, NotebookNode]:
     """Return the executed cells by name."""
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells.values()])
-    client = NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(ROOT)}})
+    place = {"metadata": {"path": str(ROOT)}}
+    # How a kernel cuts what is printed into messages depends on the machine.
+    client = NotebookClient(notebook, timeout=120, kernel_name=kernel, resources=place, coalesce_streams=True)
     client.execute()
     return dict(zip(cells, notebook.cells, strict=True))
 

@@ -90,6 +90,10 @@ def names(cell: Cell, words: str) -> str:
     return cell(f"%%sim_magic_preloaded -RW {words}\nprint('gyro' in dir(), 'get_clock' in dir())").out
 
 
+def given_ready(cell: Cell, words: str) -> bool:
+    return "import MoveTank" in str(cell(f"%sim_magic -W {words}").result)
+
+
 @dataclass(frozen=True, slots=True)
 class Case:
     """One switch."""
@@ -111,8 +115,8 @@ CASES = [
     Case(("--walls",), "off", spec("world.walls"), False),
     Case(("--solid",), "", spec("world.solid"), True),
     Case(("--no-solid",), "--profile ev3", spec("world.solid, roboSim.spec.profile.name"), (False, "ev3")),
-    Case(("-x", "--x"), "77", spec("world.start.x_mm"), 77),
-    Case(("-y", "--y"), "77", spec("world.start.y_mm"), 77),
+    Case(("-x", "--x", "--xpos"), "77", spec("world.start.x_mm"), 77),
+    Case(("-y", "--y", "--ypos"), "77", spec("world.start.y_mm"), 77),
     Case(("-a", "--angle"), "-90", spec("world.start.heading_deg"), -90),
     Case(("-N", "--sensornoise"), "7", spec("world.noise.light"), 7),
     Case(("-M", "--motornoise"), "7", spec("world.noise.motor"), 7),
@@ -136,11 +140,12 @@ CASES = [
     Case(("-Z", "--settings"), "", text("mat        Grey_bands")),
     Case(("-X", "--positioning"), "", text("heading  0.0°")),
     Case(("-D", "--code"), "", text("2  print('ran')")),
-    Case(("-W", "--hideworld"), "", text("<world,", ""), False),
-    Case(("-H", "--hidecontrols"), "", text("ready"), False),
+    Case(("-W", "--hideworld", "--world"), "", text("<world,", ""), False),
+    Case(("-H", "--hidecontrols", "--hide"), "", text("ready"), False),
     Case(("-s", "--sim"), "other", another_simulator, 99),
     Case(("-h", "--help"), "", text("usage: %sim_magic")),
-    Case(("-v", "--preview", "--previewcode"), "", text("print('ran')")),
+    Case(("-v", "--preview"), "", text("print('ran')")),
+    Case(("--previewcode",), "--preload imports", given_ready, True),
     Case(("-S", "--stop"), "", text("nothing is running")),
     Case(("-m", "--move"), "", moved_back),
     Case(("-F", "--refresh"), "0.5", refreshed, 500),

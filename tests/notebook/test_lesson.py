@@ -1,4 +1,4 @@
-"""A lesson on sensors and data logging, executed as Jupyter executes it; only its load cell is tuisim's."""
+"""A lesson on sensors and data logging, as it was written for the old simulator, executed as Jupyter executes it."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def colours_of(picture: Image.Image) -> Counter[tuple[int, ...]]:
 
 
 @pytest.fixture(scope="module")
-def done() -> Done:
-    return execute(CELLS)
+def done(course_kernel: str) -> Done:
+    return execute(CELLS, course_kernel)
 
 
 def levels(cell: NotebookNode) -> list[float]:
@@ -154,7 +154,8 @@ def test_a_lesson_that_is_repeated_comes_out_the_same(done: Done) -> None:
     noisy = levels(done["noisy"])
     assert ast.literal_eval(result(done["noisy frame"])) == noisy
     assert len(set(noisy)) > 5
-    again = execute(CELLS)
+    # In any other kernel one cell says what the course's own says in that of tuisim.
+    again = execute({**CELLS, "load": "%load_ext tuisim\n%matplotlib inline"})
     assert {name: cell.outputs for name, cell in again.items()} == {name: cell.outputs for name, cell in done.items()}
 
 

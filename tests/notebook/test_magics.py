@@ -70,6 +70,21 @@ def test_each_magic_gives_its_names(magic: str, text: str, out: str, cell: Cell)
     assert cell(f"%%{magic} -R\n{text}\n").out == out
 
 
+READY = {"sim_magic_imports": "OUTPUT_B", "sim_magic_preloaded": "tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)"}
+"""By magic, a part of what it gives a program."""
+
+
+@pytest.mark.parametrize("magic", READY)
+def test_a_preview_shows_what_a_program_finds_ready(magic: str, cell: Cell) -> None:
+    alone = cell(f"%{magic} -v")
+    assert READY[magic] in alone.out
+    assert not alone.bundles
+    with_program = cell(f"%%{magic} -vWH\nprint('mine')\n")
+    assert with_program.out == f"{alone.out}print('mine')\n\n"
+    given = cell(f"text = %{magic} --previewcode\nprint(text)")
+    assert (given.out.strip() in alone.out, given.bundles) == (True, ())
+
+
 def test_the_program_of_the_cell_before_is_run(cell: Cell) -> None:
     assert cell(program("")).out == ""
     assert cell("%sim_magic -RW").out == "ran\n"
@@ -112,7 +127,15 @@ def test_a_mistake_is_one_line_and_changes_nothing(words: str, told: str, cell: 
 
 @pytest.mark.parametrize(
     "line",
-    ["%sim_magic -R", "%sim_data -x", "%sim_image_pair", "%sim_bw_image_data -i 3", "%sim_robot_state now"],
+    [
+        "%sim_magic -R",
+        "%sim_data -x",
+        "%sim_image_pair",
+        "%sim_bw_image_data -i 3",
+        "%sim_robot_state now",
+        "%sim_bw_image_data --crop 3,3,2",
+        "%sim_data --sim nobody",
+    ],
 )
 def test_other_magics_tell_mistakes_in_one_line(line: str, cell: Cell) -> None:
     shown = cell(line)
@@ -152,6 +175,30 @@ def test_pixel_arrays_are_frames_and_pictures(cell: Cell) -> None:
     dark = cell("%sim_bw_image_data -i 0").result
     # The disc lies on the black band: its 305 pixels are dark, the corners are not.
     assert (dark.shape, int(dark.to_numpy().sum())) == ((20, 20), 305)
+
+
+OLD_SWITCHES = [
+    ("%sim_data --sim other", 0),
+    ("%sim_image_pair --pairindex 0 --sim roboSim", None),
+    ("%sim_bw_image_data --index 0 --nocrop --threshold 127 --digitclass", 400),
+    ("%sim_bw_image_data --crop 3,4,17,17 -r", 14 * 13),
+    ("%sim_robot_state --sim roboSim --clear", 10),
+]
+"""Switches of the magics that read the log, as courses know them, and how much comes of them."""
+
+
+@pytest.mark.parametrize(("line", "size"), OLD_SWITCHES, ids=[line for line, _ in OLD_SWITCHES])
+def test_the_old_switches_of_a_log_are_there(line: str, size: int | None, cell: Cell) -> None:
+    cell("from tuisim.notebook.lab import Lab\nother = Lab()")
+    cell(program("-WRH", "print('Colour: 1')\nprint('image_data both')"))
+    shown = cell(line)
+    assert shown.err == ""
+    assert getattr(shown.result, "size", len(shown.result) if shown.result is not None else None) == size
+
+
+@pytest.mark.parametrize("magic", ["sim_data", "sim_robot_state", "sim_image_pair", "sim_bw_image_data"])
+def test_a_magic_of_a_log_has_a_help(magic: str, cell: Cell) -> None:
+    assert cell(f"%{magic} -h").out.startswith(f"usage: %{magic} ")
 
 
 def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -> None:

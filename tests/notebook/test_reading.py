@@ -58,6 +58,44 @@ def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
     assert "line 2" in done.stderr
 
 
+VARIABLES = [
+    ("code", "x = 300"),
+    ("code", "%%sim_magic_preloaded -b Grey_bands -x $_x\nprint('never')\n"),
+    ("code", "for x in (1, 2):\n    %sim_magic --xpos={x + 300} -y 500\n"),
+    ("code", "%%sim_magic_preloaded\nprint('Colour: ' + str(colorLeft.reflected_light_intensity_pc))\n"),
+]
+"""Cells whose magics take values from the notebook, and a program after them."""
+
+
+def test_a_cell_with_a_variable_of_the_notebook_is_skipped(here: Command, tmp_path: Path) -> None:
+    lesson = write(tmp_path / "lesson.ipynb", VARIABLES)
+    done = here("run", lesson, "--all")
+    assert done.returncode == 0
+    assert done.stdout.splitlines()[0] == "Colour: 100.0"
+    assert [line.split()[:2] for line in done.stdout.splitlines()[2:]] == [["lesson.ipynb#2", "finished"]]
+    notes = ["lesson.ipynb#1 is skipped: only the notebook knows $_x",
+             f"{lesson}, cell 3: only the notebook knows {{x + 300}}, which is left out"]  # fmt: skip
+    assert done.stderr.splitlines()[:2] == [f"tuisim: {note}" for note in notes]
+
+
+@pytest.mark.parametrize(
+    ("words", "unknown", "settings"),
+    [
+        pytest.param("-b Loop -x $_x", "$_x", {"background": "Loop"}, id="value"),
+        pytest.param("-x$x -b Loop", "$x", {"background": "Loop"}, id="joined"),
+        pytest.param("--xpos={2 * x} -b Loop", "{2 * x}", {"background": "Loop"}, id="braces"),
+        pytest.param("-x {x} -y $y.z -R", "{x}, $y.z", {"autorun": True}, id="two"),
+        pytest.param("$words", "$words", {}, id="alone"),
+        pytest.param("-b my$$mat", "", {"background": "my$$mat"}, id="a real dollar"),
+    ],
+)
+def test_what_only_the_notebook_knows_is_left_out(
+    words: str, unknown: str, settings: dict[str, object], tmp_path: Path
+) -> None:
+    (found,) = notebook_programs(write(tmp_path / "one.ipynb", [("code", f"%%sim_magic {words}\npass\n")]))
+    assert (found.unknown, dict(found.source.switches)) == (unknown, settings)
+
+
 def test_files_in_magics_are_looked_for_beside_the_notebook(tmp_path: Path) -> None:
     cells = [("code", "%sim_magic -b ./maze.png"), ("code", "%%sim_magic -r bot.toml\npass\n")]
     (found,) = notebook_programs(Path(write(tmp_path / "lesson.ipynb", cells)))
@@ -94,6 +132,7 @@ def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
         pytest.param('{"cells": []}', "", "has no program cells", id="empty"),
         pytest.param(LESSON, "#4", "a number from 1 to 3", id="no such cell"),
         pytest.param(LESSON, "#x", "a number from 1 to 3", id="no number"),
+        pytest.param(VARIABLES, "#1", "only the notebook knows $_x (run the cell there", id="variable"),
         pytest.param([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such switch", id="wrong switch"),
         pytest.param([("code", "%%sim_magic -b Nope\npass")], "", "bad.ipynb#1: -b: no such mat", id="wrong mat"),
         pytest.param([("code", "%%sim_magic_preload\npass")], "", "cell 1: no such magic %%sim", id="wrong magic"),

@@ -64,6 +64,12 @@ def test_without_collaboration_there_are_no_messages(cell: Cell) -> None:
     assert cell(text).out == "PY::?\n{'messages': []}\n"
 
 
+def test_a_responder_may_have_its_old_name(cell: Cell) -> None:
+    cell("roboSim.pyresponder = str.upper")
+    text = "%%sim_magic -RWL\nfrom ev3dev2_glue import pyState\nprint('PY::hello')\nprint(pyState())"
+    assert cell(text).out == "PY::hello\n{'messages': ['HELLO']}\n"
+
+
 def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
     cell("def dark(line):\n    frame = roboSim.image_data()\n    assert list(frame.side) == ['left'], line\n"
          "    return int(eds.bw_image_data(frame).to_numpy().sum())\nroboSim.responder = dark")  # fmt: skip

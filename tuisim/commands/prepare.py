@@ -11,13 +11,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from tuisim.commands.notebooks import known_programs
 from tuisim.config import WorldFile, build_run_spec, load_world, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
 from tuisim.host import Program
-from tuisim.notebook.reading import chosen_programs, is_notebook
+from tuisim.notebook.reading import is_notebook
 from tuisim.programfile import ProgramSource, read_program
 from tuisim.switches import Settings, given, settings_of
 
@@ -105,7 +106,7 @@ def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
         raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
     word = programs[0] if programs else world.program if world else None
     if word is not None and is_notebook(word):
-        return _of_cell(chosen_programs(word)[0].source, world, arguments)
+        return _of_cell(known_programs(word)[0].source, world, arguments)
     return _prepared(word, world, arguments)
 
 
@@ -151,7 +152,7 @@ def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared]:
     prepared: list[Prepared] = []
     for word in programs:
         if is_notebook(word):
-            prepared += [_of_cell(program.source, world, arguments) for program in chosen_programs(word)]
+            prepared += [_of_cell(program.source, world, arguments) for program in known_programs(word)]
         else:
             prepared.append(_prepared(word, world, arguments))
     return prepared

@@ -6,7 +6,7 @@ What these functions need is imported in them: a notebook loads this module whet
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tuisim.errors import LogError
@@ -121,13 +121,16 @@ def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
     return [picture_of(vals) for vals in here.vals]
 
 
-def bw_image_data(frame: pd.DataFrame, index: int = -1, threshold: int = 127) -> pd.DataFrame:
+def bw_image_data(
+    frame: pd.DataFrame, index: int = -1, threshold: int = 127, crop: Sequence[int] | None = None
+) -> pd.DataFrame:
     """Return one logged picture in black and white: a row a pixel row, 1 is dark.
 
     Args:
         frame: As from `get_image_data_from_datalog`.
         index: Row of the frame, from 0; -1 is the last.
         threshold: The lightest grey, 0 … 255, that counts as dark.
+        crop: Left, top, right and bottom of the part that is wanted, in pixels; None for all.
 
     Raises:
         LogError: there is no such row.
@@ -137,4 +140,7 @@ def bw_image_data(frame: pd.DataFrame, index: int = -1, threshold: int = 127) ->
 
     _check_logged(index, len(frame))
     grey = np.asarray(picture_of(frame.vals.iloc[index]).convert("L"))
+    if crop is not None:
+        left, top, right, bottom = crop
+        grey = grey[top:bottom, left:right]
     return pd.DataFrame((grey <= threshold).astype(int))

@@ -57,6 +57,15 @@ class Lab:
         self._traces: tuple[PenTrace, ...] = ()
         """What pens have drawn on the mat, until it is cleared or another one."""
 
+    @property
+    def pyresponder(self) -> Callable[[str], object] | None:
+        """What the old simulator calls `responder`."""
+        return self.responder
+
+    @pyresponder.setter
+    def pyresponder(self, responder: Callable[[str], object] | None) -> None:
+        self.responder = responder
+
     # The log
 
     @property

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Callable
-from functools import partial
-from typing import Any
+from argparse import SUPPRESS, Namespace
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from IPython.core.interactiveshell import InteractiveShell
 
@@ -17,6 +17,9 @@ from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds
 from tuisim.notebook.lab import Lab, roboSim
 from tuisim.programfile import PRELUDES
+
+if TYPE_CHECKING:
+    from tuisim.switches import SwitchParser
 
 MAX_INDEX = 1_000_000
 
@@ -52,90 +55,130 @@ def _lab(shell: InteractiveShell, name: str | None) -> Lab:
 
 
 def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
-    def act(line: str, cell: str | None) -> None:
+    def act(line: str, cell: str | None) -> str | None:
         from tuisim.notebook.words import parse_line
+        from tuisim.preludes import PRELUDE_TEXTS
 
         words = parse_line(line, magic)
-        if words.help:
-            print(words.help)
-            return
+        ready = PRELUDE_TEXTS[words.settings.get("preload", PRELUDES[magic])]
+        if words.help or words.preview_code:
+            print(words.help, end="")
+            return ready if words.preview_code else None
+        if words.preview and ready:
+            print(f"# ---- {magic}: what a program finds ready ----\n\n{ready}\n# ---- the program ----\n")
+            if cell is None:
+                return None
         lab = _lab(shell, words.sim)
         lab.take(words, cell, PRELUDES[magic])
         if words.preview:
             print(lab.program_text)
+        return None
 
     return act
 
 
-def _whole(flag: str, low: int, high: int, text: str) -> int:
+Log = Callable[[Lab, Namespace], Any]
+
+
+def _whole(flag: str, low: int, high: int) -> Callable[[str], int]:
     from tuisim.switches import whole
 
-    return whole(low, high)(text, flag)
+    return lambda text: whole(low, high)(text, flag)
 
 
-def _parsed(magic: str, line: str, *options: tuple[str, str, int, int]) -> Any:
-    """Parse the words of a magic that reads the log: `--clear` or whole numbers, as (flag, long flag, least, most)."""
+def _corners(text: str) -> tuple[int, ...]:
+    corners = tuple(int(part) for part in text.split(",") if part.strip().isdecimal())
+    if len(corners) != 4 or not (corners[0] < corners[2] and corners[1] < corners[3]):
+        raise ConfigError(f"must be LEFT,TOP,RIGHT,BOTTOM in pixels, got {text!r}", key="--crop")
+    return corners
+
+
+def _log_parser(magic: str) -> SwitchParser:
+    """The parser of a magic that reads the log."""
     from tuisim.switches import SwitchParser
 
     parser = SwitchParser(prog=f"%{magic}", add_help=False, allow_abbrev=False)
-    if not options:
-        parser.add_argument("-c", "--clear", action="store_true")
-    for short, long, low, high in options:
-        parser.add_argument(short, long, type=partial(_whole, long, low, high))
-    try:
-        return parser.parse_args(shlex.split(line))
-    except ValueError as error:
-        raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
+    add = parser.add_argument
+    add("-s", "--sim", metavar="NAME", help="variable that holds the simulator (roboSim)")
+    add("-h", "--help", action="store_true", help="show this")
+    if magic == "sim_data":
+        add("-c", "--clear", action="store_true", help="forget what was logged")
+    elif magic == "sim_robot_state":
+        add("-c", "--clear", action="store_true", help=SUPPRESS)
+    elif magic == "sim_image_pair":
+        add("-i", "--index", "-p", "--pairindex", type=_whole("--index", -MAX_INDEX, MAX_INDEX), default=-1,
+            metavar="N", help="which pair, from 0; -1 is the last")  # fmt: skip
+    else:
+        add("-i", "--index", type=_whole("--index", -MAX_INDEX, MAX_INDEX), default=-1, metavar="N",
+            help="which picture, from 0; -1 is the last")  # fmt: skip
+        add("-r", "--random", action="store_true", help="any picture")
+        add("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
+            help="the lightest grey that counts as dark (127)")  # fmt: skip
+        add("-c", "--crop", type=_corners, metavar="L,T,R,B", help="a part of the picture, in pixels")
+        add("-n", "--nocrop", action="store_true", help="the whole picture (unless --crop is given)")
+        add("-d", "--digitclass", action="store_true", help=SUPPRESS)
+    return parser
 
 
-_INDEX = ("-i", "--index", -MAX_INDEX, MAX_INDEX)
+def _log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
+    def read(line: str, cell: str | None) -> Any:
+        parser = _log_parser(magic)
+        try:
+            found = parser.parse_args(shlex.split(line))
+        except ValueError as error:
+            raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
+        if found.help:
+            print(parser.format_help())
+            return None
+        return act(_lab(shell, found.sim), found)
+
+    return read
 
 
-def _sim_data(line: str, cell: str | None) -> Any:
-    if _parsed("sim_data", line).clear:
-        roboSim.clear_datalog()
-        return None
-    return roboSim.data()
+def _sim_data(lab: Lab, found: Namespace) -> Any:
+    return lab.clear_datalog() if found.clear else lab.data()
 
 
-def _sim_robot_state(line: str, cell: str | None) -> dict[str, Any]:
+def _sim_robot_state(lab: Lab, found: Namespace) -> dict[str, Any]:
     from IPython.display import display
 
     from tuisim.notebook.showing import table_bundle
 
-    if line.split():
-        raise ConfigError(f"takes no words, got {line.strip()!r}", key="%sim_robot_state")
-    state = roboSim.state
+    state = lab.state
     display(table_bundle("Robot", [(name, str(value)) for name, value in state.items()]), raw=True)
     return state
 
 
-def _sim_image_pair(line: str, cell: str | None) -> None:
+def _sim_image_pair(lab: Lab, found: Namespace) -> None:
     from IPython.display import display
 
     from tuisim.notebook.showing import picture_bundle
 
-    index = _parsed("sim_image_pair", line, _INDEX).index
-    for picture in eds.image_pair(roboSim.image_data(), -1 if index is None else index):
+    for picture in eds.image_pair(lab.image_data(), found.index):
         display(picture_bundle(picture.resize((160, 160), 0), "sensor"), raw=True)
 
 
-def _sim_bw_image_data(line: str, cell: str | None) -> Any:
-    found = _parsed("sim_bw_image_data", line, _INDEX, ("-t", "--threshold", 0, 255))
-    index = -1 if found.index is None else found.index
-    return eds.bw_image_data(roboSim.image_data(), index, 127 if found.threshold is None else found.threshold)
+def _sim_bw_image_data(lab: Lab, found: Namespace) -> Any:
+    from random import randrange
+
+    frame = lab.image_data()
+    index = randrange(len(frame)) if found.random and len(frame) else found.index
+    return eds.bw_image_data(frame, index, found.threshold, None if found.nocrop else found.crop)
+
+
+LOG_MAGICS: Mapping[str, Log] = {
+    "sim_data": _sim_data,
+    "sim_robot_state": _sim_robot_state,
+    "sim_image_pair": _sim_image_pair,
+    "sim_bw_image_data": _sim_bw_image_data,
+}
+"""The magics that read the log."""
 
 
 def install(shell: InteractiveShell) -> None:
     """Register every magic, and put `roboSim` and `eds` into the notebook's namespace."""
     for name in PRELUDES:
         shell.magics_manager.register_function(_guarded(_sim_magic(shell, name)), "line_cell", name)
-    others = {
-        "sim_data": _sim_data,
-        "sim_robot_state": _sim_robot_state,
-        "sim_image_pair": _sim_image_pair,
-        "sim_bw_image_data": _sim_bw_image_data,
-    }
-    for name, act in others.items():
-        shell.magics_manager.register_function(_guarded(act), "line", name)
+    for name, read in LOG_MAGICS.items():
+        shell.magics_manager.register_function(_guarded(_log_magic(shell, name, read)), "line", name)
     shell.push({"roboSim": roboSim, "eds": eds})

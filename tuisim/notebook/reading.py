@@ -18,6 +18,9 @@ MAX_NOTEBOOK_BYTES = 64 << 20
 SUFFIX = ".ipynb"
 
 _MAGIC = re.compile(r"%(?P<cell>%)?(?P<name>sim_magic\w*)(?P<words>.*)")
+_VARIABLE = re.compile(r"(?<!\$)\$[A-Za-z_][\w.]*|\{[^{}]+\}")
+"""What IPython replaces in a magic line by the value that it has in the notebook."""
+
 _HEADING = re.compile(r"#+\s+(.*\S)")
 
 
@@ -30,6 +33,19 @@ class NotebookProgram:
     title: str
     """The nearest heading above it, empty if there is none."""
     source: ProgramSource
+    unknown: str = ""
+    """What its magic line takes from the notebook, such as `$x`: the program runs there only. Empty for nothing."""
+    notes: tuple[str, ...] = ()
+    """What had to be left out of the cells between the program before and this one."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Words:
+    """A magic line, as far as it can be understood outside the notebook."""
+
+    magic: re.Match[str]
+    settings: Mapping[str, Any]
+    unknown: str
 
 
 def is_notebook(word: str) -> bool:
@@ -60,34 +76,38 @@ def _cells(path: Path) -> Iterator[tuple[str, str]]:
 
 
 def notebook_programs(path: Path) -> list[NotebookProgram]:
-    """Return the programs in a notebook, from the top.
+    """Return the programs in a notebook, from the top; what only the notebook knows is left out of their world.
 
     Raises:
         ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
     """
     found: list[NotebookProgram] = []
-    title, lasting = "", dict[str, Any]()
+    title, lasting, notes = "", dict[str, Any](), list[str]()
     for place, (kind, text) in enumerate(_cells(path), 1):
         if kind == "markdown":
             headings = [match[1] for line in text.splitlines() if (match := _HEADING.match(line))]
             title = headings[-1] if headings else title
         if kind != "code":
             continue
-        for magic, words in _magics(text, f"{path}, cell {place}"):
-            said = beside(path.parent, words)
+        where = f"{path}, cell {place}"
+        for words in _magics(text, where):
+            said = beside(path.parent, words.settings)
             lasting = lasting_after(lasting, said)
-            if magic["cell"]:
+            if words.magic["cell"]:
                 number = len(found) + 1
                 # The magic's line stays, empty, so that lines count as in the cell.
                 at = text.index("%%")
                 body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
-                prelude = str(said.get("preload", PRELUDES[magic["name"]]))
+                prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
                 source = ProgramSource(f"{path.name}#{number}", "", body, prelude, {**lasting, **said})
-                found.append(NotebookProgram(number, title, source))
+                found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
+                notes.clear()
+            elif words.unknown:
+                notes.append(f"{where}: only the notebook knows {words.unknown}, which is left out")
     return found
 
 
-def _magics(text: str, where: str) -> Iterator[tuple[re.Match[str], Mapping[str, Any]]]:
+def _magics(text: str, where: str) -> Iterator[_Words]:
     """Yield each magic that sets the world, with what it says; a cell's own magic is its first line."""
     stripped = text.lstrip()
     lines = stripped.splitlines()[:1] if stripped.startswith("%%") else stripped.splitlines()
@@ -98,10 +118,24 @@ def _magics(text: str, where: str) -> Iterator[tuple[re.Match[str], Mapping[str,
         if match["name"] not in PRELUDES:
             known = nearest(match["name"], PRELUDES)
             raise ConfigError(f"no such magic %{match['cell'] or ''}{match['name']}", known, file=where)
+        line_words, unknown = _without_variables(match["words"])
         try:
-            yield match, parse_line(match["words"], match["name"]).settings
+            yield _Words(match, parse_line(line_words, match["name"]).settings, unknown)
         except ConfigError as error:
             raise ConfigError(error.message, error.hint, file=where) from None
+
+
+def _without_variables(words: str) -> tuple[str, str]:
+    """Return the words of a magic line without those that need a variable and their switches, and what they need."""
+    unknown = ", ".join(_VARIABLE.findall(words))
+    kept: list[str] = []
+    # A word that holds a variable, also if blanks are in its braces.
+    for word in re.findall(rf"(?:{_VARIABLE.pattern}|\S)+", words) if unknown else ():
+        if not _VARIABLE.search(word):
+            kept.append(word)
+        elif not word.startswith("-") and kept and kept[-1].startswith("-"):
+            kept.pop()
+    return (" ".join(kept) if unknown else words), unknown
 
 
 def chosen_programs(word: str) -> list[NotebookProgram]:
@@ -118,4 +152,8 @@ def chosen_programs(word: str) -> list[NotebookProgram]:
         return programs
     if not cell.isdecimal() or not 1 <= int(cell) <= len(programs):
         raise ConfigError(f"no program {cell!r}", f"a number from 1 to {len(programs)}", file=name)
-    return [programs[int(cell) - 1]]
+    chosen = programs[int(cell) - 1]
+    if chosen.unknown:
+        hint = "run the cell there, or write a value in its place"
+        raise ConfigError(f"only the notebook knows {chosen.unknown}", hint, file=word)
+    return [chosen]

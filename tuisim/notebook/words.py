@@ -35,6 +35,7 @@ class MagicWords:
     sim: str | None = None
     """Name of the simulator that is meant."""
     preview: bool = False
+    preview_code: bool = False
     stop: bool = False
     move_back: bool = False
     refresh_s: float = DEFAULT_REFRESH_S
@@ -45,12 +46,13 @@ class MagicWords:
 
 def _parser(magic: str) -> SwitchParser:
     parser = SwitchParser(prog=f"%{magic}", add_help=False, allow_abbrev=False)
-    parser.add_switches()
+    parser.add_switches(magic=True)
     refresh = number(MIN_REFRESH_S, MAX_REFRESH_S)
     add = parser.add_argument_group("notebook").add_argument
     add("-s", "--sim", metavar="NAME", help="variable that holds the simulator (roboSim)")
     add("-h", "--help", action="store_true", help="show this")
-    add("-v", "--preview", "--previewcode", action="store_true", help="show the program")
+    add("-v", "--preview", action="store_true", help="show the program, and what it finds ready")
+    add("--previewcode", action="store_true", help="give what a program finds ready as text, and do no more")
     add("-S", "--stop", action="store_true", help="tells that nothing runs: a program stops with its cell")
     add("-m", "--move", action="store_true", help="robot back to its start")
     add("-F", "--refresh", nargs="?", const=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S, metavar="S",
@@ -78,6 +80,7 @@ def parse_line(line: str, magic: str) -> MagicWords:
         settings=given(found),
         sim=found.sim,
         preview=found.preview,
+        preview_code=found.previewcode,
         stop=found.stop,
         move_back=found.move,
         refresh_s=found.refresh,
