@@ -102,6 +102,40 @@ async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
         assert app.loading.world_file is None
 
 
+def with_magic(words: str) -> str:
+    return f"# %%sim_magic_preloaded -b Loop{words}\nprint('A: 1')\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "panel", "shown"),
+    [(" -c", "chart", True), (" -X", "positioning", True), (" -W", "world", False), (" -O", "output", True)],
+    ids=["chart", "positioning", "no world", "shown anyway"],
+)
+async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
+    folder: Path, words: str, panel: str, shown: bool
+) -> None:
+    path = folder / "mine.py"
+    async with Lab(with_file(path)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        before = app.desk.shown(panel)
+        path.write_text(with_magic(words))
+        look(app)
+        await until(pilot, lambda: app.desk.shown(panel) is shown)
+        path.write_text(with_magic(""))
+        look(app)
+        await until(pilot, lambda: app.desk.shown(panel) is before)
+
+
+async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) -> None:
+    (folder / "mine.py").write_text(with_magic(" -cu --speed 2"))
+    async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await open_path(pilot, "mine.py")
+        assert app.desk.shown("chart")
+        assert app.desk.world is not None
+        assert app.desk.world.show_rays
+        assert app.bridge.speed == 2
+
+
 async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Path) -> None:
     async with Lab(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

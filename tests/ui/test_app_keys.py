@@ -45,6 +45,31 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
                 assert (f"─ {panel.title}" in screen_text(app)) is shown, panel.id
 
 
+@pytest.mark.parametrize("panel", [panel for panel in PANELS if panel not in ("world", "output")])
+async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back(panel: str) -> None:
+    off = frozenset({panel})
+    async with Lab(settings(LOGS, panels_off=off)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press(PANELS[panel].key)
+        # Those that hear no keys leave the focus where it is.
+        deaf = ("instrumentation", "arrays", "controls")
+        wanted = app.desk.panels["world" if panel in deaf else panel]
+        await until(pilot, lambda: app.focused is not None and wanted in app.focused.ancestors_with_self)
+        await pilot.press(PANELS[panel].key)
+        await until(pilot, lambda: not app.desk.shown(panel) and app.focused is app.desk.world)
+
+
+async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
+    app = Lab(settings(LOGS, panels_on=frozenset({"chart", "output"}), autorun=True, speed=0.0))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await until(pilot, lambda: "— finished" in screen_text(app) and "[x] Colour" in screen_text(app))
+        await pilot.press("ctrl+l")
+        await until(pilot, lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app))
+        recording = app.bridge.timeline.recording
+        assert recording is not None
+        assert any("Colour" in row.text for row in recording.rows.rows(0))
+
+
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with Lab(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

@@ -6,9 +6,36 @@ import pytest
 from textual.widgets import Input
 
 from tests.ui.app_help import LOGS, ready, screen_text, settings, until
+from tuisim.ui.actions import Situation, working
 from tuisim.ui.app import Lab
+from tuisim.ui.footer import fitting
+from tuisim.ui.snapshot import ENDED
 
 pytestmark = pytest.mark.usefixtures("home")
+
+
+@pytest.mark.parametrize("width", [80, 100, 120])
+def test_after_a_run_the_next_steps_of_a_student_come_first(width: int) -> None:
+    status = " time limit max "
+    shown = fitting(working(Situation(ENDED, has_program=True, has_run=True)), width - len(status))
+    assert [action.footer_key or action.key for action in shown][:5] == ["R", "l", "e", "c", "d"]
+
+
+FAILS = "print('Colour: 1')\n1 / 0\n"
+
+
+async def test_the_state_of_a_run_that_failed_is_a_warning() -> None:
+    async with Lab(settings(FAILS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        warning = app.key_footer.get_component_rich_style("footer--failed").color
+
+        def said() -> list[object]:
+            pieces = (piece for row in app.screen._compositor.render_strips() for piece in row)
+            return [one.style.color for one in pieces if one.style and one.text.split()[:1] == ["error"]]
+
+        # In the footer, the instrumentation and the simulator controls.
+        await until(pilot, lambda: len(said()) == 3)
+        assert said() == [warning] * 3
 
 
 def footer(app: Lab) -> str:

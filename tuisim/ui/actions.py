@@ -237,6 +237,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, verbs.save_obstacles),
         Action("zoom", "v", "Zoom the world", ROBOT, verbs.zoom, footer="zoom"),
         Action("clear", "C", "Clear the pen trace", ROBOT, verbs.clear_trace, footer="clear"),
+        Action("clear-log", "ctrl+l", "Clear output and chart; the run keeps its log", FILES, verbs.clear_log),
         *_toggles(),
         Action("enlarge", "plus", "The panel with the focus alone, and back", PANEL, verbs.enlarge, shown_key="+"),
         Action("rays", "U", "Ultrasonic rays on or off", PANEL, verbs.rays, footer="rays"),
@@ -248,10 +249,17 @@ ACTIONS: Mapping[str, Action] = {
 """Every key by the id of what it does."""
 
 
-_OUT_OF_THE_PAST = ("now", "branch")
+def _next_steps(now: Situation) -> tuple[str, ...]:
+    """Ids of what one is likely to do next: out of the past, on with a run, to its results, or to a first run."""
+    if now.looks_back:
+        return ("now", "branch")
+    if now.state in IN_RUN:
+        return ("stop", "pause")
+    return ("run", "analyse", "export", "panel-chart", "edit") if now.has_run else ("run", "open", "edit", "mats")
 
 
 def working(now: Situation) -> list[Action]:
-    """Return the actions that do something now, in the order of the table; in the past first those that lead out."""
-    found = [action for action in ACTIONS.values() if not action.why_not(now)]
-    return sorted(found, key=lambda action: action.id not in _OUT_OF_THE_PAST) if now.looks_back else found
+    """Return the actions that do something now: the likely next steps first, the others in the order of the table."""
+    found = {action.id: action for action in ACTIONS.values() if not action.why_not(now)}
+    first = [found.pop(step) for step in _next_steps(now) if step in found]
+    return [*first, *found.values()]

@@ -31,6 +31,7 @@ from tuisim.ui.news import News
 from tuisim.ui.pacer import Pacer
 from tuisim.ui.replaying import open_run
 from tuisim.ui.session import AppSettings
+from tuisim.ui.snapshot import GOOD_ENDS
 from tuisim.ui.speech import Voice
 from tuisim.ui.status import show_footer, situation
 from tuisim.ui.verbs import end_label
@@ -171,10 +172,7 @@ class Lab(Wishes):
         recording = self.bridge.timeline.recording
         self.feed = Feed(recording) if recording else None
         self._last_words = last_words
-        if self.desk.output:
-            self.desk.output.clear()
-        if self.desk.chart:
-            self.desk.chart.clear()
+        self.desk.clear_log()
         if self.desk.brick:
             self.desk.brick.release_all()
         self.work.run_changed()
@@ -238,7 +236,7 @@ class Lab(Wishes):
     def _ended(self, ended: Ended) -> None:
         if self.desk.brick:
             self.desk.brick.release_all()
-        good = ended.end in ("finished", "stopped")
+        good = ended.end in GOOD_ENDS
         words = ended.summary or end_label(ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
         self.debugging.ended()

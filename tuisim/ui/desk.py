@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, cast
 
 from textual import events
@@ -100,26 +101,40 @@ class Desk(Container):
         """Whether a panel is on the screen."""
         return panel in self.panels and self.panels[panel].display
 
+    def clear_log(self) -> None:
+        """Wipe what was logged off the panels."""
+        if self.output:
+            self.output.clear()
+        if self.chart:
+            self.chart.clear()
+
     def on_screen(self) -> list[Panel]:
         """Return the panels on the screen."""
         return [cast(Panel, widget) for widget in self.panels.values() if widget.display]
 
     def toggle(self, panel: str) -> None:
-        """Show a panel, or hide it; one asked for is given room before the others."""
+        """Show a panel, or hide it."""
         show = not self.shown(panel) or bool(self.alone)
         self.alone = ""
-        self._asked.pop(panel, None)
-        self._asked[panel] = show
-        before = {panel_id for panel_id in PANELS if self.shown(panel_id)}
+        self.ask({panel: show})
+
+    def ask(self, wanted: Mapping[str, bool | None]) -> None:
+        """Show and hide panels; those asked for last are given room first, None leaves one to the terminal's size."""
+        for panel, show in wanted.items():
+            self._asked.pop(panel, None)
+            if show is not None:
+                self._asked[panel] = show
+        before = [panel for panel in PANELS if self.shown(panel)]
         self.lay_out()
-        title = PANELS[panel].title
-        if show and not self.shown(panel):
-            self.app.notify(f"{title} does not fit here: hide another panel or enlarge the terminal")
-            return
-        gone = [PANELS[p] for p in PANELS if p in before and p != panel and not self.shown(p)]
-        if gone:
+        asked = [panel for panel, show in wanted.items() if show and not self.alone]
+        for panel in asked:
+            if not self.shown(panel):
+                self.app.notify(f"{PANELS[panel].title} does not fit here: hide another panel or enlarge the terminal")
+        gone = [PANELS[panel] for panel in before if panel not in wanted and not self.shown(panel)]
+        came = " and ".join(PANELS[panel].title for panel in asked if self.shown(panel))
+        if gone and came:
             names = ", ".join(f"{info.title} ({info.key})" for info in gone)
-            self.app.notify(f"{title} takes the room of {names}")
+            self.app.notify(f"{came} takes the room of {names}")
 
     def give_all(self, panel: str) -> None:
         """Let one panel have the whole place; with an empty id the others are back."""

@@ -48,17 +48,23 @@ class KeyFooter(Widget):
 
     DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
     ALLOW_SELECT = False
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--off"}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--failed", "footer--off"}
 
     def __init__(self) -> None:
         super().__init__(id="footer")
         self._situation = Situation("idle", False, False)
         self._status = ""
+        self._failed = False
         self._on: frozenset[str] = frozenset()
         self._typing: tuple[KeyWord, ...] = ()
 
     def show(
-        self, situation: Situation, status: str, panels_on: frozenset[str], typing: tuple[KeyWord, ...] = ()
+        self,
+        situation: Situation,
+        status: str,
+        panels_on: frozenset[str],
+        typing: tuple[KeyWord, ...] = (),
+        failed: bool = False,
     ) -> None:
         """Show the keys for a situation.
 
@@ -67,9 +73,12 @@ class KeyFooter(Widget):
             status: State of the run, at the right.
             panels_on: Panels whose keys are shown as switched on.
             typing: Keys of the field that has the focus; where letters go into it, they are no keys.
+            failed: Whether the run did not end well, so that its state is a warning.
         """
-        if (situation, status, panels_on, typing) != (self._situation, self._status, self._on, self._typing):
+        before = self._situation, self._status, self._on, self._typing, self._failed
+        if (situation, status, panels_on, typing, failed) != before:
             self._situation, self._status, self._on, self._typing = situation, status, panels_on, typing
+            self._failed = failed
             self.refresh()
 
     def render(self) -> Text:
@@ -87,7 +96,8 @@ class KeyFooter(Widget):
             line.append(f" {_key(action)}", key_style + meta)
             line.append(f" {action.footer}", self._word_style(action) + meta)
         line.append(" " * max(0, width - len(status) - len(line)))
-        line.append(status, self.get_component_rich_style("footer--status", partial=True))
+        name = "footer--failed" if self._failed else "footer--status"
+        line.append(status, self.get_component_rich_style(name, partial=True))
         return line
 
     def on_click(self, event: events.Click) -> None:

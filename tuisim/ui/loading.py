@@ -163,6 +163,7 @@ class Loading:
         plan = plans.with_choices(self._lab.bridge.plan, said)
         self._note_program(program, said)
         self._load(plan, program)
+        self._show_as_said({}, said)
         self._lab.say(f"{program.name} is open: R runs it")
 
     def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
@@ -306,8 +307,19 @@ class Loading:
         """Take another text of the program that is open, with what its magic line says anew."""
         program = self._lab.bridge.program
         as_said = new.prelude if new.prelude != self._prelude_said or program is None else program.prelude
-        self._take_said(_differences(self._magic_said, said), replace(new, prelude=as_said))
+        before = self._magic_said
+        self._take_said(_differences(before, said), replace(new, prelude=as_said))
         self._note_program(new, said)
+        self._show_as_said(before, said)
+
+    def _show_as_said(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
+        """Take what a magic line says anew of the app: panels, rays and speed."""
+        lab, panels = self._lab, _panels_said(now)
+        lab.desk.ask({panel: panels.get(panel) for panel, _ in _panels_said(before).items() ^ panels.items()})
+        if now.get("rays") and not before.get("rays") and lab.desk.world:
+            lab.desk.world.show_rays = True
+        if now.get("speed") is not None and now["speed"] != before.get("speed"):
+            lab.bridge.set_speed(now["speed"])
 
     def _take_said(self, differences: Mapping[str, Any], program: Program | None) -> None:
         """Take what a file says anew; what it says as before stays as the user has made it since."""
@@ -341,6 +353,11 @@ def _program_path(word: str) -> str:
     if Path(word).exists():
         return word
     return str(examples.get(word) or examples.get(f"{word}.py") or word)
+
+
+def _panels_said(said: Mapping[str, Any]) -> dict[str, bool]:
+    """The panels that a magic line shows, and those that it hides."""
+    return {**dict.fromkeys(said.get("panels_on", ()), True), **dict.fromkeys(said.get("panels_off", ()), False)}
 
 
 def _is_file_word(word: str) -> bool:

@@ -16,6 +16,9 @@ from tuisim.datalog.face import Face
 IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
 """Run states: no run yet, child is starting, time moves, stands still, waits in input(), over."""
 
+GOOD_ENDS = ("finished", "stopped")
+"""Ends of a run that are no failure (`protocol.Ended.end`)."""
+
 _DARK = Face()
 
 
@@ -63,6 +66,11 @@ class Snapshot:
     """The newest tick of the run."""
     now_pose: Pose | None = None
     """Where the robot is now, while another instant is looked at."""
+
+    @property
+    def failed(self) -> bool:
+        """Whether the run is over and did not end well."""
+        return self.state == ENDED and bool(self.end) and self.end not in GOOD_ENDS
 
     @property
     def planned(self) -> RunSpec:

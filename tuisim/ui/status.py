@@ -49,4 +49,5 @@ def show_footer(lab: Lab, snapshot: Snapshot) -> None:
     if snapshot.state in IN_RUN or snapshot.speed != 1:
         status += f" {speed_label(snapshot.speed)}"
     shown = frozenset(panel for panel in lab.desk.panels if lab.desk.shown(panel))
-    lab.key_footer.show(situation(lab), status, shown, _field_keys(lab))
+    failed = snapshot.failed and not lab.debugging.looks_back
+    lab.key_footer.show(situation(lab), status, shown, _field_keys(lab), failed)

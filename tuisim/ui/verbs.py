@@ -76,7 +76,7 @@ def nudge(lab: Lab, right_mm: float, up_mm: float, turn_deg: float) -> None:
 
 
 def toggle(lab: Lab, panel: str) -> None:
-    """Show a panel, or hide it; one that is to be edited takes the focus."""
+    """Show a panel, which takes the focus, or hide it."""
     lab.desk.toggle(panel)
     lab.situation_changed()
     lab.call_after_refresh(lab.attend, panel)
@@ -120,6 +120,12 @@ def clear_trace(lab: Lab) -> None:
     if world := _world(lab):
         world.clear_trace()
         lab.draw(force=True)
+
+
+def clear_log(lab: Lab) -> None:
+    """Wipe what was logged off the output and the chart; the run keeps it."""
+    lab.desk.clear_log()
+    lab.say("Output and chart are clear; the run keeps its log: l analyses it, e exports it")
 
 
 def random_place(lab: Lab) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from textual.widget import Widget
+
 from tuisim.errors import TuisimError
 from tuisim.ui import travel
 from tuisim.ui.editor.wishes import EditorWishes
@@ -61,13 +63,16 @@ class Wishes(EditorWishes):
         self.bridge.place(message.pose)
 
     def attend(self, panel: str) -> None:
-        """Give the focus to a panel that is to be edited, if it is on the screen; else to the world."""
+        """Give the focus to a panel that has been opened, as far as it hears keys; to the world if it was closed."""
         widget = self.desk.panels.get(panel)
-        if widget is not None and hasattr(widget, "begin"):
-            if self.desk.shown(panel):
-                widget.begin()
-            else:
-                self.set_focus(self.desk.world if self.desk.shown("world") else None)
+        if not self.desk.shown(panel) or widget is None:
+            self.set_focus(self.desk.world if self.desk.shown("world") else None)
+        elif hasattr(widget, "begin"):
+            widget.begin()
+        else:
+            inside = (child for child in widget.walk_children(Widget, with_self=True) if child.focusable)
+            if first := next(inside, None):
+                first.focus()
 
     def on_settings_edited(self, message: Settings.Edited) -> None:
         """A field of the settings was entered: what is wrong with it is said there."""

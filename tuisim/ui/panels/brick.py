@@ -75,10 +75,6 @@ class Brick(Widget, can_focus=True):
         """Draw for the new size."""
         self.call_after_refresh(self._draw)
 
-    def begin(self) -> None:
-        """Take the focus, with which its keys press the buttons."""
-        self.focus()
-
     def on_focus(self) -> None:
         """Say which keys press the buttons."""
         self.border_subtitle = _HELP

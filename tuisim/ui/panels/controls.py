@@ -22,7 +22,7 @@ class Controls(Widget, can_focus=False):
 
     TITLE: ClassVar[str] = "Simulator controls"
     ALLOW_SELECT = False
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"controls--button", "controls--off", "controls--label"}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"controls--button", "controls--off", "controls--failed", "controls--label"}
 
     def __init__(self) -> None:
         super().__init__()
@@ -65,6 +65,10 @@ class Controls(Widget, can_focus=False):
             line.append(part)
         return line
 
+    def _state(self, now: Snapshot) -> Text:
+        style = self.get_component_rich_style("controls--failed", partial=True) if now.failed else ""
+        return Text(_STATES.get(now.state, end_label(now.end)), style)
+
     def render(self) -> Text:
         """Return the panel's content."""
         now = self._snapshot
@@ -84,7 +88,7 @@ class Controls(Widget, can_focus=False):
         lines = [
             buttons,
             Text(),
-            self._line("State", _STATES.get(now.state, end_label(now.end))),
+            self._line("State", self._state(now)),
             self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
             self._line("Program", self._program or "none: o opens one"),
             self._line("Mat", spec.world.background),

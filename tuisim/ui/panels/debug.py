@@ -64,10 +64,6 @@ class Debug(Widget, can_focus=True):
         """The text is the only child."""
         yield self._view
 
-    def begin(self) -> None:
-        """Take the focus."""
-        self.focus()
-
     def on_focus(self) -> None:
         """Say which keys work here."""
         self.border_subtitle = "↑↓ scroll · ←→ calls · ⏎ thread"

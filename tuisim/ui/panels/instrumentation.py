@@ -277,19 +277,20 @@ def _clock(now: Snapshot, width: int) -> Line:
     )
 
 
-def _state_word(now: Snapshot) -> str:
-    return end_label(now.end) if now.state == ENDED and now.end else now.state
+def _state_word(now: Snapshot) -> Run:
+    word = end_label(now.end) if now.state == ENDED and now.end else now.state
+    return word, _WARNING if now.failed else _VALUE
 
 
 def _state(now: Snapshot, width: int) -> Line:
     state, profile, pen = _state_word(now), now.spec.profile.name, "pen down" if now.pen_down else "pen up"
     return _fit(
         width,
-        (_label("State"), _value(f"{state:<9}"), _unit(" "), _value(pen.ljust(9)), _unit(" "), _value(profile)),
-        (_label("State"), _value(state), _unit(" · "), _value(profile)),
-        (_label("State", 6), _value(state), _unit(" · "), _value(profile)),
-        (_value(state), _unit("·"), _value(profile)),
-        (_value(state),),
+        (_label("State"), (f"{state[0]:<9}", state[1]), _unit(" "), _value(pen.ljust(9)), _unit(" "), _value(profile)),
+        (_label("State"), state, _unit(" · "), _value(profile)),
+        (_label("State", 6), state, _unit(" · "), _value(profile)),
+        (state, _unit("·"), _value(profile)),
+        (state,),
     )
 
 
@@ -313,7 +314,7 @@ def _place_and_time(now: Snapshot, width: int) -> Line:
     where = (_unit("x "), _value(x), _unit(" y "), _value(y), _unit(" "), _value(heading), _unit("°"))
     return _fit(
         width,
-        (*where, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _value(_state_word(now))),
+        (*where, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
         (*where, _value(f" {now.time_s:.2f}"), _unit("s")),
         (_value(x), _unit(","), _value(y), _value(f" {heading}"), _unit("° "), _value(f"{now.time_s:.1f}"), _unit("s")),
         (_value(f"{now.time_s:.2f}"), _unit(" s")),

@@ -7,12 +7,14 @@ from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.core.geometry import Pose
 from tuisim.switches import MAX_ANGLE_DEG, MAX_POSITION_MM
+from tuisim.ui.actions import ACTIONS
 from tuisim.ui.snapshot import Snapshot
 
 _FIELDS = {"x": ("X", "mm", MAX_POSITION_MM), "y": ("Y", "mm", MAX_POSITION_MM), "angle": ("Angle", "°", MAX_ANGLE_DEG)}
@@ -34,6 +36,16 @@ def parse_field(field: str, text: str) -> float:
     if not -limit <= value <= limit:
         raise ValueError(f"{name}: a number from -{limit} to {limit}, not {text.strip()[:12] or 'nothing'!r}")
     return value
+
+
+class NumberInput(Input):
+    """A field for a number, in which letters are still keys of the app."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding(action.key, f"app.act('{action.id}')", action.title, show=False, priority=True)
+        for action in ACTIONS.values()
+        if len(action.key) == 1
+    ]
 
 
 class Positioning(Vertical):
@@ -58,7 +70,7 @@ class Positioning(Vertical):
         for field, (name, unit, _) in _FIELDS.items():
             with Horizontal(classes="field"):
                 yield Label(f"{name}, {unit}", markup=False)
-                yield Input(id=field, compact=True, select_on_focus=True)
+                yield NumberInput(id=field, compact=True, select_on_focus=True)
         with Horizontal(classes="links"):
             yield Static("[@click=app.act('home')]m Start[/]")
             yield Static("[@click=app.act('random')]j Random[/]")

@@ -17,6 +17,7 @@ from tuisim.datalog.catalogue import RunInfo
 from tuisim.errors import TuisimError
 from tuisim.ui.branching import BRANCH_TAG
 from tuisim.ui.screens.choosing import ListDialog
+from tuisim.ui.snapshot import GOOD_ENDS
 from tuisim.ui.verbs import end_label
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
 MOST_LISTED = 300
 """So many runs are listed at once; the others are found by searching."""
-
-_GOOD = ("finished", "stopped")
 
 
 def matching(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
@@ -58,7 +57,7 @@ def run_line(run: RunInfo) -> Text:
     line.append(f"{_when(run)[5:]:<11} ", "#9fb0c3")
     line.append(f"{run.program:<12.12} ", "bold")
     line.append(f"{Path(run.background).name:<10.10} ")
-    line.append(f"{end_label(run.end):<9.9} ", "" if run.end in _GOOD else "#ff6e6e")
+    line.append(f"{end_label(run.end):<9.9} ", "" if run.end in GOOD_ENDS else "#ff6e6e")
     line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
     if run.tags or run.summary:
         line.append(f"  {run.tags or run.summary}", "#9fb0c3")
