@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,6 +12,11 @@ from tuisim.protocol import Ended, Message
 
 PATIENCE_S = 120.0
 """How long a test waits before it fails: what never comes must not pass, and what comes late on a busy machine must."""
+
+
+def told(done: subprocess.CompletedProcess[str]) -> list[str]:
+    """Return the lines that a command wrote to stderr, except notes."""
+    return [line for line in done.stderr.splitlines() if not line.startswith("note: ")]
 
 
 @dataclass(frozen=True)

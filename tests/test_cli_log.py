@@ -15,7 +15,7 @@ import pandas as pd
 import pytest
 
 from tests.conftest import ROOT, Command
-from tests.running import PATIENCE_S
+from tests.running import PATIENCE_S, told
 from tuisim.cli import run_command
 from tuisim.commands.log import OPTIONS, SUBCOMMANDS, Subcommand
 
@@ -132,7 +132,7 @@ def test_bad_input(here: Command, log: Path, words: tuple[str, ...], expected: s
     done = here("log", *(word.format(log=log, words=text) for word in words))
     assert done.returncode == 2
     assert expected in done.stderr
-    assert len(done.stderr.splitlines()) == 1
+    assert len(told(done)) == 1
 
 
 def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:

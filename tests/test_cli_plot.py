@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from tests.conftest import Command
+from tests.running import told
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -90,7 +91,7 @@ def test_a_path_is_drawn_to_one_scale(here: Command, tmp_path: Path) -> None:
 def test_what_is_not_drawn_is_told(here: Command, log: Path) -> None:
     log.write_text("time,a,b,c,d,e\n0,1,2,3,4,5\n1,2,3,4,5,6\n")
     assert "not drawn: e; --variable NAME" in here("log", "plot", str(log)).stderr
-    assert here("log", "plot", str(log), "--variable", "e").stderr == ""
+    assert told(here("log", "plot", str(log), "--variable", "e")) == []
 
 
 BAD = {
@@ -114,14 +115,14 @@ def test_bad_input(here: Command, log: Path, tmp_path: Path, words: tuple[str, .
     done = here("log", "plot", str(log), *words)
     assert (done.returncode, done.stdout) == (2, "")
     assert expected in done.stderr
-    assert len(done.stderr.splitlines()) == 1
+    assert len(told(done)) == 1
     assert list(tmp_path.iterdir()) == [log]
 
 
-@pytest.mark.parametrize("times", ["1e18 1000000000000000128", "1e18 1e18", "0 5e-324"], ids=["two", "one", "tiny"])
+@pytest.mark.parametrize("times", ["1e20 100000000000000016384", "1e20 1e20", "0 5e-324"], ids=["two", "one", "tiny"])
 def test_times_that_lie_too_near(here: Command, tmp_path: Path, times: str) -> None:
     path = tmp_path / "a.csv"
     path.write_text("time,red\n" + "".join(f"{time},{at}\n" for at, time in enumerate(times.split())))
     for words in (("plot", "--size", "60x12"), ("plot", "--out", str(tmp_path / "a.svg"))):
         done = here("log", words[0], str(path), *words[1:])
-        assert (done.returncode, done.stderr) == (0, "")
+        assert (done.returncode, told(done)) == (0, [])

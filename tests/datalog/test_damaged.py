@@ -8,7 +8,6 @@ import math
 import os
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +15,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tuisim.datalog.opening import Log, open_log
+from tests.datalog.log_cases import Case, Read, check_input, times, values
+from tuisim.datalog.opening import open_log
 from tuisim.errors import LogError
 
 ROWS = "".join(f"{at / 10},{at * 2}\n" for at in range(40))
@@ -49,29 +49,7 @@ def holed(data: bytes, at: float, size: int) -> bytes:
     return data[:start] + b"\xff" * size + data[start + size :]
 
 
-@dataclass(frozen=True)
-class Read:
-    """What must be read of an input."""
-
-    rows: int
-    names: tuple[str, ...] = ("red",)
-    left_out: int = 0
-    note: str = ""
-    """Part of some note."""
-    check: Callable[[Log], bool] = lambda log: True
-
-
-def values(log: Log, name: str = "red") -> list[float]:
-    return list(log.series(name).values)
-
-
-def times(log: Log, name: str = "red") -> list[float]:
-    return list(log.series(name).time_s)
-
-
 SOUND = Read(40, check=lambda log: values(log)[:3] == [0, 2, 4] and times(log)[1] == 0.1)
-Case = tuple[str, bytes | Callable[[], bytes], Read | str]
-
 CASES: dict[str, Case] = {
     "sound": ("a.csv", CSV.encode(), SOUND),
     "no newline at the end": ("a.csv", CSV.rstrip().encode(), SOUND),
@@ -303,22 +281,7 @@ CASES: dict[str, Case] = {
 
 @pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
 def test_input(tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str) -> None:
-    path = tmp_path / name
-    path.write_bytes(content if isinstance(content, bytes) else content())
-    if isinstance(expected, str):
-        with pytest.raises(LogError, match=expected) as caught:
-            open_log(path)
-        assert str(path) in str(caught.value)
-        return
-    log = open_log(path)
-    said = "; ".join(log.notes)
-    if expected.rows >= 0:
-        assert (log.rows, log.left_out) == (expected.rows, expected.left_out), said
-        assert log.names == expected.names
-    else:
-        assert log.rows > 0
-    assert expected.note in said
-    assert expected.check(log)
+    check_input(tmp_path / name, content, expected)
 
 
 def test_there_are_sixty() -> None:

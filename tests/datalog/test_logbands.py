@@ -8,7 +8,7 @@ import pytest
 
 from tuisim.core.noise import disturb_pixels
 from tuisim.datalog.analysis.levels import greys, nearest_grey, without_clamping
-from tuisim.datalog.analysis.logbands import band_report, light_noise, light_scale
+from tuisim.datalog.analysis.logbands import band_report, in_words, light_noise, light_scale
 from tuisim.datalog.opening import Log
 from tuisim.datalog.opening.layout import guessed
 
@@ -76,3 +76,21 @@ def test_empty_cells_belong_to_no_band() -> None:
     report = band_report(Log("log", table, guessed(table)), "light")
     assert [(band.level, band.samples) for band in report.bands] == [(50, 3), (100, 3)]
     assert (report.transitions, report.total) == (0, 6)
+
+
+@pytest.mark.parametrize(
+    ("light", "levels"),
+    [
+        ([100.0] * 5 + [50.0] * 5 + [0.0], [(100, 5), (50, 5), (0, 1)]),
+        ([0.0] + [100.0] * 5 + [50.0] * 5, [(0, 1), (100, 5), (50, 5)]),
+        ([100.0] * 5 + [50.0] * 5 + [20.0, 0.0], [(100, 5), (50, 5), (0, 1)]),
+        ([100.0] * 5 + [50.0] * 6, [(100, 5), (50, 6)]),
+        (list(np.linspace(100.0, 0.0, 12)), []),
+    ],
+    ids=["at the end", "at the start", "after an edge", "none", "a ramp"],
+)
+def test_one_sample_at_an_end_is_a_level(light: list[float], levels: list[tuple[float, int]]) -> None:
+    table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
+    report = band_report(Log("log", table, guessed(table)), "Light")
+    assert [(band.level, band.samples) for band in report.bands] == levels
+    assert ("0.00 black (one sample)" in in_words(report)) is any(samples == 1 for _, samples in levels)

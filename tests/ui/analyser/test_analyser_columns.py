@@ -32,7 +32,7 @@ def foreign(tmp_path: Path) -> Path:
         pytest.param("t_ms,light\n0,1\n20,2\n", True, id="time by name"),
         pytest.param("light\n3\n2\n", True, id="nothing to choose from"),
         pytest.param("time,variable,value\n0,A,1\n1,A,2\n", True, id="a log of ours"),
-        pytest.param("clock,name,value\n0,A,1\n3,A,2\n", False, id="beside names and values"),
+        pytest.param("boot,name,value\n0,A,1\n3,A,2\n", False, id="beside names and values"),
         pytest.param("name,value\nA,1\nA,2\n", True, id="names and values only"),
         pytest.param("Colour: 3\nColour: 4\n", True, id="printed lines"),
     ],
@@ -55,7 +55,7 @@ async def test_a_doubtful_table_is_asked_about_and_drawn_as_told(foreign: Path) 
         screen = await asked(pilot)
         assert screen.model is not None and screen.model.log.layout.unit_s == 1.0
         # The first column is time, in ms; the second is of no interest.
-        await pilot.press("u", "down", "space", "enter")
+        await pilot.press("t", "u", "down", "space", "enter")
         await until(pilot, lambda: pilot.app.screen is screen)
         log = screen.model.log
         assert (log.layout.time, log.layout.values, log.layout.unit_s) == ("boot", ("light", "far"), 1e-3)
@@ -78,7 +78,7 @@ async def test_the_guess_may_stay(leave: str, foreign: Path) -> None:
         screen = await asked(pilot)
         await pilot.press(leave)
         await until(pilot, lambda: pilot.app.screen is screen)
-        assert screen.model is not None and screen.model.log.names == ("id", "light", "far")
+        assert screen.model is not None and screen.model.log.names == ("boot", "id", "light", "far")
 
 
 async def test_what_was_named_in_the_shell_is_not_asked_about(foreign: Path) -> None:

@@ -8,7 +8,7 @@ from tuisim.switches import SwitchParser
 
 def add_columns(parser: SwitchParser) -> None:
     """Declare `--time`, `--unit` and `--value`."""
-    parser.add_argument("--time", metavar="COLUMN", help="column with the time; empty counts the rows")
+    parser.add_argument("--time", metavar="COLUMN", help="column with the time; '' counts the rows")
     parser.add_argument(
         "--unit",
         default="",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tuisim.commands.echo import echo_error
 from tuisim.datalog.opening import Log, loading
-from tuisim.datalog.opening.layout import chosen
+from tuisim.datalog.opening.layout import chosen, time_in_words
 from tuisim.datalog.opening.loading import STDIN
 from tuisim.datalog.opening.runs import log_of_runs, telemetry_log
 from tuisim.datalog.store import RunStore
@@ -86,6 +86,10 @@ def _open_file(word: str, arguments: Namespace) -> Log:
     if shows:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
     assert log is not None
+    # Our own exports say what their columns are.
+    if arguments.time is None and not log.metadata:
+        hint = "--time COLUMN takes another, --time '' counts the rows"
+        print(printable(f"note: {log.title}: {time_in_words(log.layout)} ({hint})"), file=sys.stderr)
     return _with_notes(log)
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tuisim.datalog.arrays import FloatArray
 
 MIN_SAMPLES = 2
-"""A plateau has at least so many samples, with noise one more but for the ends of the log."""
+"""A plateau has at least so many samples, with noise one more; at the ends of the log one is enough."""
 
 EVERY_PLACE = 4000
 """Up to so many samples a cut may be anywhere; in longer logs where neighbouring means differ."""
@@ -130,6 +130,7 @@ def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
     whole = {(p.start, p.stop): p for p in found}
     spans = _joined(clean, list(whole), least_step, sigma)
     found = [whole.get(span) or _plateau(clean, *span, sigma) for span in spans]
+    found = _with_ends(clean, found, max(least_step, _FAR * sigma))
     return [
         Plateau(int(finite[p.start]), int(finite[p.stop - 1]) + 1, p.level, p.spread, p.drift, p.strays) for p in found
     ]
@@ -338,6 +339,23 @@ def _is_slope(values: FloatArray, plateau: Plateau, scale: float) -> bool:
     """Whether a piece rises or falls so much that it has no level, as an angle does in a turn."""
     highest = float(np.max(np.abs(values[plateau.start : plateau.stop])))
     return abs(plateau.drift) > max(_SLOPE_OF_RANGE * scale, _SLOPE_OF_VALUE * highest)
+
+
+def _with_ends(values: FloatArray, found: list[Plateau], least_step: float) -> list[Plateau]:
+    """Add the first and the last sample as levels where they lie a step away from the plateau beside them.
+
+    A program that logs until it meets a value ends its log at the first sample of that level.
+    """
+    if not found:
+        return found
+    first, last = 0, len(values) - 1
+    ends = ((first, found[0].start - first, found[0].level), (last, last + 1 - found[-1].stop, found[-1].level))
+    single = [
+        Plateau(at, at + 1, float(values[at]), 0.0, 0.0)
+        for at, apart, level in ends
+        if 1 <= apart <= _EDGE_SAMPLES and abs(values[at] - level) > least_step
+    ]
+    return sorted((*found, *single), key=lambda plateau: plateau.start)
 
 
 def _grown(values: FloatArray, found: list[Plateau], sigma: float) -> list[Plateau]:

@@ -15,6 +15,8 @@ from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.opening.log import Log, Series
 
 NAN = float("nan")
+ONE_SAMPLE = "one sample"
+"""Marks a level that only the first or the last sample of the log shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,8 +152,10 @@ def in_words(report: BandReport) -> str:
         levels.setdefault(band.grey or f"{band.true_level:.4g}", []).append(band)
     said = []
     for grey, bands in levels.items():
-        level = sum(band.true_level * band.samples for band in bands) / sum(band.samples for band in bands)
-        said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{f' ({len(bands)}x)' if len(bands) > 1 else ''}")
+        samples = sum(band.samples for band in bands)
+        level = sum(band.true_level * band.samples for band in bands) / samples
+        times = f" ({len(bands)}x)" if len(bands) > 1 else f" ({ONE_SAMPLE})" if samples == 1 else ""
+        said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{times}")
     known = f"{len(levels)} level{'s' * (len(levels) != 1)}{': ' * bool(said)}{', '.join(said)}"
     edges = f"{report.transitions} of {report.total} samples lie on edges"
     return f"{report.variable}: {known}; {edges}"

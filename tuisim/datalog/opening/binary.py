@@ -14,7 +14,8 @@ from tuisim.datalog.opening.headings import unique_names
 from tuisim.datalog.opening.notes import Notes
 from tuisim.errors import LogError
 
-PARQUET_MAGIC, ARROW_MAGIC = b"PAR1", b"ARROW1"
+PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC = b"PAR1", b"ARROW1", b"\xff\xff\xff\xff"
+_CUT_OFF = "the file was cut off: read as far as it goes"
 
 
 def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
@@ -61,7 +62,6 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     Raises:
         LogError: not even the names of the columns can be read.
     """
-    size = max(path.stat().st_size, 1)
     with pa.memory_map(str(path)) as source:
         try:
             with pa.ipc.open_file(source) as reader:
@@ -70,31 +70,55 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                     yield 1.0, reader.schema.empty_table()
                 for at in range(count):
                     try:
-                        part = pa.Table.from_batches([reader.get_batch(at)])
-                        part.validate(full=True)
+                        part = _whole(reader.get_batch(at))
                     except (pa.ArrowException, OSError, ValueError):
                         notes.add("batches of rows are damaged and were left out", [], 1)
                     else:
                         yield (at + 1) / count, _named(part, notes)
                 return
         except (pa.ArrowException, OSError, ValueError):
-            notes.say("the file was cut off: read as far as it goes")
+            notes.say(_CUT_OFF)
         # Behind eight bytes of magic an Arrow file is a stream of batches.
-        source.seek(8)
+        yield from _stream_parts(path, source, 8, notes)
+
+
+def arrow_stream_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    """Yield the record batches of an Arrow stream; of one that was cut off those that are whole.
+
+    Raises:
+        LogError: not even the names of the columns can be read.
+    """
+    with pa.memory_map(str(path)) as source:
+        yield from _stream_parts(path, source, 0, notes)
+
+
+def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    size = max(path.stat().st_size, 1)
+    source.seek(start)
+    try:
+        stream = pa.ipc.open_stream(source)
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise LogError(f"no readable Arrow file: {_short(error)}", file=str(path)) from error
+    yield 0.0, stream.schema.empty_table()
+    while True:
         try:
-            stream = pa.ipc.open_stream(source)
-        except (pa.ArrowException, OSError, ValueError) as error:
-            raise LogError(f"no readable Arrow file: {_short(error)}", file=str(path)) from error
-        yield 0.0, stream.schema.empty_table()
-        while True:
-            try:
-                part = pa.Table.from_batches([stream.read_next_batch()])
-                part.validate(full=True)
-            except StopIteration:
-                return
-            except (pa.ArrowException, OSError, ValueError):
-                return
-            yield source.tell() / size, _named(part, notes)
+            part = _whole(stream.read_next_batch())
+        except StopIteration:
+            return
+        except (pa.ArrowException, OSError, ValueError):
+            notes.say(_CUT_OFF)
+            return
+        yield source.tell() / size, _named(part, notes)
+
+
+def _whole(batch: pa.RecordBatch) -> pa.Table:
+    """Return a batch as a table, checked to its last value; dates in milliseconds keep their time of day."""
+    columns = [
+        column.view(pa.timestamp("ms")) if pa.types.is_date64(column.type) else column for column in batch.columns
+    ]
+    part = pa.Table.from_arrays(columns, batch.schema.names).replace_schema_metadata(batch.schema.metadata)
+    part.validate(full=True)
+    return part
 
 
 def _named(part: pa.Table, notes: Notes) -> pa.Table:

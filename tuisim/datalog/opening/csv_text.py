@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import csv
-from collections import Counter
+import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice, takewhile
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.csv as pa_csv
 
-from tuisim.datalog.opening.headings import unique_names
+from tuisim.datalog.opening.csv_heading import BLANKS, COMMENT, Heading, cells_of, find_heading
 from tuisim.datalog.opening.lines import Block
 from tuisim.datalog.opening.notes import Notes
 from tuisim.datalog.opening.numbers import EMPTY_CELLS, are_booleans, are_numbers, parsed_booleans, parsed_numbers
 from tuisim.datalog.opening.plain import texts_array
 from tuisim.datalog.opening.texts import CODED, text_kind
 
-SEPARATORS = (",", ";", "\t", "|")
 _SNIFFED_LINES = 30
+_COMMENTS = re.compile(rb"(?m)^#.*$")
+_BLANKS = re.compile(rb"[ \t]+")
+_MARGINS = re.compile(rb"(?m)^[ \t]+|[ \t]+$")
 _MOST_LINES, _MOST_JOINS = 100, 100
 """Lines that a row may have, and how often one of several lines may turn out to be none."""
 
@@ -32,19 +35,30 @@ class CsvReader:
 
     def __init__(self, notes: Notes) -> None:
         self._notes = notes
-        self._names: list[str] = []
-        self._separator = ","
-        self._decimal_comma = False
+        self._heading = Heading()
         self._joins_left = _MOST_JOINS
         self._kinds: dict[str, pa.DataType] = {}
         """By column; missing while all its cells were empty."""
 
+    @property
+    def _names(self) -> tuple[str, ...]:
+        return self._heading.names
+
+    @property
+    def _separator(self) -> str:
+        return "\t" if self._heading.separator == BLANKS else self._heading.separator
+
+    @property
+    def _decimal_comma(self) -> bool:
+        return self._heading.decimal_comma
+
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it holds but the heading."""
-        if not self._names:
+        if not self._heading.names:
             block = self._begin(block)
-            if not self._names:
+            if not self._heading.names:
                 return None
+        block = self._plain(block)
         rows = None
         # Most blocks hold what they should; cells are only looked at as texts where one of them does not.
         columns = self._parsed(block, self._kinds) or self._parsed(block, {})
@@ -53,26 +67,29 @@ class CsvReader:
         if not len(columns[0]):
             return None
         return pa.Table.from_arrays(
-            [self._typed(n, c, block, rows) for n, c in zip(self._names, columns, strict=True)], self._names
+            [self._typed(n, c, block, rows) for n, c in zip(self._names, columns, strict=True)], list(self._names)
         )
 
     # The heading
 
     def _begin(self, block: Block) -> Block:
-        lines = [line for _, line in zip(range(_SNIFFED_LINES), block.lines(), strict=False)]
+        # Comments above a table may be many: as many lines are looked at as there are, and some of the table's.
+        lines = list(takewhile(lambda line: line[1].startswith(COMMENT), block.lines()))
+        lines += islice((line for line in block.lines() if not line[1].startswith(COMMENT)), _SNIFFED_LINES)
         if not lines:
             return block
-        self._separator = sniff_separator([text for _, text in lines])
-        row, heading = lines[0]
-        names = [name.strip() for name in self._cells(heading)]
-        self._decimal_comma = self._separator == ";" and _has_decimal_comma([text for _, text in lines[1:]])
-        if are_numbers(texts_array(names), self._decimal_comma):
-            self._notes.say("no heading: the columns are numbered")
-            self._names = [f"column {at}" for at in range(1, len(names) + 1)]
-            return block
-        self._names = unique_names(names, self._notes)
-        skipped = block.text.split(b"\n", row - block.first_row + 1)
-        return Block(row + 1, skipped[-1])
+        self._heading = heading = find_heading(lines, self._notes)
+        skipped = block.text.split(b"\n", heading.rows_follow - block.first_row)
+        return Block(heading.rows_follow, skipped[-1], block.newline)
+
+    def _plain(self, block: Block) -> Block:
+        """The same rows without comments, and with separators where blanks separate the cells."""
+        text = block.text
+        if self._heading.has_comments and (text.startswith(b"#") or b"\n#" in text):
+            text = _COMMENTS.sub(b"", text)
+        if self._heading.separator == BLANKS:
+            text = _BLANKS.sub(b"\t", _MARGINS.sub(b"", text))
+        return Block(block.first_row, text, block.newline)
 
     # Cells
 
@@ -83,7 +100,7 @@ class CsvReader:
         try:
             table = pa_csv.read_csv(
                 pa.BufferReader(block.text),
-                pa_csv.ReadOptions(column_names=self._names, use_threads=False, block_size=len(block.text) + 1),
+                pa_csv.ReadOptions(column_names=list(self._names), use_threads=False, block_size=len(block.text) + 1),
                 pa_csv.ParseOptions(delimiter=self._separator, newlines_in_values=False),
                 pa_csv.ConvertOptions(
                     column_types={name: kinds.get(name, pa.string()) for name in self._names},
@@ -123,12 +140,12 @@ class CsvReader:
         for at, line in enumerate(lines):
             if at < after or not line or line.isspace():
                 continue
-            cells, after = self._joined(lines, at) if '"' in line else (None, at + 1)
-            yield block.first_row + at, self._cells(line.rstrip("\r")) if cells is None else cells
+            cells, after = self._joined(lines, at, block.newline) if '"' in line else (None, at + 1)
+            yield block.first_row + at, cells_of(line.rstrip("\r"), self._separator) if cells is None else cells
 
-    def _joined(self, lines: Sequence[str], at: int) -> tuple[list[str] | None, int]:
+    def _joined(self, lines: Sequence[str], at: int, newline: str) -> tuple[list[str] | None, int]:
         """The cells of a row of several lines and where the next row is; None if it is but one line."""
-        ahead = [line + "\n" for line in lines[at : at + _MOST_LINES]]
+        ahead = [line + newline for line in lines[at : at + _MOST_LINES]]
         reader = csv.reader(ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True)
         try:
             cells = next(reader)
@@ -148,14 +165,6 @@ class CsvReader:
         if len(cells) != len(self._names):
             return False
         return '"' not in line or bool(are_numbers(texts_array(cells[:1]), self._decimal_comma))
-
-    def _cells(self, line: str) -> list[str]:
-        try:
-            cells = next(csv.reader([line], delimiter=self._separator, strict=True))
-        except (csv.Error, StopIteration):
-            # A quote that is never closed is but a character.
-            return line.split(self._separator)
-        return cells
 
     def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
         if name not in self._kinds:
@@ -188,24 +197,3 @@ def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
     # A line of nothing but blanks is a row to the library's parser.
     rows = [row for row, line in enumerate(block.text.split(b"\n"), block.first_row) if line]
     return [rows[at] for at in positions]
-
-
-def _has_decimal_comma(lines: Sequence[str]) -> bool:
-    cells = [cell.strip() for line in lines for cell in line.split(";")]
-    with_comma = sum(cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdigit() for cell in cells)
-    return with_comma > 0 and not any(cell.count(".") == 1 and cell.replace(".", "").isdigit() for cell in cells)
-
-
-def sniff_separator(lines: Sequence[str]) -> str:
-    """Return what separates the cells: what is there in most lines, and in most of them equally often."""
-
-    def evenness(separator: str) -> tuple[int, int]:
-        counts = Counter(line.count(separator) for line in lines)
-        counts.pop(0, None)
-        if not counts:
-            return 0, 0
-        number, times = counts.most_common(1)[0]
-        return times, number
-
-    best = max(SEPARATORS, key=evenness)
-    return best if evenness(best) > (0, 0) else ","

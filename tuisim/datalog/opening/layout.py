@@ -10,18 +10,15 @@ import numpy as np
 import pyarrow as pa
 
 from tuisim.datalog.opening.plain import numbers_of
+from tuisim.datalog.opening.time_column import NAMES, UNIT_NAMES, has_time_word, time_name, unit_since_1970_s
 from tuisim.datalog.units import SECONDS
 from tuisim.errors import LogError, listed
 
 ROW = ""
 """Instead of a time column: the samples are counted."""
 
-_TIME_NAMES = ("time", "time_s", "t", "seconds", "sec", "elapsed", "timestamp", "datetime", "date", "index", "x")
-"""Names of time columns, the surest first; ends such as `_ms` tell the unit."""
+_TEXT_TIMES = frozenset(NAMES) - {"index", "row"}
 
-_TEXT_TIMES = frozenset(_TIME_NAMES) - {"index", "x"}
-
-_UNITS_S = {**SECONDS, "sec": 1.0, "µs": 1e-6}
 _VARIABLE_NAMES = ("variable", "name", "sensor", "channel", "signal", "key", "metric")
 _VALUE_NAMES = ("value", "val", "y", "reading", "measurement")
 _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
@@ -36,6 +33,8 @@ class Layout:
     """Column with the time; `ROW` where the samples are only counted."""
     unit_s: float = 1.0
     """Seconds that a unit of the time column stands for."""
+    since_first: bool = False
+    """Whether the time column holds numbers that are dates, shown as the time since the first of them."""
     variable: str = ""
     """Column that names the variable of each row; empty where each column is a variable of its own."""
     values: tuple[str, ...] = ()
@@ -59,55 +58,82 @@ def is_time(kind: pa.DataType) -> bool:
 def guessed(table: pa.Table) -> Layout:
     """Return what the columns seem to mean.
 
-    The time is the column with the surest name, else the first one that rises all the
-    time, else the rows are counted. A text column with a known name next to one called
-    `value` names the variables; otherwise every other column of numbers is one.
+    The time is the column with the surest name, else one whose type says so, else the rows are counted.
+    Only where no column has a name, the first one that rises is the time. A text column with a known name
+    next to one called `value` names the variables; otherwise every other column of numbers is one.
     """
     names = table.column_names
-    time = _named_time(table)
+    named = _named_time(table)
+    time = named or _rising(table)
     run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
     variable = next((n for n in _VARIABLE_NAMES if n in names and is_text(table.schema.field(n).type)), "")
     value = next((n for n in _VALUE_NAMES if n in names and is_numeric(table.schema.field(n).type)), "")
-    if variable and value and value != time:
-        rising = "" if time else _rising(table, besides=value)
-        return Layout(time or rising, unit_of(time or rising, table), variable, (value,), run, not rising)
-    sure = bool(time)
-    time = time or _rising(table)
     numeric = [n for n in names if is_numeric(table.schema.field(n).type) and n not in (time, run)]
+    if variable and value and value != time:
+        sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
+        return _timed(Layout(time, 1.0, False, variable, (value,), run, sure), table)
     if value and value in numeric:
         kept = [n for n in numeric if n not in _NO_VALUES]
     else:
         # In a frame of every tick the pose is a value like any other.
         kept = [n for n in numeric if n not in ("line", "row")]
     # Of one column of numbers there is nothing to choose.
-    return Layout(time, unit_of(time, table), "", tuple(kept or numeric), run, sure or (len(numeric) < 2 and not time))
+    sure = bool(named) or (len(numeric) < 2 and not time)
+    return _timed(Layout(time, 1.0, False, "", tuple(kept or numeric), run, sure), table)
+
+
+def _timed(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
+    """The same layout with the unit of its time column: a given one, else what name and size of the numbers say."""
+    if not layout.time or not is_numeric(table.schema.field(layout.time).type):
+        return replace(layout, unit_s=1.0, since_first=False)
+    if unit_s is None:
+        unit_s = time_name(layout.time).unit_s
+    date_unit_s = unit_since_1970_s(table.column(layout.time), unit_s)
+    if date_unit_s is not None:
+        return replace(layout, unit_s=date_unit_s, since_first=True)
+    return replace(layout, unit_s=1.0 if unit_s is None else unit_s, since_first=False)
 
 
 def _named_time(table: pa.Table) -> str:
-    """The column that by its name is the time, empty if there is none."""
-    lowered: dict[str, str] = {name.lower(): name for name in table.column_names}
-    for wanted in _TIME_NAMES:
-        for ending in ("", *(f"_{unit}" for unit in _UNITS_S), *(f" ({unit})" for unit in _UNITS_S)):
-            name = lowered.get(wanted + ending, "")
-            if name and _is_usable(table, name):
-                return name
-    return ROW
+    """The column that by its name or type is the time, empty if there is none."""
+    bases: dict[str, list[str]] = {}
+    for name in table.column_names:
+        bases.setdefault(time_name(name).base, []).append(name)
+    found = next((n for wanted in NAMES for n in bases.get(wanted, ()) if _is_usable(table, n)), ROW)
+    if found:
+        return found
+    compound = (
+        n for n in table.column_names if has_time_word(n) and _is_usable(table, n) and _is_rising_time(table, n)
+    )
+    return next(compound, next((n for n in table.column_names if is_time(table.schema.field(n).type)), ROW))
+
+
+def _is_rising_time(table: pa.Table, name: str) -> bool:
+    return not is_numeric(table.schema.field(name).type) or _rises(table, name)
 
 
 def unread_time(table: pa.Table, layout: Layout) -> str:
     """Return the column that should be the time by its name, but whose texts say none; empty if there is none."""
     if layout.time:
         return ""
-    named = (name for name in table.column_names if name.lower() in _TEXT_TIMES)
+    named = (name for name in table.column_names if time_name(name).base in _TEXT_TIMES)
     return next((name for name in named if is_text(table.schema.field(name).type)), "")
 
 
-def _rising(table: pa.Table, besides: str = "") -> str:
-    """The first column of numbers besides one if it rises all the time, else nothing: the rows are counted."""
-    numeric = [n for n in table.column_names if is_numeric(table.schema.field(n).type) and n not in _NO_VALUES]
-    # A single column of numbers is what was measured.
-    others = [n for n in numeric if n != besides]
-    return others[0] if others and len(numeric) > 1 and _rises(table, others[0]) else ROW
+def time_in_words(layout: Layout) -> str:
+    """Return which column is the time, for people."""
+    if not layout.time:
+        return "no column is a time: the rows are counted"
+    unit = UNIT_NAMES.get(layout.unit_s, f"{layout.unit_s:g} s")
+    return f"time is the column {layout.time!r}, in {unit}{' since 1970' if layout.since_first else ''}"
+
+
+def _rising(table: pa.Table) -> str:
+    """Where no column has a name, the first one if it rises; else nothing: the rows are counted."""
+    names = table.column_names
+    nameless = all(name == f"column {at}" for at, name in enumerate(names, 1))
+    first = names[0] if nameless and len(names) > 1 else ROW
+    return first if first and is_numeric(table.schema.field(first).type) and _rises(table, first) else ROW
 
 
 def _is_usable(table: pa.Table, name: str) -> bool:
@@ -144,14 +170,6 @@ def _rises(table: pa.Table, name: str) -> bool:
     return bool((numbers[1:] > numbers[:-1]).all())
 
 
-def unit_of(name: str, table: pa.Table) -> float:
-    """Return the seconds that a unit of a time column stands for, by the end of its name."""
-    if not name or not is_numeric(table.schema.field(name).type):
-        return 1.0
-    ending = name.lower().rstrip(")").replace("(", "_").replace("[", "_").rstrip("]").rpartition("_")[2].strip()
-    return _UNITS_S.get(ending, 1.0) if ending != name.lower() else 1.0
-
-
 def chosen(table: pa.Table, time: str | None, values: Sequence[str], unit: str = "") -> Layout:
     """Return what the columns mean where the user names some of them.
 
@@ -169,17 +187,15 @@ def chosen(table: pa.Table, time: str | None, values: Sequence[str], unit: str =
         if time:
             _require(table, time)
         values = values or [n for n in layout.values if n != time]
-        layout = Layout(time, unit_of(time, table), layout.variable, layout.values, layout.run)
+        layout = replace(layout, time=time, sure=True)
     if values and tuple(values) != layout.values:
         for name in values:
             _require(table, name)
             if not is_numeric(table.schema.field(name).type):
                 raise LogError(f"column {name!r} holds no numbers")
         keep = layout.variable if len(values) == 1 and layout.variable else ""
-        layout = Layout(layout.time, layout.unit_s, keep, tuple(values), layout.run)
-    if unit and layout.time and is_numeric(table.schema.field(layout.time).type):
-        layout = replace(layout, unit_s=SECONDS[unit])
-    return replace(layout, sure=layout.sure or time is not None or bool(values))
+        layout = replace(layout, variable=keep, values=tuple(values), sure=True)
+    return _timed(layout, table, SECONDS[unit] if unit else None)
 
 
 def _require(table: pa.Table, name: str) -> None:

@@ -25,6 +25,8 @@ class Block:
     """Row of the first line in the file, from 1."""
     text: bytes
     """UTF-8, each line with its newline."""
+    newline: str = "\n"
+    """What ends the lines in the file, where it is one character: all else is read as this in `text`."""
 
     def lines(self) -> Iterator[tuple[int, str]]:
         """Yield each line that is not blank, with its row."""
@@ -46,6 +48,7 @@ class LineCutter:
         self._row = 1
         self._decoder: codecs.IncrementalDecoder | None = None
         self._started = False
+        self._newline = "\n"
         self._dropping = False
         """Whether the line at hand is too long, so that its rest is passed over."""
 
@@ -54,6 +57,7 @@ class LineCutter:
         if not self._started and data:
             self._started = True
             data = self._begin(data)
+            self._newline = "\r" if b"\r" in data and b"\n" not in data else "\n"
         if self._decoder is not None:
             data = self._decoder.decode(data).encode()
         if b"\0" in data:
@@ -121,4 +125,4 @@ class LineCutter:
         except UnicodeDecodeError:
             self._notes.say("not UTF-8: read as Windows-1252")
             text = text.decode("cp1252", "replace").encode()
-        return Block(first, text)
+        return Block(first, text, self._newline)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,16 @@ from typing import Any, Protocol, cast
 import pyarrow as pa
 
 from tuisim.datalog.formats import companion_of
-from tuisim.datalog.opening.binary import ARROW_MAGIC, PARQUET_MAGIC, arrow_parts, metadata_in, parquet_parts
+from tuisim.datalog.opening.binary import (
+    ARROW_MAGIC,
+    ARROW_STREAM_MAGIC,
+    PARQUET_MAGIC,
+    arrow_parts,
+    arrow_stream_parts,
+    metadata_in,
+    parquet_parts,
+)
+from tuisim.datalog.opening.compressed import MAGIC_BYTES, MAGICS, Readable, unpacked
 from tuisim.datalog.opening.csv_text import CsvReader
 from tuisim.datalog.opening.json_lines import JsonReader
 from tuisim.datalog.opening.layout import chosen, unread_time
@@ -22,12 +30,12 @@ from tuisim.datalog.opening.lines import BLOCK_BYTES, Block, LineCutter
 from tuisim.datalog.opening.log import Log
 from tuisim.datalog.opening.notes import Notes
 from tuisim.datalog.opening.printed import PrintedReader, looks_printed
+from tuisim.datalog.opening.time_column import UNIT_NAMES
 from tuisim.errors import LogError
 
 STDIN = "-"
 FIRST_BYTES = 1 << 18
 """Read and shown first."""
-_GZIP_MAGIC, _GZIP_BITS = b"\x1f\x8b", 31
 _SHOW_EVERY_S = 1.0
 _SHOW_SELDOM = 5.0
 """Times as long as showing took, reading goes on before the next time."""
@@ -43,13 +51,6 @@ class Loaded:
     log: Log | None
     """The log so far, now and then; always with the last one."""
     done: bool = False
-
-
-class Readable(Protocol):
-    """Bytes that come one after the other."""
-
-    def read(self, count: int, /) -> bytes | None:
-        """Return at most so many more bytes, none at the end."""
 
 
 class BlockReader(Protocol):
@@ -117,6 +118,9 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
         layout = chosen(table, *named)
     except LogError as error:
         raise LogError(str(error), file=title) from error
+    if layout.since_first:
+        unit = UNIT_NAMES[layout.unit_s]
+        notes.say(f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on")
     if named[0] is None and (unread := unread_time(table, layout)):
         notes.say(f"the times in {unread!r} cannot be read: the rows are counted")
     metadata = metadata_in(parts[0].schema) or _metadata_beside(Path(title))
@@ -173,18 +177,20 @@ def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table |
             raise LogError("is a folder, not a log", file=str(path))
         regular = path.is_file()
         with path.open("rb", buffering=0 if not regular else -1) as handle:
-            head = handle.read(8) if regular else b""
+            head = handle.read(MAGIC_BYTES) if regular else b""
             if head.startswith(PARQUET_MAGIC):
                 yield from parquet_parts(path, notes)
             elif head.startswith(ARROW_MAGIC):
                 yield from arrow_parts(path, notes)
-            elif head.startswith(_GZIP_MAGIC):
-                inner = path.with_suffix("").suffix.lower()
-                handle.seek(0)
-                yield from text_parts(_Unpacked(handle, notes), 0, inner, notes)
+            elif head.startswith(ARROW_STREAM_MAGIC):
+                yield from arrow_stream_parts(path, notes)
             else:
                 if regular:
                     handle.seek(0)
+                inner = unpacked(str(path), head, handle, notes)
+                if inner is not None:
+                    yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes)
+                    return
                 yield from text_parts(handle, path.stat().st_size if regular else 0, path.suffix.lower(), notes)
     except FileNotFoundError as error:
         raise LogError("no such file", file=str(path)) from error
@@ -205,8 +211,10 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
     read = 0
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
-        if not read and data.startswith((PARQUET_MAGIC, ARROW_MAGIC, _GZIP_MAGIC)):
-            raise LogError("only text can be read from a pipe", "name the Parquet, Arrow or compressed file itself")
+        if not read and data.startswith((PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC, *MAGICS)):
+            raise LogError(
+                "only text can be read from a pipe or inside a compressed file", "name the Parquet or Arrow file itself"
+            )
         read += len(data)
         block = cutter.feed(data) if data else cutter.finish()
         if block is not None:
@@ -216,42 +224,6 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
             yield (min(1.0, read / size) if size else float("nan")), None
         if not data:
             return
-
-
-class _Unpacked:
-    """A compressed file, read as far as it goes.
-
-    Args:
-        handle: The compressed bytes.
-        notes: What was wrong.
-    """
-
-    def __init__(self, handle: Readable, notes: Notes) -> None:
-        self._handle, self._notes = handle, notes
-        self._unpack = zlib.decompressobj(_GZIP_BITS)
-
-    def read(self, count: int, /) -> bytes:
-        """Return some more bytes, none at the end."""
-        while True:
-            packed = self._unpack.unconsumed_tail or self._handle.read(BLOCK_BYTES)
-            if self._unpack.eof:
-                # Files that were compressed apart may stand one behind the other.
-                packed = self._unpack.unused_data + (packed or b"")
-                self._unpack = zlib.decompressobj(_GZIP_BITS)
-            elif not packed:
-                self._cut_off()
-            if not packed:
-                return b""
-            try:
-                data = self._unpack.decompress(packed, count)
-            except zlib.error:
-                self._cut_off()
-                return b""
-            if data:
-                return data
-
-    def _cut_off(self) -> None:
-        self._notes.say("the compressed file was cut off or is damaged: read as far as it goes")
 
 
 def _reader_for(block: Block, suffix: str, notes: Notes) -> BlockReader:

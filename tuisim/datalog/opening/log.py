@@ -116,7 +116,9 @@ class Log:
         if self.layout.time == ROW:
             return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
         if self._kept.times_s is None:
-            self._kept.times_s = seconds_of(self.table.column(self.layout.time), self.layout.unit_s)
+            self._kept.times_s = seconds_of(
+                self.table.column(self.layout.time), self.layout.unit_s, self.layout.since_first
+            )
         times = self._kept.times_s if rows is None else self._kept.times_s[rows]
         # A sample without a time of its own stands at the one before it.
         missing = ~np.isfinite(times)

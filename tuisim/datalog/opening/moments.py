@@ -18,12 +18,13 @@ _REST = r":\d{2}(?P<part>\.\d+)? ?(?:(?P<sign>[+-])(?P<h>\d{2}):?(?P<m>\d{2})|Z|
 """Parts of a second, and how far a clock is ahead of the world's."""
 
 
-def seconds_of(column: pa.ChunkedArray, unit_s: float) -> FloatArray:
+def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> FloatArray:
     """Return a time column in seconds, shape (n,): dates since the first of them, numbers times their unit.
 
     Args:
         column: Numbers, moments, spans of time, or texts that say one.
         unit_s: Seconds that one stands for, if they are numbers.
+        since_first: Whether numbers are dates, too.
     """
     kind = column.type
     if pa.types.is_date(kind):
@@ -37,7 +38,10 @@ def seconds_of(column: pa.ChunkedArray, unit_s: float) -> FloatArray:
         return _floats(wide) / _PER_S[kind.unit]
     if pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_dictionary(kind):
         return seconds_of_texts(column)
-    seconds = _floats(column)
+    if since_first and pa.types.is_integer(kind):
+        # Before they become floats, as above.
+        column = pc.subtract(column.cast(pa.int64()), pc.first(column.cast(pa.int64())))
+    seconds = _since_first(_floats(column)) if since_first else _floats(column)
     return seconds if unit_s == 1.0 else seconds * unit_s
 
 
