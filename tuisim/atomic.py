@@ -14,9 +14,29 @@ PART_SUFFIX = ".tmp"
 
 LEFT_OVER_S = 3600.0
 
+_OWNER_FOLDER, _OWNER_FILE = 0o700, 0o600
+
+
+def private(path: str, flags: int) -> int:
+    """An opener for `open`: only the owner may read or write a file that it makes."""
+    return os.open(path, flags, _OWNER_FILE)
+
+
+def make_private_folder(folder: Path) -> None:
+    """Make a folder, and those above it that are missing, which only the owner may enter; one that is there stays.
+
+    Raises:
+        OSError: it cannot be made.
+    """
+    missing = [folder]
+    while not missing[-1].parent.exists():
+        missing.append(missing[-1].parent)
+    for one in reversed(missing):
+        one.mkdir(_OWNER_FOLDER, exist_ok=True)
+
 
 @contextmanager
-def replacing(path: Path, *, lasting: bool = True) -> Iterator[BinaryIO]:
+def replacing(path: Path, *, lasting: bool = True, owner_only: bool = False) -> Iterator[BinaryIO]:
     """Open a new file that takes the place of `path` when the block ends well.
 
     If the block raises, or a write fails, `path` is as it was and nothing is left beside it.
@@ -25,6 +45,7 @@ def replacing(path: Path, *, lasting: bool = True) -> Iterator[BinaryIO]:
     Args:
         path: The file; its folder must be there.
         lasting: Whether it must outlive a power cut; False is quicker, for what can be made again.
+        owner_only: Whether nobody else may read it, whatever the umask says: so is all that is in `TUISIM_HOME`.
 
     Raises:
         OSError: the folder or the file cannot be written.
@@ -34,7 +55,7 @@ def replacing(path: Path, *, lasting: bool = True) -> Iterator[BinaryIO]:
     # `random` along: a run's process imports this before its chance comes from the seed.
     beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{PART_SUFFIX}")
     try:
-        with open(beside, "xb") as handle:
+        with open(beside, "xb", opener=private if owner_only else None) as handle:
             yield handle
             handle.flush()
             if lasting:

@@ -10,6 +10,8 @@ import sys
 import time
 from pathlib import Path
 
+from tuisim.atomic import private
+
 PATIENCE_S = 0.2
 """How long a full command pipe is waited for: a child that listens empties it at once."""
 
@@ -29,7 +31,7 @@ def start_child(folder: Path) -> tuple[subprocess.Popen[bytes], int, int, int]:
     lifeline_read, lifeline_fd = os.pipe()
     inherited = (command_read, event_write, lifeline_read)
     try:
-        with (folder / "child.log").open("wb") as log:
+        with open(folder / "child.log", "wb", opener=private) as log:
             process = subprocess.Popen(
                 [sys.executable, "-s", "-P", "-m", "tuisim.runtime", str(folder), *map(str, inherited)],
                 pass_fds=inherited,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim.atomic import PART_SUFFIX, replacing, sweep
+from tuisim.atomic import PART_SUFFIX, make_private_folder, replacing, sweep
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import BackgroundError
@@ -134,7 +134,7 @@ def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np
     """Write the pixels and the missing sums into the cache, then make room."""
     folder = files.pixels.parent
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_private_folder(folder)
         _store(files.pixels, pixels)
         for diameter, path in missing:
             _store(path, _disc_sums(pixels, diameter))
@@ -178,7 +178,7 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 def _store(path: Path, array: NDArray[Any]) -> None:
     """Write an array's bytes; another process sees the whole file or none."""
-    with replacing(path, lasting=False) as stream:
+    with replacing(path, lasting=False, owner_only=True) as stream:
         stream.write(array.data)
 
 

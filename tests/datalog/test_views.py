@@ -94,15 +94,42 @@ def test_view_follows_a_file_beyond_its_map(tmp_path: Path) -> None:
     assert early["tick"].tolist() == list(range(10))
 
 
-def test_array_is_the_file_and_cannot_be_written(tmp_path: Path) -> None:
+def test_last_record_written_anew_is_read_anew(tmp_path: Path) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 2)
-    array = TelemetryView(tmp_path).array()
+    view = TelemetryView(tmp_path)
+    array = view.array()
     at = HEADER_BYTES + TICK_RECORD.size
     writer.room(0)[at : at + 4] = (99).to_bytes(4, "little")
-    assert array["tick"].tolist() == [0, 99]
+    put(writer, 1)
+    assert view.array()["tick"].tolist() == [0, 99, 2]
     assert not array.flags.writeable
     writer.close()
+
+
+SHRUNK = """
+import os, sys
+from pathlib import Path
+from tuisim.datalog.views import OutputView, TelemetryView
+folder = Path(sys.argv[1])
+telemetry, output = TelemetryView(folder), OutputView(folder)
+array, rows = telemetry.array(), output.rows()
+next(rows)
+for name in ("telemetry.bin", "output.bin"):
+    os.truncate(folder / name, int(sys.argv[2]))
+print(array["tick"].sum(), telemetry.record(19_999).tick, telemetry.count, sum(1 for _ in rows))
+"""
+
+
+@pytest.mark.parametrize("size", [0, 10, HEADER_BYTES, 5000], ids=["empty", "half a header", "header", "some"])
+def test_recording_that_shrinks_under_its_reader_stays_read(tmp_path: Path, size: int) -> None:
+    telemetry, output = TelemetryWriter(tmp_path), OutputWriter(tmp_path)
+    put(telemetry, 20_000)
+    for number in range(2000):
+        output.write(b"x" * 100, number, 0, 0, STDOUT)
+    command = [sys.executable, "-c", SHRUNK, str(tmp_path), str(size)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.stdout.split(), done.returncode) == (["199990000", "19999", "20000", "1999"], 0), done.stderr
 
 
 @pytest.mark.parametrize("index", [-1, 2, 5000])

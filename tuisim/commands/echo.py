@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from tuisim.errors import printable
@@ -26,7 +27,19 @@ def echo_lines(text: str) -> None:
 
 def echo_json(data: Any, *, flush: bool = False) -> None:
     """Write data to stdout as one line of JSON, which escapes what a terminal would obey."""
-    print(json.dumps(data).replace("\x7f", "\\u007f"), flush=flush)
+    print(_json(data), flush=flush)
+
+
+def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> None:
+    """Write one JSON object to stdout: a list under a key, item by item as they come, then what else it holds."""
+    sys.stdout.write(f'{{"{key}": [')
+    for number, item in enumerate(items):
+        sys.stdout.write((", " if number else "") + _json(item))
+    sys.stdout.write("], " + _json(rest).removeprefix("{") + "\n")
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data).replace("\x7f", "\\u007f")
 
 
 def echo_error(line: str) -> None:

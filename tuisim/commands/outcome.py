@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
-from tuisim.datalog.records import STDERR, STDOUT
+from tuisim.datalog.records import STDERR
 from tuisim.datalog.runfile import RunEnd, StoredRun
-from tuisim.datalog.samples import parse_sample
+from tuisim.datalog.samples import counts_of
 from tuisim.protocol import Ended
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
@@ -26,14 +26,16 @@ def exit_code_of(ended: Ended | RunEnd) -> int:
     return EXIT_LIMIT if ended.end in LIMIT_ENDS else EXIT_RAISED
 
 
-def describe(run: StoredRun) -> dict[str, Any]:
-    """Return a stored run as plain data: what it was, how it ended, where the robot is, what it logged."""
+def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
+    """Return a stored run as plain data: what it was, how it ended, where the robot is, what it logged.
+
+    Args:
+        run: The run.
+        most_bytes: Lines and samples of a longer output are not counted: they are None.
+    """
     last = run.telemetry.last()
     end = run.end
-    lines = samples = 0
-    for row in run.output.rows():
-        lines += row.stream == STDOUT
-        samples += row.stream == STDOUT and parse_sample(row.text) is not None
+    counts = counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
     return {
         "run": run.number,
         "id": run.id,
@@ -50,8 +52,8 @@ def describe(run: StoredRun) -> dict[str, Any]:
         "x_mm": last.x_mm if last else run.spec.world.start.x_mm,
         "y_mm": last.y_mm if last else run.spec.world.start.y_mm,
         "heading_deg": last.heading_deg if last else run.spec.world.start.heading_deg,
-        "lines": lines,
-        "samples": samples,
+        "lines": counts.lines if counts else None,
+        "samples": counts.samples if counts else None,
         "summary": end.summary if end else "",
         "error": end.error if end else "",
         "error_line": end.error_line if end else 0,
@@ -63,11 +65,11 @@ def last_state(facts: dict[str, Any]) -> str:
     """Return the line that a run ends with, from what `describe` returned."""
     state = facts["state"].replace("_", " ")
     what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
-    samples = f"{facts['samples']} sample{'s' * (facts['samples'] != 1)}"
+    samples = "" if facts["samples"] is None else f"{facts['samples']} sample{'s' * (facts['samples'] != 1)} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
         f"x {facts['x_mm']:.2f} mm, y {facts['y_mm']:.2f} mm, heading {facts['heading_deg']:.2f}° · "
-        f"{samples} · run {facts['run']}"
+        f"{samples}run {facts['run']}"
     )
 
 

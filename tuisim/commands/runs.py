@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import re
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import asdict
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
+from tuisim.commands.echo import echo, echo_error, echo_json, echo_json_head, echo_lines
 from tuisim.commands.logs.comparing import diff_text
 from tuisim.commands.outcome import describe, last_state
 from tuisim.commands.tables import table
@@ -16,12 +19,18 @@ from tuisim.commands.targets import check_targets
 from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
 from tuisim.datalog.runfile import RUNNING, StoredRun
-from tuisim.datalog.store import COMPACT_TICKS, RunStore, compact_run
+from tuisim.datalog.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 from tuisim.errors import ConfigError, LogError
 from tuisim.rerun import rerun, same
 from tuisim.switches import SwitchParser, nearest
 
 ACTIONS = ("list", "show", "rm", "rerun", "export", "compact")
+QUICK_BYTES = 8 << 20
+"""In longer outputs samples are not counted before they are shown."""
+
+_AGE = re.compile(r"(\d{1,6}(?:\.\d{1,6})?)([hdw])")
+_HOURS = {"h": 1, "d": 24, "w": 168}
+
 STREAMS = {STDOUT: "stdout", STDERR: "stderr", SPEECH: "speech", INPUT: "input"}
 SHORTEST = 40
 """Characters of a summary in the list."""
@@ -32,7 +41,7 @@ def add_arguments(parser: SwitchParser) -> None:
     parser.usage = (
         "tuisim runs [list] [--json]\n"
         "       tuisim runs show RUN… [--json]\n"
-        "       tuisim runs rm RUN…\n"
+        "       tuisim runs rm RUN…|--older-than 30d\n"
         "       tuisim runs rerun RUN… [--json]\n"
         "       tuisim runs export RUN… FILE… [--telemetry FILE]\n"
         "       tuisim runs compact RUN…|--all [--json]"
@@ -45,6 +54,7 @@ def add_arguments(parser: SwitchParser) -> None:
     parser.add_argument("words", nargs="*", metavar="RUN", help=f"runs; for export also files: {', '.join(EXPORTERS)}")
     parser.add_argument("--telemetry", metavar="FILE", help="export every tick of the one run")
     parser.add_argument("--all", action="store_true", help="compact every run that is over")
+    parser.add_argument("--older-than", metavar="AGE", help="remove every run that is over and older: 12h, 30d, 8w")
     parser.add_argument("--json", action="store_true", help="as JSON")
 
 
@@ -57,16 +67,16 @@ def execute(arguments: Namespace) -> int:
         ExportError: a target cannot be written.
     """
     action, words, store = arguments.action, arguments.words, RunStore()
+    if arguments.older_than is not None and action != "rm":
+        raise ConfigError("belongs to rm", "`tuisim runs rm --older-than 30d`", key="--older-than")
     match action:
         case "list" if not words:
             _list(store, as_json=arguments.json)
         case "show" if words:
             for run in _load(store, words):
                 _show(run, as_json=arguments.json)
-        case "rm" if words:
-            # All are looked up before the first is gone; one may be named twice.
-            for run_id in dict.fromkeys([store.find(word).id for word in words]):
-                store.remove(run_id)
+        case "rm" if words or arguments.older_than is not None:
+            _remove(store, words, arguments.older_than)
         case "rerun" if words:
             return max(_rerun(run, as_json=arguments.json) for run in _load(store, words))
         case "compact" if words or arguments.all:
@@ -87,19 +97,30 @@ def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
 def _list(store: RunStore, *, as_json: bool) -> None:
     runs = store.runs()
     if as_json:
-        echo_json([asdict(run) for run in runs])
+        echo_json([{**asdict(run), "bytes": bytes_in(store.folder(run.id))} for run in runs])
     elif not runs:
         echo(f"no runs yet in {store.home}")
     else:
         rows = [
             (
                 *(run.number, run.created[:19].replace("T", " "), run.program, run.background, run.profile, run.seed),
-                *(run.end, f"{run.time_s or 0:.2f}", run.samples or 0, _cut(run.summary), run.tags),
+                *(run.end, f"{run.time_s or 0:.2f}", "" if run.samples is None else str(run.samples)),
+                *(f"{size(bytes_in(store.folder(run.id))):>8}", _cut(run.summary), run.tags),
             )
             for run in runs
         ]
-        heads = ("RUN", "UTC", "PROGRAM", "MAT", "PROFILE", "SEED", "END", "SECONDS", "SAMPLES", "", "")
+        heads = ("RUN", "UTC", "PROGRAM", "MAT", "PROFILE", "SEED", "END", "SECONDS", "SAMPLES", "    SIZE", "", "")
         echo_lines(table(heads, rows))
+
+
+def size(count: int) -> str:
+    """Return a number of bytes for people."""
+    value, unit = count / 1000, "kB"
+    for larger in ("MB", "GB", "TB"):
+        if value < 1000:
+            break
+        value, unit = value / 1000, larger
+    return f"{value:.1f} {unit}"
 
 
 def _cut(text: str) -> str:
@@ -111,11 +132,13 @@ def _plain(row: OutputRow) -> dict[str, object]:
 
 
 def _show(run: StoredRun, *, as_json: bool) -> None:
-    facts = describe(run)
-    rows = [row for row in run.output.rows() if row.stream in STREAMS]
+    """Show a run; its rows are shown as they are read, for there may be a million."""
+    rows = (row for row in run.output.rows() if row.stream in STREAMS)
     if as_json:
-        echo_json(facts | {"output": [_plain(row) for row in rows]})
+        # What is counted comes after what it is counted in.
+        echo_json_head("output", map(_plain, rows), describe(run))
         return
+    facts = describe(run, QUICK_BYTES)
     echo(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
           f"seed {facts['seed']}")  # fmt: skip
     echo(last_state(facts))
@@ -125,6 +148,42 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         echo(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == STDERR else ''}{line_of(row)}")
     if facts["error"]:
         echo_lines(facts["error"].rstrip("\n"))
+
+
+def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
+    """Return the ids of the runs that are over and older than a text such as `30d` says."""
+    if words:
+        raise ConfigError("takes no run", f"got {' '.join(words)}", key="--older-than")
+    match = _AGE.fullmatch(age)
+    if match is None:
+        raise ConfigError(
+            f"cannot be read: {age!r}", "hours, days or weeks, such as 12h, 30d or 8w", key="--older-than"
+        )
+    before = datetime.now(UTC) - timedelta(hours=float(match[1]) * _HOURS[match[2]])
+    return [run.id for run in store.runs() if run.end != RUNNING and _made_before(run.created, before)]
+
+
+def _made_before(created: str, moment: datetime) -> bool:
+    try:
+        return datetime.fromisoformat(created) < moment
+    except (ValueError, TypeError):
+        # Of a damaged run nobody knows how old it is.
+        return False
+
+
+def _remove(store: RunStore, words: Sequence[str], age: str | None) -> None:
+    # All are looked up before the first is gone; one may be named twice.
+    found = [store.find(word).id for word in words] if age is None else _older(store, words, age)
+    freed = 0
+    for run_id in dict.fromkeys(found):
+        folder = store.folder(run_id)
+        target = os.path.realpath(folder) if folder.is_symlink() else ""
+        freed += 0 if target else bytes_in(folder)
+        store.remove(run_id)
+        if target:
+            echo_error(f"note: run {run_id} was a link: what it led to stays, {target}")
+    if age is not None:
+        echo(f"{len(found)} run{'s' if len(found) != 1 else ''} removed, {size(freed)}")
 
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:

@@ -44,7 +44,7 @@ def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = Mappi
     return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
 
 
-def write_toml(path: Path, lines: Iterable[str], error: type[ConfigError]) -> None:
+def write_toml(path: Path, lines: Iterable[str], error: type[ConfigError], *, owner_only: bool = False) -> None:
     """Write a TOML file whole or not at all.
 
     Raises:
@@ -53,7 +53,7 @@ def write_toml(path: Path, lines: Iterable[str], error: type[ConfigError]) -> No
     try:
         if path.suffix != ".toml":
             raise error("must end in .toml", file=str(path))
-        with replacing(path) as stream:
+        with replacing(path, owner_only=owner_only) as stream:
             stream.write(("\n".join(lines) + "\n").encode())
     except (OSError, ValueError) as reason:
         message = f"cannot be written: {getattr(reason, 'strerror', None) or reason}"

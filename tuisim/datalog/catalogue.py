@@ -10,12 +10,13 @@ import fcntl
 import os
 import secrets
 import sqlite3
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
+from tuisim.atomic import make_private_folder, private
 from tuisim.errors import LogError
 
 CATALOGUE_FILE = "runs.db"
@@ -117,12 +118,21 @@ class Catalogue:
             ValueError: there is no such column.
             LogError: the catalogue cannot be written.
         """
-        unknown = values.keys() - set(_NAMES)
+        self.update_all([(run_id, values)])
+
+    def update_all(self, changes: Sequence[tuple[str, Mapping[str, str | int | float | None]]]) -> None:
+        """Change columns of many runs at once, as `update` does for one; all of them or none."""
+        unknown = {name for _, values in changes for name in values} - set(_NAMES)
         if unknown:
             raise ValueError(f"no such column: {', '.join(sorted(unknown))}")
-        assignments = ", ".join(f'"{name}" = ?' for name in values)
-        sql = f"UPDATE runs SET {assignments} WHERE id = ?"
-        self._do(lambda connection: connection.execute(sql, (*values.values(), run_id)))
+
+        def change(connection: sqlite3.Connection) -> None:
+            with _transaction(connection):
+                for run_id, values in changes:
+                    assignments = ", ".join(f'"{name}" = ?' for name in values)
+                    connection.execute(f"UPDATE runs SET {assignments} WHERE id = ?", (*values.values(), run_id))
+
+        self._do(change)
 
     def remove(self, run_ids: Iterable[str]) -> None:
         """Take runs off the list."""
@@ -166,6 +176,8 @@ class Catalogue:
                 return
             fresh = self._path.with_name(f".{CATALOGUE_FILE}.{secrets.token_hex(4)}.tmp")
             try:
+                # SQLite gives the files beside it the same rights.
+                os.close(private(str(fresh), os.O_CREAT | os.O_EXCL | os.O_RDWR))
                 with closing(sqlite3.connect(fresh, isolation_level=None)) as connection:
                     connection.execute("PRAGMA journal_mode = WAL")
                     self._fill(connection)
@@ -188,8 +200,8 @@ class Catalogue:
 @contextmanager
 def locked(home: Path) -> Iterator[None]:
     """Keep other processes from changing what stands in more than one place of a home folder."""
-    home.mkdir(parents=True, exist_ok=True)
-    descriptor = os.open(home / LOCK_FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    make_private_folder(home)
+    descriptor = private(str(home / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
         yield
@@ -225,12 +237,14 @@ def _must_be_made_again(error: sqlite3.DatabaseError) -> bool:
     if isinstance(error, _ForeignFile):
         return True
     code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF
-    return code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+    # A plain error is what a missing table or column gives; with SQL that is always the same it can be nothing else.
+    return code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
 
 
 def _is_sound(path: Path) -> bool:
     try:
         with closing(_open(path)) as connection:
+            _all_rows(connection)
             return bool(connection.execute("PRAGMA quick_check").fetchone()[0] == "ok")
     except sqlite3.DatabaseError as error:
         if _must_be_made_again(error):
@@ -251,9 +265,21 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
 
 
 def _all_rows(connection: sqlite3.Connection) -> list[RunInfo]:
-    return [_info(row) for row in connection.execute(_SELECT)]
+    # What is no text in UTF-8 is damaged like any other cell of a wrong type.
+    connection.text_factory = bytes
+    try:
+        return [_info(row) for row in connection.execute(_SELECT)]
+    except (ValueError, AttributeError, TypeError) as error:
+        raise _ForeignFile(f"a row is damaged: {error}") from error
 
 
 def _info(row: tuple[Any, ...]) -> RunInfo:
-    info = RunInfo(*row)
-    return replace(info, seed=int(info.seed))
+    number, *texts, seed, end, ticks, time_s, samples, summary, tags = row
+    for count, kind in ((number, int), (ticks, int), (time_s, float), (samples, int)):
+        if not isinstance(count, kind) and (count is not None or count is number):
+            raise ValueError(f"{count!r} is no number")
+    words = (text.decode() for text in (*texts, end, summary, tags))
+    run_id, created, program, background, profile, end, summary, tags = words
+    return RunInfo(
+        number, run_id, created, program, background, profile, int(seed), end, ticks, time_s, samples, summary, tags
+    )

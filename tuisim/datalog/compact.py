@@ -136,7 +136,7 @@ def _compact_file(path: Path, gear: Gear) -> None:
     packed = _packed(path, data, gear)
     if packed is None:
         return
-    with replacing(path.with_name(path.name + PACKED_SUFFIX)) as handle:
+    with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True) as handle:
         handle.write(packed)
     # Another process may have done the same work meanwhile.
     path.unlink(missing_ok=True)

@@ -10,6 +10,8 @@ import fcntl
 import os
 from pathlib import Path
 
+from tuisim.atomic import private
+
 LOCK_FILE = "lock"
 
 
@@ -18,7 +20,7 @@ def hold(folder: Path) -> int:
 
     Waits rather than fails: a reader that looks whether the lock is held has it for an instant.
     """
-    descriptor = os.open(folder / LOCK_FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    descriptor = private(str(folder / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
     return descriptor
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from tuisim.atomic import replacing
+from tuisim.atomic import make_private_folder, replacing
 from tuisim.datalog.store import home_folder
 from tuisim.errors import LogError
 
@@ -80,8 +80,8 @@ def write_notes(place: Path, notes: Sequence[Note]) -> None:
         LogError: they cannot be written; those that were there stay.
     """
     try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(place) as handle:
+        make_private_folder(place.parent)
+        with replacing(place, owner_only=True) as handle:
             handle.writelines(json.dumps(asdict(note), ensure_ascii=False).encode() + b"\n" for note in notes)
     except OSError as error:
         raise LogError(f"cannot write: {error.strerror or error}", file=str(place)) from error

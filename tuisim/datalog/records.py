@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
 
+from tuisim.atomic import private
 from tuisim.core.state import TICK_RECORD
 from tuisim.errors import LogError
 
@@ -85,7 +86,7 @@ class _GrowingMap:
     """A file mapped into memory that grows in ever larger steps."""
 
     def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
-        self._fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o644)
+        self._fd = private(str(path), os.O_RDWR | os.O_CREAT | os.O_EXCL)
         self.capacity = HEADER_BYTES + first_bytes
         os.ftruncate(self._fd, self.capacity)
         self._map_file()
@@ -197,7 +198,7 @@ def line_of(row: OutputRow) -> str:
     return f"> {row.text}" if row.stream == INPUT else row.text
 
 
-def published_length(data: bytes | mmap.mmap, magic: bytes, file: str) -> int:
+def published_length(data: bytes, magic: bytes, file: str) -> int:
     """Return the length in a header: records of a telemetry file, bytes of an output file.
 
     Raises:
@@ -213,7 +214,19 @@ def published_length(data: bytes | mmap.mmap, magic: bytes, file: str) -> int:
     return int(length)
 
 
-def output_rows(data: bytes | mmap.mmap, start: int, end: int) -> Iterator[tuple[OutputRow, int]]:
+def raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
+    """Yield stream and text of each whole row, as `output_rows` does for all that a row holds."""
+    start, head, after_head = HEADER_BYTES, OUTPUT_ROW.unpack_from, OUTPUT_ROW.size
+    end += HEADER_BYTES
+    while start + after_head <= end:
+        size, _, _, _, stream = head(data, start)
+        start += after_head + size
+        if start > end:
+            return
+        yield stream, bytes(data[start - size : start])
+
+
+def output_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tuple[OutputRow, int]]:
     """Yield each whole row between two byte positions, with the position after it.
 
     Args:

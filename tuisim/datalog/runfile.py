@@ -196,7 +196,7 @@ def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
         LogError: it cannot be written.
     """
     try:
-        with replacing(folder / RUN_FILE) as handle:
+        with replacing(folder / RUN_FILE, owner_only=True) as handle:
             handle.write(run_document(data))
     except OSError as error:
         raise LogError(f"cannot write: {error.strerror or error}", file=str(folder / RUN_FILE)) from error

@@ -10,11 +10,17 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from tuisim.datalog.records import STDOUT, OutputRow
 
+if TYPE_CHECKING:
+    from tuisim.datalog.views import OutputView
+
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({_NUMBER})(?:[ \t]+({_NUMBER}))?\s*")
+_PLAIN_SAMPLE = re.compile(rb"(?:\^log[ \t]+)?[A-Za-z_]\w*:[ \t]*[+-]?[0-9]{1,18}(?:\.[0-9]{0,18})?[ \t]*")
+"""Matches most samples as they stand in the recording; what it does not match may be one all the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +50,27 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
     if not name.isidentifier() or not math.isfinite(value) or (time is not None and not math.isfinite(time)):
         return None
     return name, value, time
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How much a program printed."""
+
+    lines: int
+    samples: int
+
+
+def counts_of(output: OutputView) -> Counts:
+    """Count printed lines and samples, without making rows of them: there may be a million."""
+    lines = samples = 0
+    for stream, text in output.raw_rows():
+        if stream == STDOUT:
+            lines += 1
+            if b":" in text and (
+                _PLAIN_SAMPLE.fullmatch(text) or parse_sample(str(text, "utf-8", "replace")) is not None
+            ):
+                samples += 1
+    return Counts(lines, samples)
 
 
 def samples_of(rows: Iterable[OutputRow]) -> Iterator[Sample]:

@@ -6,13 +6,14 @@ import os
 import secrets
 import shutil
 import threading
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from tuisim.atomic import make_private_folder
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.datalog.catalogue import HOME_HINT, Catalogue, RunInfo, locked
@@ -20,6 +21,7 @@ from tuisim.datalog.compact import compact
 from tuisim.datalog.lock import is_held
 from tuisim.datalog.runfile import (
     INTERRUPTED,
+    RUN_FILE,
     RUN_FORMAT,
     RUNNING,
     EndLike,
@@ -32,14 +34,20 @@ from tuisim.datalog.runfile import (
     state_without_end,
     write_run_file,
 )
-from tuisim.datalog.samples import samples_of
+from tuisim.datalog.samples import counts_of
 from tuisim.datalog.views import OutputView, TelemetryView
 from tuisim.errors import LogError
 
 RUNS_FOLDER = "runs"
 LAST = "last"
 _COUNT_AT_ONCE_BYTES = 1 << 20
-"""Longer outputs are counted when the run is first listed, so that the end of a run is not held up."""
+"""Longer outputs are counted later, so that the end of a run is not held up."""
+
+_COUNT_A_LISTING_BYTES = 8 << 20
+"""Samples are counted in so many bytes of output each time the runs are listed: the others can wait for the next."""
+
+DAMAGED = "damaged"
+"""Stands for the end of a run whose `run.json` cannot be read."""
 
 COMPACT_TICKS = 6000
 """A run of so many ticks or more is compacted as soon as it is over; for shorter ones that takes too much of the time
@@ -147,7 +155,7 @@ class RunStore:
         """
         self._edit(run_id, end=end_document(end))
         output = OutputView(self.folder(run_id))
-        samples = _count_samples(output) if output.length <= _COUNT_AT_ONCE_BYTES else None
+        samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
         self._catalogue.update(
             run_id,
             end=end.end,
@@ -184,14 +192,13 @@ class RunStore:
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
         if not _has_end(folder) and state_without_end(folder) == RUNNING:
             raise LogError(f"run {run_id} is still running", "stop it first")
-        # Renamed first: a run that is half deleted must not look like a run.
-        grave = folder.with_name(f".{run_id}.{secrets.token_hex(4)}.removed")
         try:
-            os.replace(folder, grave)
-            shutil.rmtree(grave)
+            _delete(folder)
         except OSError as error:
             raise LogError(f"cannot be removed: {error.strerror or error}", file=str(folder)) from error
-        self._catalogue.remove([run_id])
+        # The run is gone. Where the list cannot be written now, it will notice by itself.
+        with suppress(LogError):
+            self._catalogue.remove([run_id])
 
     # Reading
 
@@ -201,6 +208,22 @@ class RunStore:
         Raises:
             LogError: the home folder cannot be used.
         """
+        rows, left = [], _COUNT_A_LISTING_BYTES
+        changes: list[tuple[str, dict[str, Any]]] = []
+        for row in self._rows():
+            known, change, counted = self._completed(row, left)
+            rows.append(known)
+            left -= counted
+            if change:
+                changes.append((row.id, change))
+        if changes:
+            # Where it cannot be remembered, it is looked at again the next time.
+            with suppress(LogError):
+                self._catalogue.update_all(changes)
+        return rows
+
+    def _rows(self) -> list[RunInfo]:
+        """Return every run as far as the catalogue knows it."""
         try:
             there = {entry.name for entry in os.scandir(self._runs) if entry.is_dir()}
         except FileNotFoundError:
@@ -213,11 +236,15 @@ class RunStore:
         strangers = [self._info_in(self.folder(name)) for name in sorted(there - listed) if not name.startswith(".")]
         found = [info for info in strangers if info is not None]
         if gone or found:
-            self._catalogue.remove(gone)
-            for info in found:
-                self._catalogue.add(info)
-            rows = self._catalogue.rows()
-        return [self._completed(row) for row in rows]
+            try:
+                self._catalogue.remove(gone)
+                for info in found:
+                    self._catalogue.add(info)
+                rows = self._catalogue.rows()
+            except LogError:
+                # Where nothing can be written, the folders are right all the same.
+                rows = [row for row in rows if row.id not in gone] + found
+        return rows
 
     def find(self, text: str) -> RunInfo:
         """Return the run that a user means: by full id, number, the start of an id, or `last`.
@@ -225,20 +252,10 @@ class RunStore:
         Raises:
             LogError: there is none, or more than one.
         """
-        rows = self.runs()
+        rows = self._rows()
         if not rows:
             raise LogError(f"no run {text!r}: there are none yet", file=str(self.home))
-        if text == LAST:
-            return rows[-1]
-        tests = (lambda row: row.id == text, lambda row: str(row.number) == text, lambda row: row.id.startswith(text))
-        for matches in tests:
-            found = [row for row in rows if text and matches(row)]
-            if len(found) == 1:
-                return found[0]
-            if found:
-                some = ", ".join(row.id for row in found[:3])
-                raise LogError(f"{text!r} is the start of {len(found)} runs: {some}{' …' if len(found) > 3 else ''}")
-        raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
+        return self._completed(_meant(text, rows), _COUNT_A_LISTING_BYTES)[0]
 
     def load_run(self, run: str | Path) -> StoredRun:
         """Return a run by its folder (a path, or a text with a slash in it) or by anything that `find` knows.
@@ -260,7 +277,8 @@ class RunStore:
             run_id = f"{now:%Y%m%dT%H%M%S}-{secrets.token_hex(3)}"
             folder = self.folder(run_id)
             try:
-                folder.mkdir(parents=True)
+                make_private_folder(self._runs)
+                folder.mkdir(0o700)
             except FileExistsError:
                 continue
             except OSError as error:
@@ -282,49 +300,59 @@ class RunStore:
                 yield info
 
     def _info_in(self, folder: Path) -> RunInfo | None:
-        """Return the catalogue line of a folder; None if it holds no run (yet) or a damaged one."""
-        try:
-            run = read_run(folder)
-        except LogError:
-            return None
+        """Return the catalogue line of a folder; None if it holds no run (yet)."""
         # The folder's name counts: a copied run is another run.
-        info = replace(
-            _info_of(folder.name, run.created, run.program, run.spec), number=run.number, tags=" ".join(run.tags)
-        )
-        end = run.end
-        if end is None:
-            return info
-        return replace(info, end=end.end, ticks=end.tick, time_s=end.time_ns / NS_PER_S, summary=end.summary)
+        run_id = folder.name
+        if not (folder / RUN_FILE).exists():
+            return None
+        try:
+            data = read_run_file(folder)
+            return _info_from(run_id, data)
+        except LogError as error:
+            return RunInfo(0, run_id, "", "", "", "", 0, DAMAGED, summary=error.message)
+        except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
+            return RunInfo(0, run_id, "", "", "", "", 0, DAMAGED, summary=f"{RUN_FILE} is damaged: {error!r}")
 
-    def _completed(self, info: RunInfo) -> RunInfo:
-        """Fill in what the catalogue does not know yet, and remember what can no longer change."""
+    def _completed(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
+        """Fill in what the catalogue does not know yet.
+
+        Args:
+            info: What it knows.
+            most_bytes: Of output that may be read for it.
+
+        Returns:
+            The run, what of it is to be remembered because it can no longer change, and how many bytes were read.
+        """
         if info.end not in ("", INTERRUPTED) and info.samples is not None:
-            return info
+            return info, {}, 0
         folder = self.folder(info.id)
         known = info
         if info.end in ("", INTERRUPTED):
             # The run file is written first: it knows of an end that did not get as far as the catalogue.
             stored = self._info_in(folder)
             state = state_without_end(folder)
-            if stored is not None and stored.end:
+            if stored is not None and stored.end == DAMAGED:
+                known = replace(info, end=DAMAGED, summary=stored.summary)
+            elif stored is not None and stored.end:
                 known = replace(stored, number=info.number)
             elif info.end and state == INTERRUPTED:
-                return info
+                return info, {}, 0
             else:
                 known = replace(info, end=state)
+        counted = 0
         try:
-            known = replace(known, samples=_count_samples(OutputView(folder)))
+            output = OutputView(folder)
+            if output.length <= most_bytes:
+                known, counted = replace(known, samples=counts_of(output).samples), output.length
             if known.end in (RUNNING, INTERRUPTED):
                 known = _with_last_record(known, folder)
         except LogError as error:
-            return replace(known, summary=known.summary or str(error))
+            return replace(known, summary=known.summary or str(error)), {}, counted
         # Without a lock the process may still be on its way.
-        if known.end not in (RUNNING, INTERRUPTED) or (known.end == INTERRUPTED and is_held(folder) is False):
-            values = {name: getattr(known, name) for name in ("end", "ticks", "time_s", "samples", "summary")}
-            # Where it cannot be remembered, it is looked at again the next time.
-            with suppress(LogError):
-                self._catalogue.update(info.id, **values)
-        return known
+        if known.end in (RUNNING, DAMAGED) or (known.end == INTERRUPTED and is_held(folder) is not False):
+            return known, {}, counted
+        names = ("end", "ticks", "time_s", "samples", "summary")
+        return known, {name: getattr(known, name) for name in names}, counted
 
 
 def load_run(run: str | Path) -> StoredRun:
@@ -347,14 +375,19 @@ def compact_run(run: StoredRun) -> tuple[int, int]:
     """
     if run.end is None and state_without_end(run.folder) == RUNNING:
         raise LogError(f"run {run.id} is still running", "stop it first")
-    before = _bytes_in(run.folder)
+    before = bytes_in(run.folder)
     compact(run.folder, run.spec)
-    return before, _bytes_in(run.folder)
+    return before, bytes_in(run.folder)
 
 
-def _bytes_in(folder: Path) -> int:
-    with os.scandir(folder) as entries:
-        return sum(entry.stat().st_size for entry in entries if entry.is_file())
+def bytes_in(folder: Path) -> int:
+    """Return the bytes of all files of a run; of one that is being deleted, of those that are still there."""
+    found = 0
+    with suppress(FileNotFoundError), os.scandir(folder) as entries:
+        for entry in entries:
+            with suppress(FileNotFoundError):
+                found += entry.stat().st_size
+    return found
 
 
 def _compact_quietly(folder: Path) -> None:
@@ -365,12 +398,53 @@ def _compact_quietly(folder: Path) -> None:
         return
 
 
+def _meant(text: str, rows: Sequence[RunInfo]) -> RunInfo:
+    """Return the run among some that a text means; see `RunStore.find`."""
+    if text == LAST:
+        return rows[-1]
+    tests = (lambda row: row.id == text, lambda row: str(row.number) == text, lambda row: row.id.startswith(text))
+    for matches in tests:
+        found = [row for row in rows if text and matches(row)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            some = ", ".join(row.id for row in found[:3])
+            raise LogError(f"{text!r} is the start of {len(found)} runs: {some}{' …' if len(found) > 3 else ''}")
+    raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
+
+
 def _info_of(run_id: str, created: str, program: StoredProgram, spec: RunSpec) -> RunInfo:
     return RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
 
 
-def _count_samples(output: OutputView) -> int:
-    return sum(1 for _ in samples_of(output.rows()))
+def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
+    """Return the catalogue line of a run file; a shape that no run file has is a KeyError, TypeError or ValueError."""
+    spec, end = data["spec"], data["end"]
+    info = RunInfo(
+        int(data.get("number", 0)),
+        run_id,
+        str(data["created"]),
+        str(data["program"]["name"]),
+        str(spec["world"]["background"]),
+        str(spec["profile"]["name"]),
+        int(spec["seed"]),
+        tags=" ".join(data.get("tags", ())),
+    )
+    if end is None:
+        return info
+    time_s = int(end["time_ns"]) / NS_PER_S
+    return replace(info, end=str(end["end"]), ticks=int(end["tick"]), time_s=time_s, summary=str(end["summary"]))
+
+
+def _delete(folder: Path) -> None:
+    """Delete a run folder; of a link only the link."""
+    # Renamed first: a run that is half deleted must not look like a run.
+    grave = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}.removed")
+    os.replace(folder, grave)
+    if grave.is_symlink():
+        grave.unlink()
+    else:
+        shutil.rmtree(grave)
 
 
 def _has_end(folder: Path) -> bool:

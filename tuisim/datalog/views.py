@@ -1,18 +1,17 @@
 """Readers of a run folder's two binary files, also while the run goes on.
 
 A view never changes what it reads and never waits. A file that is not there yet reads as
-empty; one that has grown is mapped again; one that has been packed is unpacked in memory,
-once, when its content is wanted.
+empty; of one that has grown the rest is read; one that has been packed is unpacked in
+memory, once, when its content is wanted. What has been read stays, whatever becomes of the file.
 """
 
 from __future__ import annotations
 
-import mmap
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
@@ -21,17 +20,17 @@ from tuisim.core.state import TICK_RECORD, Instant
 from tuisim.datalog.compact import Packed, find_packed
 from tuisim.datalog.records import (
     HEADER_BYTES,
-    OUTPUT_CHUNK,
     OUTPUT_FILE,
     OUTPUT_MAGIC,
-    TELEMETRY_CHUNK,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
     TICK_FIELDS,
     OutputRow,
     output_rows,
     published_length,
+    raw_rows,
 )
+from tuisim.errors import LogError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -82,71 +81,95 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
     )
 
 
-class _Mapped:
-    """A recording mapped for reading, and mapped again when it has outgrown the map; or unpacked, or read.
+class _Recording:
+    """A recording as far as it has been written, copied piece by piece; or unpacked.
+
+    It is not mapped: a map of a file that is cut off under it kills its reader.
 
     Args:
         path: The file.
         magic: What it begins with.
         record_bytes: Of one record; 1 if they differ.
-        first_bytes: What a file has at least after its header while it is written.
     """
 
-    def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
-        self._first_bytes = first_bytes
+    def __init__(self, path: Path, magic: bytes, record_bytes: int) -> None:
         self._path = path
         self._magic = magic
         self._record_bytes = record_bytes
-        self._map: mmap.mmap | bytes | None = None
+        self._copy = bytearray()
+        """Begins like the file, and has room for more."""
+        self._published = self._there = 0
+        self._unpacked = False
         self.packed: Packed | None = None
         """The packed form, while nothing but its header has been read."""
 
-    def look(self) -> tuple[mmap.mmap | bytes | None, int, int]:
-        """Return the map (None while there is no file), the published length, and how much of it is there."""
+    def look(self) -> tuple[memoryview, int, int]:
+        """Return the recording, its published length, and how much of it is there."""
         published, there = self.extent()
         if self.packed is not None:
-            self._map, self.packed = self.packed.recording(), None
-        return self._map, published, there
+            self._copy, self.packed, self._unpacked = bytearray(self.packed.recording()), None, True
+        return memoryview(self._copy).toreadonly(), published, there
 
     def extent(self) -> tuple[int, int]:
         """Return the published length, and how much of it is there."""
-        if self._map is None and self.packed is None:
-            self._open()
-        if self.packed is not None:
-            return self.packed.length, self.packed.length
-        if self._map is None:
-            return 0, 0
-        # A copy of the header is made in one piece; read in place, a number that is just being
-        # written could be put together from the bytes of two.
-        published = published_length(self._map[:HEADER_BYTES], self._magic, str(self._path))
-        if published > self._room():
-            self._open()
-        return published, published if self.packed is not None else min(published, self._room())
+        if self.packed is None and not self._unpacked:
+            self._read_on()
+        return self._published, self._there
 
-    def _room(self) -> int:
-        return 0 if self._map is None else (len(self._map) - HEADER_BYTES) // self._record_bytes
+    def known(self, count: int) -> memoryview | None:
+        """Return the recording if so many records have been read that will not change any more, else None."""
+        return memoryview(self._copy).toreadonly() if self._unpacked or count < self._there else None
 
-    def _open(self) -> None:
+    def _read_on(self) -> None:
         try:
-            with open(self._path, "rb") as handle:
-                found = self._content(handle)
+            with open(self._path, "rb", buffering=0) as handle:
+                self._read_from(handle.fileno())
         except FileNotFoundError:
             # Looked for in this order, a recording that is being packed is always found.
             self.packed = find_packed(self._path)
-            return
-        except ValueError:  # created, but still empty
-            return
-        # The writer sizes a new file before it writes the header.
-        if found[:HEADER_BYTES].strip(b"\0"):
-            # The old map is not closed: arrays may still look at it, and it goes with the last of them.
-            self._map = found
+            if self.packed is not None:
+                self._published = self._there = self.packed.length
+        except OSError as error:
+            raise LogError(f"cannot be read: {error.strerror or error}", file=str(self._path)) from error
 
-    def _content(self, handle: BinaryIO) -> mmap.mmap | bytes:
-        size = os.fstat(handle.fileno()).st_size
-        if 0 < size < HEADER_BYTES + self._first_bytes:
-            # It is over, and small. A map would keep a file open, and of those a process may have few.
-            return handle.read()
-        return mmap.mmap(handle.fileno(), 0, access=mmap.ACCESS_READ)
+    def _read_from(self, fd: int) -> None:
+        head = _whole_header(fd)
+        # The writer sizes a new file before it writes the header. One that has been emptied since has nothing to add.
+        if not head.strip(b"\0") or (self._there and len(head) < HEADER_BYTES):
+            return
+        published = published_length(head, self._magic, str(self._path))
+        room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
+        # The last record may have been written anew.
+        kept = max(0, self._there - 1) if self._record_bytes > 1 else self._there
+        self._published = max(published, self._published)
+        wanted = min(published, room)
+        if wanted <= kept:
+            return
+        begin, end = (HEADER_BYTES + self._record_bytes * count for count in (kept, wanted))
+        if end > len(self._copy):
+            # Another one, not a longer one: arrays may still look at what there is, and it goes with the last of them.
+            larger = bytearray(end if not self._there else 2 * end)
+            larger[:HEADER_BYTES] = head
+            larger[HEADER_BYTES:begin] = self._copy[HEADER_BYTES:begin]
+            self._copy = larger
+        got = _read_into(fd, memoryview(self._copy)[begin:end], begin)
+        self._there = max(self._there, kept + got // self._record_bytes)
+
+
+def _whole_header(fd: int) -> bytes:
+    """Return the header, read until it comes the same twice: a number in it could be just being written."""
+    head = b""
+    while (again := os.pread(fd, HEADER_BYTES, 0)) != head:
+        head = again
+    return head
+
+
+def _read_into(fd: int, place: memoryview, at: int) -> int:
+    """Fill a place with what stands in a file at a position; return how many bytes there were."""
+    done = 0
+    while done < len(place) and (got := os.preadv(fd, [place[done:]], at + done)):
+        done += got
+    return done
 
 
 class TelemetryView:
@@ -160,7 +183,7 @@ class TelemetryView:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._file = _Mapped(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
+        self._file = _Recording(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size)
 
     @property
     def count(self) -> int:
@@ -189,21 +212,23 @@ class TelemetryView:
         Raises:
             IndexError: there is no such record (yet).
         """
-        data, _, count = self._file.look()
-        if data is None or not 0 <= index < count:
-            raise IndexError(f"no telemetry record {index}, there are {count}")
+        data = self._file.known(index + 1) if index >= 0 else None
+        if data is None:
+            data, _, count = self._file.look()
+            if not 0 <= index < count:
+                raise IndexError(f"no telemetry record {index}, there are {count}")
         return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + index * TICK_RECORD.size))
 
     def array(self) -> np.ndarray[Any, Any]:
         """Return all records as a structured array of `records.TICK_FIELDS`, shape (count,), read-only.
 
-        It is a view of the file, not a copy; records written later need another call.
+        It is a view, not a copy; records written later need another call.
         """
         import numpy as np
 
         kind = np.dtype(list(TICK_FIELDS))
         data, _, count = self._file.look()
-        if data is None or not count:
+        if not count:
             return np.empty(0, kind)
         return np.frombuffer(data, kind, count, HEADER_BYTES)
 
@@ -219,7 +244,7 @@ class OutputView:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._file = _Mapped(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1, OUTPUT_CHUNK)
+        self._file = _Recording(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1)
         self._seen = 0
 
     @property
@@ -238,7 +263,7 @@ class OutputView:
         """Return the rows since the last call, at most `limit`; the others come with the next call."""
         rows: list[OutputRow] = []
         data, _, end = self._file.look()
-        if data is None or limit == 0:
+        if limit == 0:
             return rows
         for row, after in output_rows(data, self._seen, end):
             rows.append(row)
@@ -258,12 +283,15 @@ class OutputView:
             position: 0, or one that was yielded before.
         """
         data, _, end = self._file.look()
-        if data is not None:
-            yield from output_rows(data, position, end)
+        yield from output_rows(data, position, end)
+
+    def raw_rows(self) -> Iterator[tuple[int, bytes]]:
+        """Yield stream and text of each row, the text as it stands in the file."""
+        data, _, end = self._file.look()
+        return raw_rows(data, end)
 
     def rows(self) -> Iterator[OutputRow]:
         """Yield what `all_rows` returns, one by one: a run may print a million lines."""
         data, _, end = self._file.look()
-        if data is not None:
-            for row, _ in output_rows(data, 0, end):
-                yield row
+        for row, _ in output_rows(data, 0, end):
+            yield row

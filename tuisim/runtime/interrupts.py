@@ -13,6 +13,7 @@ import signal
 import types
 from pathlib import Path
 
+from tuisim.atomic import private
 from tuisim.runtime import real
 from tuisim.runtime.session import ATTENTION, Session
 
@@ -58,7 +59,7 @@ class Interrupts:
         Args:
             folder: Run folder; SIGUSR2 writes the stack there, also from inside a long C call.
         """
-        self._stack_file = (folder / STACK_FILE).open("w")
+        self._stack_file = os.fdopen(private(str(folder / STACK_FILE), os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w")
         faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
         signal.signal(signal.SIGUSR1, self._on_command)
         signal.signal(signal.SIGALRM, self._on_command)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim import protocol
+from tuisim.atomic import private
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
 from tuisim.datalog.records import ACTIONS_FILE, STOP_FILE
@@ -290,10 +291,11 @@ class Steering:
 
     def write_down_stop(self, tick: int) -> None:
         """Note that the stop reaches the program right before the tick after `tick`."""
-        (self._folder / STOP_FILE).write_text(json.dumps({"tick": tick}), "utf-8")
+        with open(self._folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
+            file.write(json.dumps({"tick": tick}))
 
     def _write_down(self, tick: int, action: Message) -> None:
         if self._actions_fd < 0:
             path = self._folder / ACTIONS_FILE
-            self._actions_fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+            self._actions_fd = private(str(path), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
         os.write(self._actions_fd, json.dumps(ScriptedAction(tick, action).to_plain()).encode() + b"\n")

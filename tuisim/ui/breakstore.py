@@ -7,7 +7,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.atomic import replacing
+from tuisim.atomic import make_private_folder, replacing
 from tuisim.breaks import Break, break_line_of, moved, parse_break
 from tuisim.errors import ConfigError
 
@@ -53,8 +53,8 @@ def keep(program: str, kept: Kept) -> None:
     file = _file(program)
     data = {"program": program, "breaks": [one.written() for one in kept.breaks], "watches": list(kept.watches)}
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(file) as handle:
+        make_private_folder(file.parent)
+        with replacing(file, owner_only=True) as handle:
             handle.write(json.dumps(data).encode("ascii"))
     except OSError as error:
         raise ConfigError(f"breakpoints cannot be kept: {error.strerror or error}", file=str(file)) from None

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+from tuisim.atomic import make_private_folder
 from tuisim.core.geometry import Pose
 from tuisim.errors import ConfigError
 
@@ -78,7 +79,7 @@ def _write(poses: Mapping[str, Pose]) -> None:
     for name, pose in poses.items():
         lines += ["", f"[poses.{toml_key(name)}]", *toml_lines(asdict(pose))]
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
     except OSError as error:
         raise ConfigError(f"cannot be made: {error.strerror or error}", file=str(path.parent)) from None
-    write_toml(path, lines, ConfigError)
+    write_toml(path, lines, ConfigError, owner_only=True)

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from tuisim.atomic import replacing
+from tuisim.atomic import make_private_folder, replacing
 from tuisim.errors import ConfigError
 
 FOLDER = "drafts"
@@ -41,8 +41,8 @@ def keep_draft(path: str, text: str) -> None:
     file = _file(path)
     data = json.dumps(asdict(Draft(path, text, time.time()))).encode("ascii")
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(file) as handle:
+        make_private_folder(file.parent)
+        with replacing(file, owner_only=True) as handle:
             handle.write(data)
     except OSError as error:
         reason = error.strerror or error
