@@ -21,10 +21,11 @@ from tuisim.runtime.chance import finish_random, patch_urandom
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.clock import finish_selectors, loop_hook, patch_datetime, patch_time
 from tuisim.runtime.config import RunConfig, read_config
-from tuisim.runtime.guard import limit_memory, refuse_processes, refuse_subprocess
+from tuisim.runtime.guard import limit_memory, refuse_processes
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.output import Output
 from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
+from tuisim.runtime.standin import replace
 from tuisim.runtime.steering import Steering
 
 if TYPE_CHECKING:
@@ -103,8 +104,8 @@ class Child:
             {
                 "random": lambda module: finish_random(self._config.spec.seed, module),
                 "selectors": lambda module: finish_selectors(session, module),
-                "subprocess": refuse_subprocess,
             },
+            replace,
         )
 
         def leave(outcome: Outcome) -> NoReturn:

@@ -69,6 +69,7 @@ class Baton:
         self._order = 0
         self._alive: list[Task] = []
         session.sleep_threaded = self.sleep_until
+        session.aside = self.spawn_daemon
 
     # Waiting
 
@@ -214,6 +215,10 @@ class Baton:
         self._alive.append(task)
         self._ready.append(task)
         return task
+
+    def spawn_daemon(self, work: Callable[[], None]) -> None:
+        """Let something be done while the program goes on; it does not wait for it at its end."""
+        self.spawn(work, daemon=True)
 
     def _finish(self, task: Task) -> None:
         task.done = True

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import resource
-import types
-from functools import wraps
 from typing import Any, NoReturn
 
 from tuisim.runtime.standin import replace
@@ -14,7 +12,7 @@ MEMORY_LIMIT_BYTES = 1 << 30
 """Address space of the child; beyond it the program gets a MemoryError."""
 
 _PROCESS_CALLS = (
-    "fork", "forkpty", "system", "popen", "posix_spawn", "posix_spawnp",
+    "fork", "forkpty", "posix_spawn", "posix_spawnp",
     "execv", "execve", "execvp", "execvpe", "execl", "execle", "execlp", "execlpe",
     "spawnv", "spawnve", "spawnvp", "spawnvpe", "spawnl", "spawnle", "spawnlp", "spawnlpe",
 )  # fmt: skip
@@ -45,9 +43,3 @@ def refuse_processes() -> None:
             replace(os, name, _refusal(f"os.{name}"))
     # The debugger forks to look at values: nothing of the program's may run then.
     replace(os, "register_at_fork", lambda **_functions: None)
-
-
-def refuse_subprocess(module: types.ModuleType) -> None:
-    """The same for `subprocess`, after its import."""
-    popen: Any = vars(module)["Popen"]
-    popen.__init__ = wraps(popen.__init__)(_refusal("subprocess.Popen"))

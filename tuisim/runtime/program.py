@@ -111,6 +111,8 @@ class ProgramRunner:
     def _prepare(self) -> None:
         file = self._session.program_file
         sys.stdout, sys.stderr = self.stdout, self.stderr
+        # Also for whatever puts another stream in place of one and goes back to it.
+        vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
         sys.argv = [file]
         sys.excepthook = self._thread_error
         import threading

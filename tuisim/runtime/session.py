@@ -108,6 +108,8 @@ class Session:
         """Set once there is a program to debug."""
         self.sleep_threaded: Callable[[int, bool], None] | None = None
         """Set by the baton: waits until a time (or a motor change) while other threads run."""
+        self.aside: Callable[[Callable[[], None]], None]
+        """Set by the baton: lets something be done while the program goes on."""
 
     # What the shim calls
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import re
-import sys
 import types
 from typing import Any
 
@@ -20,7 +18,7 @@ FONT_WIDTH, FONT_HEIGHT = 12, 24
 USUAL_WIDTH = 8
 """Of fonts that are named after their height only."""
 
-_FONT = re.compile(r"\w+-[A-Za-z]+(\d+)(?:x(\d+))?(?:\.psf)?(?:\.gz)?")
+_FONT = re.compile(r"(?:\w+-[A-Za-z]+|default)(\d+)(?:x(\d+))?(?:\.psf)?(?:\.gz)?")
 
 
 def font_size(name: str) -> tuple[int, int] | None:
@@ -42,7 +40,7 @@ def font_size(name: str) -> tuple[int, int] | None:
 
 
 class Terminal:
-    """Takes what the library prints and the commands that it gives.
+    """Takes what the library prints, and does what commands for the screen say.
 
     Args:
         session: The program's clock.
@@ -61,33 +59,30 @@ class Terminal:
         self._grid.write(text + end)
         self._show()
 
-    def system(self, command: str) -> int:
-        """Do `setfont NAME` and `stty [-]echo`; return the exit status."""
-        self._session.command()
-        program, _, name = command.partition(" ")
-        if program != "setfont":
-            # Whether keys are echoed: the brick's buttons write nothing on this screen.
-            return 0
+    def set_font(self, name: str) -> str:
+        """Take another font, and with it another size; return what is wrong, nothing if it was taken."""
         size = font_size(name)
         if size is None:
-            print(f"setfont: cannot find the font {name!r}", file=sys.stderr)
-            return 1
+            return f"setfont: cannot find the font {name!r}"
         self._grid.resize(DISPLAY_WIDTH // size[0], DISPLAY_HEIGHT // size[1])
         self._show()
-        return 0
+        return ""
 
-    def popen(self, _command: str) -> io.StringIO:
-        """Do `stty size`."""
-        self._session.command()
-        return io.StringIO(f"{self._grid.rows} {self._grid.columns}\n")
+    def clear(self) -> None:
+        """Wipe the screen; the next letter goes to its top left corner."""
+        self._grid.write("\x1b[2J\x1b[H")
+        self._show()
+
+    @property
+    def size(self) -> str:
+        """Rows and columns, as `stty size` tells them."""
+        return f"{self._grid.rows} {self._grid.columns}\n"
 
     def _show(self) -> None:
         self._screen.show(console_row(self._grid.screen()), CONSOLE)
 
 
-def patch_console_module(session: Session, module: types.ModuleType, screen: Screen) -> None:
+def patch_console_module(module: types.ModuleType, terminal: Terminal) -> None:
     """Finish `ev3dev2.console` after its import: it prints on the brick's screen, not into the output."""
     console: Any = module
-    terminal = Terminal(session, screen)
-    programs = types.SimpleNamespace(system=terminal.system, popen=terminal.popen)
-    rebind(console.Console, print=terminal.print, os=programs)
+    rebind(console.Console, print=terminal.print)

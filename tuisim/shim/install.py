@@ -9,15 +9,17 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tuisim.shim.building import build_brick
 from tuisim.shim.buttons import evdev_module, patch_button_module
-from tuisim.shim.console import patch_console_module
+from tuisim.shim.console import Terminal, patch_console_module
 from tuisim.shim.display import patch_display_module
 from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.overlay import glue_module, patch_lego_module
-from tuisim.shim.refused import REFUSED, refuse_classes
+from tuisim.shim.processes import Replace, System, finish_asyncio
+from tuisim.shim.refused import PROCESSES, REFUSED, refuse_classes
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
-from tuisim.shim.sound import patch_sound_module
+from tuisim.shim.shell import Shell
+from tuisim.shim.sound import Mixer, patch_sound_module
 
 Finish = Callable[[types.ModuleType], None]
 
@@ -60,25 +62,32 @@ def finish_imports(finishers: Mapping[str, Finish]) -> None:
     sys.meta_path.insert(0, FinishingFinder(finishers))
 
 
-def install(session: Session, more_finishers: Mapping[str, Finish]) -> None:
+def install(session: Session, more_finishers: Mapping[str, Finish], replace: Replace) -> None:
     """Prepare `import ev3dev2` for the program.
 
     Args:
         session: Clock and simulation.
         more_finishers: Finishers of other modules, by name.
+        replace: Lets a function of a module do something else.
     """
     brick, colors = build_brick(session)
     screen = Screen(session)
+    terminal, mixer = Terminal(session, screen), Mixer()
+    system = System(session, Shell(session, terminal, mixer))
+    system.patch_os(replace)
     finishers: dict[str, Finish] = {
         "ev3dev2.button": lambda module: patch_button_module(session, module),
-        "ev3dev2.console": lambda module: patch_console_module(session, module, screen),
+        "ev3dev2.console": lambda module: patch_console_module(module, terminal),
         "ev3dev2.display": lambda module: patch_display_module(session, module, screen),
         "ev3dev2.led": lambda module: patch_led_module(session, module, brick),
         "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
-        "ev3dev2.sound": lambda module: patch_sound_module(session, module),
+        "ev3dev2.sound": lambda module: patch_sound_module(session, module, mixer),
+        "subprocess": system.finish_subprocess,
+        "asyncio.base_events": finish_asyncio,
         **dict.fromkeys(REFUSED, refuse_classes),
+        **PROCESSES,
         **more_finishers,
     }
     finish_imports(finishers)

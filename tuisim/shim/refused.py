@@ -1,7 +1,8 @@
-"""Parts of the library that the simulated brick does not have: each says so by its name."""
+"""Parts of the library and of Python that the simulated brick does not have: each says so by its name."""
 
 from __future__ import annotations
 
+import sys
 import types
 from collections.abc import Mapping
 from functools import wraps
@@ -20,6 +21,73 @@ REFUSED: Mapping[str, Mapping[str, str]] = {
 }
 """By module, the classes that cannot be made, and what to use in their place."""
 
+_THREADS = "the simulated brick has one process; use threading"
+_IN_CONTEXT = (
+    "Array", "Barrier", "BoundedSemaphore", "Condition", "Event", "JoinableQueue", "Lock", "Manager", "Pipe", "Pool",
+    "Queue", "RLock", "RawArray", "RawValue", "Semaphore", "SimpleQueue", "Value",
+)  # fmt: skip
+"""What `multiprocessing` makes for processes: some of it would start them, the rest would wait for them for ever."""
+
+
+def refuse_contexts(module: Any) -> None:
+    """Refuse what `multiprocessing` gives to processes, after the import of its contexts."""
+    base = module.BaseContext
+    genuine = {name: getattr(base, name) for name in _IN_CONTEXT}
+    module.ThreadContext = type("ThreadContext", (base,), {**genuine, "_name": "fork"})
+    for name in _IN_CONTEXT:
+        setattr(base, name, _refusal(f"multiprocessing.{name}", _hint(name)))
+
+
+def keep_thread_pool(module: types.ModuleType) -> None:
+    """Let the pool of threads have what is refused to processes, after the import of `multiprocessing.pool`."""
+    contexts: Any = sys.modules["multiprocessing.context"]
+    pool, context = module.Pool, contexts.ThreadContext()
+
+    def __init__(self: Any, processes: Any = None, initializer: Any = None, initargs: Any = ()) -> None:  # noqa: N807
+        pool.__init__(self, processes, initializer, initargs, context=context)
+
+    module.ThreadPool.__init__ = __init__
+
+
+def refuse_process(module: types.ModuleType) -> None:
+    """Refuse processes, after the import of `multiprocessing.process`."""
+    module.BaseProcess.__init__ = _refusal("multiprocessing.Process", _hint("Process"))
+
+
+def refuse_shared_memory(module: types.ModuleType) -> None:
+    """Refuse memory that processes share, after the import of `multiprocessing.shared_memory`."""
+    module.SharedMemory.__init__ = _refusal("multiprocessing.shared_memory.SharedMemory", _THREADS)
+
+
+def refuse_process_pool(module: types.ModuleType) -> None:
+    """Refuse the pool of processes, after the import of `concurrent.futures.process`."""
+    name = "ProcessPoolExecutor"
+    getattr(module, name).__init__ = _refusal(f"concurrent.futures.{name}", f"{_THREADS}, or ThreadPoolExecutor")
+
+
+def _hint(name: str) -> str:
+    match name:
+        case "Process":
+            return f"{_THREADS}.Thread"
+        case "Queue" | "JoinableQueue" | "SimpleQueue" | "Pipe":
+            return f"{_THREADS}, and queue.Queue between threads"
+        case "Pool":
+            return f"{_THREADS}, or multiprocessing.pool.ThreadPool"
+        case "Lock" | "RLock" | "Event" | "Condition" | "Semaphore" | "BoundedSemaphore" | "Barrier":
+            return f"{_THREADS}.{name}"
+        case _:
+            return f"{_THREADS}: its threads share their variables"
+
+
+PROCESSES = {
+    "concurrent.futures.process": refuse_process_pool,
+    "multiprocessing.context": refuse_contexts,
+    "multiprocessing.pool": keep_thread_pool,
+    "multiprocessing.process": refuse_process,
+    "multiprocessing.shared_memory": refuse_shared_memory,
+}
+"""By module, what refuses the parts of it that would start processes of this computer."""
+
 
 def refuse_classes(module: types.ModuleType) -> None:
     """Make the constructors of a module's refused classes raise NotSimulated."""
@@ -29,7 +97,7 @@ def refuse_classes(module: types.ModuleType) -> None:
 
 
 def _refusal(name: str, hint: str) -> Any:
-    def refuse(_self: object, *_args: object, **_kwargs: object) -> NoReturn:
+    def refuse(*_args: object, **_kwargs: object) -> NoReturn:
         raise NotSimulated(f"{name} is not part of the simulated brick", hint)
 
     return refuse

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from tuisim.core.field import Field
@@ -44,3 +45,6 @@ class Session(Protocol):
 
     def show(self, row: str, stream: int) -> None:
         """Write down what the brick shows; `stream` is one of `records`, `row` as `datalog.face` makes it."""
+
+    def aside(self, work: Callable[[], None]) -> None:
+        """Let something be done while the program goes on."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import io
-import os
 import shlex
 import types
+from collections.abc import Sequence
 from functools import wraps
 from typing import Any
 
@@ -19,6 +18,8 @@ CHANNEL = "Playback"
 """The mixer's only channel on the brick."""
 SHORTEST_TURN_NS = 100 * MS
 """A sound that is played for ever begins anew not sooner than this: the player has to start."""
+NO_PID = 1 << 22
+"""No process of this computer has such a number, or a higher one (Linux: PID_MAX_LIMIT)."""
 _KILLED, _TERMINATED = -9, -15
 
 
@@ -32,7 +33,7 @@ class PlayedSound:
     """
 
     stdin = stdout = stderr = None
-    pid = 1
+    pid = NO_PID
 
     def __init__(self, session: Session, command: str, length_ns: int) -> None:
         self.args = command
@@ -81,33 +82,40 @@ class PlayedSound:
 
 
 class Mixer:
-    """The programs that set the volume and tell it, as far as the library calls them."""
+    """What sets the volume and tells it: `amixer`."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self) -> None:
         self._volumes: dict[str, int] = {}
 
     def volume(self, channel: str | None) -> int:
         """Return the volume of a channel in percent."""
         return self._volumes.get(channel or CHANNEL, LOUDEST)
 
-    def system(self, command: str) -> int:
-        """Do `amixer -q set CHANNEL VOLUME%`."""
-        self._session.command()
-        *channel, level = shlex.split(command)[3:]
-        self._volumes[" ".join(channel)] = min(max(int(level.rstrip("%")), 0), LOUDEST)
-        return 0
+    def do(self, words: Sequence[str]) -> str:
+        """Do what `amixer` with these arguments does, and return what it prints.
 
-    def popen(self, command: object) -> io.StringIO:
-        """Do `amixer scontrols`.
+        Args:
+            words: `set CHANNEL VOLUME%`, `get CHANNEL`, `scontrols`, or nothing for all there is.
 
         Raises:
-            TypeError: the command is no text, as the real function says it.
+            ValueError: they are others.
         """
-        self._session.command()
-        if not isinstance(command, str):
-            raise TypeError(f"invalid cmd type ({type(command)}, expected string)")
-        return io.StringIO(f"Simple mixer control '{CHANNEL}',0\n")
+        match words:
+            case ["set" | "sset", *channel, level] if (percent := level.rstrip("%")).lstrip("-").isdigit():
+                self._volumes[" ".join(channel)] = min(max(int(percent), 0), LOUDEST)
+                return self._told(" ".join(channel))
+            case ["get" | "sget", *channel] if channel:
+                return self._told(" ".join(channel))
+            case ["scontrols"]:
+                return f"Simple mixer control '{CHANNEL}',0\n"
+            case []:
+                return self._told(CHANNEL)
+        raise ValueError(f"{' '.join(words)!r} is not simulated: set CHANNEL VOLUME%, get CHANNEL or scontrols")
+
+    def _told(self, channel: str) -> str:
+        return (
+            f"Simple mixer control '{channel}',0\n  Mono: Playback {self.volume(channel)} [{self.volume(channel)}%]\n"
+        )
 
 
 class Loudspeaker:
@@ -138,12 +146,11 @@ class Loudspeaker:
             self.song.append(Tone(0.0, seconds * 1000))
 
 
-def patch_sound_module(session: Session, module: types.ModuleType) -> None:
+def patch_sound_module(session: Session, module: types.ModuleType, mixer: Mixer) -> None:
     """Finish `ev3dev2.sound` after its import."""
     sound: Any = module
-    speaker, mixer = Loudspeaker(session), Mixer(session)
-    programs = types.SimpleNamespace(path=os.path, devnull=os.devnull, system=mixer.system, popen=mixer.popen)
-    rebind(sound.Sound, os=programs, sleep=speaker.rest)
+    speaker = Loudspeaker(session)
+    rebind(sound.Sound, sleep=speaker.rest)
     _patch_playing(session, sound, speaker)
     _patch_songs(sound.Sound, speaker)
     if session.sim.spec.profile.mend_library:

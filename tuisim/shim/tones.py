@@ -54,6 +54,8 @@ class Heard:
     """Empty for speech."""
     file: str = ""
     """Whole path of a sound file."""
+    refused: bool = False
+    """Whether nothing is heard: the command is wrong, or the file."""
 
     @property
     def tones_row(self) -> str:
@@ -73,9 +75,9 @@ def heard_of(command: str) -> Heard:
         case "espeak":
             return _speech(words[-1], words[:-1])
         case "aplay":
-            return _file(words[-1])
+            return file_heard(words[-1])
         case _:
-            return _beep(words)
+            return beep_heard(words)
 
 
 def song_of(tones: Sequence[Tone]) -> Heard:
@@ -132,12 +134,13 @@ def _repeated(note: dict[str, float]) -> list[Tone]:
     return [*every[:-1], Tone(frequency_hz, length_ms, last_pause_ms)] if every else []
 
 
-def _beep(words: list[str]) -> Heard:
+def beep_heard(words: Sequence[str]) -> Heard:
+    """Return what `beep` with these arguments sounds like."""
     try:
         tones = parse_beep(words)
     except ValueError as error:
         # The real one writes how it is used to where nobody reads it, and makes no sound.
-        return Heard(f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),))
+        return Heard(f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),), refused=True)
     if not words:
         text = "[beep]"
     elif len(tones) == 1:
@@ -150,31 +153,49 @@ def _beep(words: list[str]) -> Heard:
     return Heard(text, _total_ns(tones), tuple(tones))
 
 
-def _file(path: str) -> Heard:
+def file_heard(path: str, folder: str = "") -> Heard:
+    """Return what a sound file sounds like.
+
+    Args:
+        path: The file, as the program names it.
+        folder: Where a relative path begins; by default where the program is.
+    """
     import wave
 
+    place = os.path.join(folder, path)
     try:
-        with wave.open(path, "rb") as file:
+        with wave.open(place, "rb") as file:
             seconds = file.getnframes() / file.getframerate()
     except (wave.Error, EOFError, OSError, ZeroDivisionError) as error:
         # As above: the real player fails where nobody sees it.
-        return Heard(f"[cannot play {path}: {str(error) or 'it is cut off'}]", 0, (Tone(0.0, 0.0),))
+        return Heard(f"[cannot play {path}: {str(error) or 'it is cut off'}]", 0, (Tone(0.0, 0.0),), refused=True)
     tones = (Tone(0.0, seconds * 1000),)
-    return Heard(f"[plays {path}, {seconds:.1f} s]", _total_ns(tones), tones, os.path.abspath(path))
+    return Heard(f"[plays {path}, {seconds:.1f} s]", _total_ns(tones), tones, os.path.abspath(place))
+
+
+def speech_heard(text: str, words_a_minute: str = "") -> Heard:
+    """Return what a text sounds like.
+
+    Args:
+        text: What is said.
+        words_a_minute: As it is given to `espeak`; it takes its own pace where that is no number.
+    """
+    try:
+        speed = min(max(int(words_a_minute), SLOWEST_WPM), FASTEST_WPM)
+    except ValueError:
+        speed = WORDS_PER_MINUTE
+    return Heard(text, len(text.split()) * 60_000 * MS // speed)
 
 
 def _speech(text: str, words: list[str]) -> Heard:
     import getopt
 
-    speed = WORDS_PER_MINUTE
     try:
-        for name, value in getopt.gnu_getopt(words, "a:s:v:p:g:k:l:b:f:w:z", ["stdout"])[0]:
-            if name == "-s":
-                speed = min(max(int(value), SLOWEST_WPM), FASTEST_WPM)
-    except (getopt.GetoptError, ValueError):
+        options = dict(getopt.gnu_getopt(words, "a:s:v:p:g:k:l:b:f:w:z", ["stdout"])[0])
+    except getopt.GetoptError:
         # How it sounds is not known then, but it is said all the same.
-        speed = WORDS_PER_MINUTE
-    return Heard(text, len(text.split()) * 60_000 * MS // speed)
+        options = {}
+    return speech_heard(text, options.get("-s", ""))
 
 
 def _total_ns(tones: Sequence[Tone]) -> int:
