@@ -146,6 +146,12 @@ def test_nothing_is_left_open_and_no_machine_is_named(path: Path) -> None:
     assert not found
 
 
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_lines_are_split_as_python_counts_them(path: Path) -> None:
+    calls = {node.attr for node in ast.walk(tree_of(path)) if isinstance(node, ast.Attribute)}
+    assert "splitlines" not in calls, "source_lines"
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "tests").rglob("*.py")), ids=name_of)
 def test_no_test_is_skipped(path: Path) -> None:
     marks = {node.attr for node in ast.walk(tree_of(path)) if isinstance(node, ast.Attribute)}

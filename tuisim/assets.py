@@ -17,6 +17,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
 from tuisim.errors import BackgroundError, ConfigError, ObstacleError
 from tuisim.pictures import check_file
+from tuisim.source import source_lines
 
 CATALOG = "catalog.toml"
 OWN_START = Pose(200.0, 800.0, 0.0)
@@ -85,7 +86,7 @@ def _title_of(path: Path) -> str:
     import ast
 
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = source_lines(path.read_text(encoding="utf-8"))
         # A program may begin with a notebook's magic line, which is not Python.
         module = ast.parse("\n".join("" if line.startswith("%") else line for line in lines))
     except (SyntaxError, ValueError, OSError):

@@ -11,12 +11,16 @@ import time
 from pathlib import Path
 
 from tuisim.atomic import private
+from tuisim.source import source_lines
 
 PATIENCE_S = 0.2
 """How long a full command pipe is waited for: a child that listens empties it at once."""
 
 STACK_WRITTEN_WITHIN_S, LOOK_AGAIN_S = 0.1, 0.003
 """How long a stuck child may take to write its stack on a busy machine, and how often it is looked for."""
+
+MOST_SHOWN = 500
+"""Of a longer file name no more is in a written stack."""
 
 
 def start_child(folder: Path) -> tuple[subprocess.Popen[bytes], int, int, int]:
@@ -94,8 +98,10 @@ def stuck_line(folder: Path, program_file: str) -> int:
         stack = (folder / "stack.txt").read_text("utf-8", "replace")
     except OSError:
         return 0
-    for line in stack.splitlines():
-        if f'"{program_file}"' in line:
+    # As it is written there: in ASCII, and not more than so much of it.
+    shown = program_file.encode("ascii", "backslashreplace").decode()
+    for line in source_lines(stack):
+        if f'"{shown}"' in line or (len(program_file) > MOST_SHOWN and f'"{shown[:MOST_SHOWN]}' in line):
             return int(line.partition(", line ")[2].partition(" ")[0] or 0)
     return 0
 
@@ -105,5 +111,5 @@ def what_ended(exit_status: int, folder: Path) -> str:
     if exit_status < 0:
         return f"the program's process was ended by {signal.Signals(-exit_status).name}"
     log = (folder / "child.log").read_text("utf-8", "replace").strip()
-    last = f": {log.splitlines()[-1]}" if log else ""
+    last = f": {source_lines(log)[-1]}" if log else ""
     return f"the program's process ended with exit status {exit_status}{last}"

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import ast
-import io
 import os
 import re
 import shlex
-import tokenize
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,6 +13,7 @@ from typing import Any
 
 from tuisim.assets import programs
 from tuisim.errors import ConfigError
+from tuisim.source import decode_source, source_lines
 from tuisim.switches import nearest, parse_words
 
 MAX_PROGRAM_BYTES = 4 << 20
@@ -103,7 +102,7 @@ def find_magic(text: str, name: str) -> Magic | None:
     Raises:
         ConfigError: the magic is none of `PRELUDES`, or a switch in it is wrong.
     """
-    for number, line in _head(text.splitlines()):
+    for number, line in _head(source_lines(text)):
         match = _MAGIC.fullmatch(line)
         if match is None:
             continue
@@ -145,10 +144,9 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     if magic is None:
         return ProgramSource(name, path, text, "none" if _imports_ev3dev2(text) else "preloaded")
     if not magic.comment:
-        lines = text.splitlines(keepends=True)
-        raw = lines[magic.line - 1]
-        lines[magic.line - 1] = raw[len(raw.rstrip("\r\n")) :]
-        text = "".join(lines)
+        lines = source_lines(text)
+        lines[magic.line - 1] = ""
+        text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
     return ProgramSource(name, path, text, str(magic.switches.get("preload", magic.prelude)), magic.switches)
 
 
@@ -195,11 +193,7 @@ def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
 
 
 def _decode(data: bytes, shown: str) -> str:
-    try:
-        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-        text = data.decode(encoding)
-    except (SyntaxError, UnicodeDecodeError) as error:
-        raise ConfigError(f"is not Python text: {error}", "save it as UTF-8", file=shown) from None
+    text, _ = decode_source(data, shown)
     if "\0" in text:
         raise ConfigError("is not Python text: it holds null characters", "name a Python file", file=shown)
     return text.replace("\r\n", "\n").replace("\r", "\n")

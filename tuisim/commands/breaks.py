@@ -12,6 +12,7 @@ from tuisim.core.simulation import NS_PER_S
 from tuisim.errors import ConfigError
 from tuisim.host import RunHandle
 from tuisim.protocol import Look, Looked, Message, Paused, Resume
+from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.commands.prepare import Prepared
@@ -70,7 +71,7 @@ class BreakTeller:
     def __init__(self, handle: RunHandle, options: BreakOptions) -> None:
         self._handle, self._options = handle, options
         self._held: Paused | None = None
-        self._source = handle.program.text.splitlines()
+        self._source = source_lines(handle.program.text)
         self.stopped = False
         """Whether a break has ended the run."""
 

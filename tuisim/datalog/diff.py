@@ -12,6 +12,7 @@ from tuisim.core.spec import to_plain
 from tuisim.datalog.records import CONSOLE, DISPLAY, LED, MOTORS, TEXT_STREAMS, OutputRow, line_of
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.samples import samples_of
+from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     import numpy as np
@@ -108,7 +109,7 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, unti
         one, two = one[: until + 1], two[: until + 1]
     if prefix:
         two = two[: len(one)]
-    old, new = first.program.text.splitlines(), second.program.text.splitlines()
+    old, new = source_lines(first.program.text), source_lines(second.program.text)
     unified = difflib.unified_diff(old, new, first.program.name, second.program.name, n=1, lineterm="")
     return RunDiff(
         setup=tuple(_setup(first, second)),

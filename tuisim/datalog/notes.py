@@ -57,7 +57,7 @@ def read_notes(place: Path) -> tuple[Note, ...]:
         LogError: it cannot be read, or a row is no note.
     """
     try:
-        lines = place.read_bytes().splitlines()
+        lines = [line for line in place.read_bytes().split(b"\n") if line]
     except FileNotFoundError:
         return ()
     except OSError as error:

@@ -12,6 +12,7 @@ from typing import Any
 from tuisim.errors import ConfigError
 from tuisim.notebook.words import lasting_after, parse_line
 from tuisim.programfile import PRELUDES, ProgramSource, beside
+from tuisim.source import source_lines
 from tuisim.switches import nearest
 
 MAX_NOTEBOOK_BYTES = 64 << 20
@@ -85,7 +86,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
     title, lasting, notes = "", dict[str, Any](), list[str]()
     for place, (kind, text) in enumerate(_cells(path), 1):
         if kind == "markdown":
-            headings = [match[1] for line in text.splitlines() if (match := _HEADING.match(line))]
+            headings = [match[1] for line in source_lines(text) if (match := _HEADING.match(line))]
             title = headings[-1] if headings else title
         if kind != "code":
             continue
@@ -110,7 +111,9 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
 def _magics(text: str, where: str) -> Iterator[_Words]:
     """Yield each magic that sets the world, with what it says; a cell's own magic is its first line."""
     stripped = text.lstrip()
-    lines = stripped.splitlines()[:1] if stripped.startswith("%%") else stripped.splitlines()
+    lines = source_lines(stripped)
+    if stripped.startswith("%%"):
+        lines = lines[:1]
     for line in lines:
         match = _MAGIC.fullmatch(line.strip())
         if match is None:

@@ -20,6 +20,7 @@ from tuisim.datalog.views import TickRecord, instant_of
 from tuisim.fields import FieldFiles, mat_pixels, open_field
 from tuisim.figures import PenTrace, arrays_picture, chart_picture, world_picture
 from tuisim.notebook.eds import arrays_at
+from tuisim.source import source_lines
 from tuisim.switches import Settings
 
 _LEFT_RIGHT = ("left", "right")
@@ -120,7 +121,7 @@ def _settings(scene: Scene) -> list[Row]:
 
 
 def _code(scene: Scene) -> list[Row]:
-    return [(str(number), line) for number, line in enumerate(scene.text.splitlines(), 1)]
+    return [(str(number), line) for number, line in enumerate(source_lines(scene.text), 1)]
 
 
 _TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {

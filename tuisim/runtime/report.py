@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tuisim.runtime.interrupts import PACKAGE_FOLDER
+from tuisim.source import source_lines
 
 _OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.halt.")
 
@@ -34,7 +35,7 @@ def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
     """
     import linecache
 
-    linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+    linecache.cache[file] = (len(source), None, [line + "\n" for line in source_lines(source)], file)
     told = traceback.TracebackException.from_exception(error, compact=True)
     _keep_program_frames(told, own_files(file))
     text = "".join(told.format())
@@ -50,7 +51,7 @@ def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
 
 def _summary(told: traceback.TracebackException) -> str:
     """Kind and message in one line."""
-    only = "".join(told.format_exception_only()).strip().splitlines()
+    only = source_lines("".join(told.format_exception_only()).strip())
     # A syntax error shows its place first; of a message of several lines the first says most.
     return only[-1] if only[0].startswith("File ") else only[0]
 

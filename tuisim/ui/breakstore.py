@@ -10,6 +10,7 @@ from pathlib import Path
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.breaks import Break, break_line_of, moved, parse_break
 from tuisim.errors import ConfigError
+from tuisim.source import source_lines
 
 FOLDER = "breaks"
 MAX_KEPT = 200
@@ -62,7 +63,7 @@ def keep(program: str, kept: Kept) -> None:
 
 def following(breaks: tuple[Break, ...], before: str, now: str) -> tuple[Break, ...]:
     """Return breaks on the same lines of a text that was edited in one place; those on lines that went are gone."""
-    old, new = before.split("\n"), now.split("\n")
+    old, new = source_lines(before), source_lines(now)
     shift = len(new) - len(old)
     if not shift:
         return breaks

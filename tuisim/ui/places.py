@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from tuisim.datalog.records import TEXT_STREAMS, OutputRow
 from tuisim.datalog.samples import parse_sample
 from tuisim.errors import ConfigError
+from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.ui.recording import Recording
@@ -112,7 +113,7 @@ def _within(tick: int, recording: Recording) -> int:
 def _line(search: _Search, line: int) -> int:
     import numpy as np
 
-    lines = search.recording.program.text.count("\n") + 1
+    lines = len(source_lines(search.recording.program.text))
     if not 1 <= line <= lines:
         raise ConfigError(f"the program has no line {line}", f"1 … {lines}")
     at_it = search.recording.telemetry.array()["line"] == line

@@ -139,4 +139,4 @@ def _usual(kind: pa.DataType) -> pa.DataType:
 
 
 def _short(error: Exception) -> str:
-    return str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+    return str(error).partition("\n")[0][:120] if str(error) else type(error).__name__

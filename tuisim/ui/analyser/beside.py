@@ -9,6 +9,8 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
+from tuisim.errors import printable
+from tuisim.source import source_lines
 from tuisim.ui.analyser.moments import Place, place_of, tells_places
 from tuisim.ui.cellview import LinesView
 from tuisim.ui.panels.arrays import Arrays
@@ -107,7 +109,7 @@ class Beside(Vertical):
 
     def _lines(self, place: Place, line: int) -> list[list[Run]]:
         """The program around a line, with that one in the middle."""
-        texts = place.text.splitlines()
+        texts = source_lines(place.text)
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:
             return [[(f"line {line}", _PLAIN)]]
@@ -115,5 +117,7 @@ class Beside(Vertical):
         shown: list[list[Run]] = []
         for number, text in enumerate(texts[first : first + height], first + 1):
             here = number == line
-            shown.append([(f"{number:>3} ", _HERE if here else _DIM), (text.ljust(width), _HERE if here else _PLAIN)])
+            shown.append(
+                [(f"{number:>3} ", _HERE if here else _DIM), (printable(text).ljust(width), _HERE if here else _PLAIN)]
+            )
         return shown

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
+from tuisim.source import source_lines
+
 Change = Callable[[Sequence[str]], list[str]]
 """What makes other lines of lines."""
 
@@ -68,6 +70,6 @@ def differing_lines(one: str, other: str) -> int:
     """Return how many lines of two texts differ."""
     import difflib
 
-    matcher = difflib.SequenceMatcher(None, one.splitlines(), other.splitlines(), autojunk=False)
+    matcher = difflib.SequenceMatcher(None, source_lines(one), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(max(to - start, to_other - start_other) for _, start, to, start_other, to_other in changes)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.errors import ConfigError
+from tuisim.source import decode_source
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +35,9 @@ def read_text(path: Path) -> tuple[str, Form]:
     """
     try:
         data = path.read_bytes()
-        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-        text = data.decode(encoding)
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
-    except (SyntaxError, UnicodeDecodeError) as error:
-        raise ConfigError(f"is not Python text: {error}", "save it as UTF-8", file=str(path)) from None
+    text, encoding = decode_source(data, str(path))
     ends = {end: len(re.findall(pattern, text)) for end, pattern in _ENDS.items()}
     form = Form(encoding.removesuffix("-sig"), data.startswith(codecs.BOM_UTF8), max(ends, key=lambda end: ends[end]))
     return text.replace("\r\n", "\n").replace("\r", "\n"), form
@@ -73,7 +71,7 @@ def _encoded(text: str, form: Form, path: Path) -> bytes:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(text.encode("utf-8", "surrogateescape")).readline)
         wanted = form.encoding if encoding == "utf-8" and _is_named(form.encoding, text) else encoding
         return text.replace("\n", form.newline).encode(wanted)
-    except (SyntaxError, UnicodeEncodeError, LookupError) as error:
+    except (SyntaxError, UnicodeError, LookupError) as error:
         raise ConfigError(f"cannot be written: {error}", "change that or the coding line", file=str(path)) from None
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.errors import ConfigError, TuisimError
+from tuisim.source import source_lines
 from tuisim.ui.editor.drafts import Draft, drop_draft, find_draft, keep_draft
 from tuisim.ui.editor.linemap import LineMap
 from tuisim.ui.editor.textfile import Form, is_protected, read_text, write_text
@@ -127,8 +128,8 @@ class Work:
 
     def lines(self) -> LineMap:
         """Return which lines of the program as it stands are which of the run at hand."""
-        now = self._text.split("\n")
-        return LineMap(now if self._ran is None else self._ran[1].split("\n"), now)
+        now = source_lines(self._text)
+        return LineMap(now if self._ran is None else source_lines(self._ran[1]), now)
 
     # Editing
 

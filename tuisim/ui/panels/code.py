@@ -14,6 +14,7 @@ from textual.message import Message
 from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
+from tuisim.source import source_lines
 from tuisim.ui.editor.area import CodeArea
 from tuisim.ui.editor.editing import places
 from tuisim.ui.editor.findbar import FIND, LINE, FindBar
@@ -132,7 +133,7 @@ class Code(Vertical):
         # A file's name is no markup.
         self.border_title = title.replace("[", "\\[") + edited
         tells = self._run_lines is not None and self._tells_run and self._in_run
-        differs = tells and self._run_lines != self._shown.split("\n")
+        differs = tells and self._run_lines != source_lines(self._shown)
         keys = _TYPING_KEYS if self.typing else ""
         self.border_subtitle = "  ".join(filter(None, ["running text differs" if differs else "", keys]))
 
@@ -143,7 +144,7 @@ class Code(Vertical):
             text: None without a run.
             tells: Whether it is a run of this program, so that it is told when the two texts differ.
         """
-        self._run_lines, self._mapped = text.split("\n") if text is not None else None, None
+        self._run_lines, self._mapped = source_lines(text) if text is not None else None, None
         self._tells_run = tells
         self._say()
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.datalog.arrays import FloatArray
 from tuisim.datalog.export import check_place
 from tuisim.errors import ExportError, LogError, listed
+from tuisim.source import source_lines
 from tuisim.ui.paper.chart import Chart, Span, View, chart_of
 from tuisim.ui.paper.facts import log_facts, run_facts
 from tuisim.ui.paper.files import FACET_PX, write_whole
@@ -31,7 +31,6 @@ SUFFIXES = (".html", ".htm")
 MOST_BANDS = 300
 """Rows of the table of bands; what has more of them has none that a reader could use."""
 _WIDTH_PX = 960
-_ENDS = re.compile(r"\r\n|\r|\n")
 
 
 def default_name(subject: Subject) -> str:
@@ -195,7 +194,4 @@ def _notes(model: Model) -> str:
 def _programs(runs: Sequence[StoredRun]) -> list[str]:
     """Each program once."""
     programs = {run.program.sha256: run.program for run in runs}
-    return [
-        section(f"Program {program.name}", code(_ENDS.split(program.text.removesuffix("\n"))))
-        for program in programs.values()
-    ]
+    return [section(f"Program {program.name}", code(source_lines(program.text))) for program in programs.values()]
