@@ -42,7 +42,7 @@ def test_example_introduces_itself(name: str) -> None:
     assert path.read_text(encoding="utf-8").isascii()
 
 
-@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
+@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_example_finishes(name: str, profile: str, here: Command) -> None:
     done = here("run", name, "--json", "--profile", profile, "--timeout", 100)

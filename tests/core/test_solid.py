@@ -87,9 +87,9 @@ def test_the_robot_can_leave_what_it_was_put_into() -> None:
     world = WorldSpec(start=Pose(1000.0, 571.0, 0.0), obstacles=(Obstacle(950.0, 500.0, 100.0, 100.0),), solid=True)
     sim = simulation(world)
     for motor in (sim.left, sim.right):
-        motor.run(500.0)
+        motor.run(-500.0)
     sim.advance(300)
-    assert sim.x_mm > 1300
+    assert sim.x_mm < 700
 
 
 def test_grouping_of_ticks_does_not_matter_near_obstacles() -> None:

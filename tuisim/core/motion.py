@@ -131,7 +131,7 @@ class Motion:
         """Do one tick in full: the rule that the loops below abbreviate."""
         self.tick = tick = self.tick + 1
         left, right, tick_s, noise = self.left, self.right, self._tick_s, self.noise.motor
-        before = None
+        before, aside_mm = None, None
         if self._solids is not None and self._solids.left_of_room_mm(self._pose()) < self._longest_mm:
             before = left.state(), right.state()
         # A motor that just goes on needs only the ramp of the rules of `step`; most ticks are such.
@@ -152,7 +152,7 @@ class Motion:
         else:
             right_deg = self._step(right, 1)
         if before is not None:
-            left_deg, right_deg = self._obstructed(before, left_deg, right_deg)
+            left_deg, right_deg, aside_mm = self._obstructed(before, left_deg, right_deg)
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         turned = degrees((right_mm - left_mm) / self._spacing_mm)
         heading = radians(self.heading_deg + turned * self._early)
@@ -160,6 +160,8 @@ class Motion:
         self.x_mm += forward * cos(heading)
         self.y_mm += forward * sin(heading)
         self.heading_deg += turned
+        if aside_mm is not None:
+            self.x_mm, self.y_mm = self.x_mm + aside_mm[0], self.y_mm + aside_mm[1]
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         count = self._sink.count
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
@@ -191,29 +193,35 @@ class Motion:
         if way == 0.0:
             return most
         pose = self._pose()
-        return min(most, int(self._solids.free_way_mm(pose, way * min(most, LOOK_TICKS), straight) / way))
+        free = self._solids.free_way_mm(pose, way * min(most, LOOK_TICKS), straight)
+        # Where nothing stands in the way it is infinite.
+        return most if free >= way * most else int(free / way)
 
     def _pose(self) -> tuple[float, float, float]:
         return self.x_mm, self.y_mm, self.heading_deg
 
     def _obstructed(
         self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
-    ) -> tuple[float, float]:
-        """Take back what something solid does not allow of a tick; returns the degrees that are left."""
+    ) -> tuple[float, float, tuple[float, float] | None]:
+        """Take back what something solid does not allow of a tick.
+
+        Returns:
+            The degrees that are left, and how far the robot is pushed aside along x and y.
+        """
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
-            return left_deg, right_deg
+            return left_deg, right_deg, None
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
         pose = self._pose()
-        part = self._solids.free_part(pose, (left_mm + right_mm) / 2, turn_deg)
+        part, aside_mm = self._solids.leeway(pose, (left_mm + right_mm) / 2, turn_deg)
         if part == 1.0:
             self.left.blocked_ticks = self.right.blocked_ticks = 0
-            return left_deg, right_deg
+            return left_deg, right_deg, aside_mm
         for motor, state, turned_deg in zip((self.left, self.right), before, (left_deg, right_deg), strict=True):
             motor.hold_back(state, turned_deg, part)
             if motor.blocked_ticks == self.stall_ticks:
                 self.changed = True
-        return left_deg * part, right_deg * part
+        return left_deg * part, right_deg * part, aside_mm
 
     @property
     def stall_ticks(self) -> int:

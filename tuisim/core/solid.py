@@ -3,6 +3,10 @@
 The motion of a tick is followed in steps so short that nothing can be passed between
 them, and the place of contact is found by halving, so the outline never enters a solid
 thing by more than `TOUCH_MM`.
+
+A robot may be put where it overlaps a thing. From there it never gets deeper into that thing:
+straight on or back it drives only away from it, and a turn pushes it aside by as much as the
+turn would lead it deeper.
 """
 
 from __future__ import annotations
@@ -16,8 +20,8 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, WorldSp
 TOUCH_MM = 1e-4
 """Overlap that still counts as touching."""
 
-INSIDE_MM = 5e-3
-"""Overlap from which on the robot counts as put into a thing, not as driven against it."""
+ROUNDING_MM = 1e-9
+"""Rounding takes a robot that drives along a thing no deeper into it than this."""
 
 BACK_OFF_MM = 1e-6
 """The robot stops so far before the contact, so that rounding cannot put it past it."""
@@ -53,6 +57,18 @@ class Room(NamedTuple):
     """1 where the way straight on was looked at, -1 for straight back, 0 for neither."""
     straight_mm: float
     """How far that way is free."""
+
+
+class Leeway(NamedTuple):
+    """What solid things allow of a tick's motion."""
+
+    part: float
+    """Which part of it can be made, 0 … 1."""
+    aside_mm: tuple[float, float]
+    """How far the robot is pushed aside besides, along x and y."""
+
+
+UNHINDERED = Leeway(1.0, (0.0, 0.0))
 
 
 def front_mm(robot: RobotSpec) -> float:
@@ -96,7 +112,7 @@ class Solids:
         self._near_at = (math.inf, math.inf)
         self._room = Room((math.inf, math.inf, 0.0), 0.0, 0, 0.0)
         self._last_asked: tuple[float, ...] = ()
-        self._last_part = 1.0
+        self._last_leeway = UNHINDERED
 
     def free_way_mm(self, pose: PoseTuple, wanted_mm: float, straight: int = 0) -> float:
         """Return how far every point of the body can move without meeting anything; may say less than there is.
@@ -119,8 +135,8 @@ class Solids:
         turned = math.radians(abs(pose[2] - heading)) * self.reach_mm
         return self._room.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
 
-    def free_part(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> float:
-        """Return which part of a tick's motion can be made, 0 … 1.
+    def leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
+        """Return what can be made of a tick's motion.
 
         Args:
             pose: x and y in mm, heading in degrees.
@@ -129,48 +145,70 @@ class Solids:
         """
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
         if self.left_of_room_mm(pose) >= way:
-            return 1.0
+            return UNHINDERED
         asked = (*pose, forward_mm, turn_deg)
         # A robot that pushes against something asks the same every tick.
         if asked != self._last_asked:
-            self._last_asked, self._last_part = asked, self._part(pose, forward_mm, turn_deg, way)
-        return self._last_part
+            self._last_asked, self._last_leeway = asked, self._leeway(pose, forward_mm, turn_deg, way)
+        return self._last_leeway
 
-    def _part(self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float) -> float:
+    def _leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float) -> Leeway:
         if self._room.pose != pose:
             self._room = self._look(pose, 0)
         if self._room.any_mm >= way_mm:
-            return 1.0
-        solid = self._things_within(pose, way_mm)
+            return UNHINDERED
+        body = self._body(*pose)
+        # A robot that is pushed aside goes up to twice the way.
+        boxes = [box for box in self._boxes_near(pose) if _box_gap(body, box) <= 2 * way_mm]
+        gaps = list(self._gaps(body, boxes))
         x_mm, y_mm, heading_deg = pose
         early_deg = turn_deg * self._early
 
-        def meets(part: float) -> bool:
+        def moved(part: float) -> Body:
             heading, way = math.radians(heading_deg + early_deg * part), forward_mm * part
             x, y = x_mm + way * math.cos(heading), y_mm + way * math.sin(heading)
-            there = self._body(x, y, heading_deg + turn_deg * part)
-            return any(gap < -TOUCH_MM for gap in self._gaps(there, solid))
+            return self._body(x, y, heading_deg + turn_deg * part)
 
-        steps = max(1, math.ceil(way_mm / STEP_MM))
-        for step in range(1, steps + 1):
-            if meets(step / steps):
-                return max(0.0, _last_clear(meets, (step - 1) / steps, step / steps) - BACK_OFF_MM / way_mm)
-        return 1.0
+        floors = [-TOUCH_MM if gap >= -TOUCH_MM else gap - ROUNDING_MM for gap in gaps]
+        if turn_deg and min(gaps, default=0.0) < -TOUCH_MM:
+            return self._pushed_aside(moved(1.0), boxes, floors)
+
+        def meets(part: float) -> bool:
+            return any(gap < floor for gap, floor in zip(self._gaps(moved(part), boxes), floors, strict=True))
+
+        return Leeway(_free_part(meets, way_mm), (0.0, 0.0))
+
+    def _pushed_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
+        """Push a body aside until it is as far from each thing as `floors` tell, or let it not move at all."""
+        x_mm = y_mm = 0.0
+        there = body
+        for number, floor in enumerate(floors):
+            gap = list(self._gaps(there, boxes))[number]
+            if gap < floor:
+                out_x, out_y = self._way_out(there, number, boxes)
+                deeper = floor + ROUNDING_MM - gap
+                x_mm, y_mm = x_mm + deeper * out_x, y_mm + deeper * out_y
+                there = (body[0] + x_mm, body[1] + y_mm, *body[2:])
+        if any(gap < floor for gap, floor in zip(self._gaps(there, boxes), floors, strict=True)):
+            return Leeway(0.0, (0.0, 0.0))
+        return Leeway(1.0, (x_mm, y_mm))
 
     # Looking
 
-    def _things_within(self, pose: PoseTuple, way_mm: float) -> tuple[bool, list[Box]]:
-        """What a short way can meet. A thing that the robot was put into lets it leave."""
-        body = self._body(*pose)
-        boxes = [box for box in self._boxes_near(pose) if -INSIDE_MM <= _box_gap(body, box) <= way_mm]
-        return self._walls and _wall_gap(body) >= -INSIDE_MM, boxes
-
-    def _gaps(self, body: Body, solid: tuple[bool, list[Box]]) -> Iterator[float]:
-        walls, boxes = solid
-        if walls:
-            yield _wall_gap(body)
+    def _gaps(self, body: Body, boxes: list[Box]) -> Iterator[float]:
+        """How far the body is from each wall and each box, negative when it overlaps."""
+        if self._walls:
+            yield from _wall_gaps(body)
         for box in boxes:
             yield _box_gap(body, box)
+
+    def _way_out(self, body: Body, number: int, boxes: list[Box]) -> tuple[float, float]:
+        """Return the direction of the shortest way out of a thing that is overlapped; `number` as in `_gaps`."""
+        if self._walls:
+            if number < len(_AWAY_FROM_WALLS):
+                return _AWAY_FROM_WALLS[number]
+            number -= len(_AWAY_FROM_WALLS)
+        return _way_out_of_box(body, boxes[number])
 
     def _look(self, pose: PoseTuple, straight: int) -> Room:
         body = self._body(*pose)
@@ -178,8 +216,8 @@ class Solids:
         boxes = self._boxes_near(pose)
         any_mm = beyond = NEAR_MM - math.dist(pose[:2], self._near_at) if self._boxes else math.inf
         on_mm = beyond if straight else 0.0
-        if self._walls and (gap := _wall_gap(body)) >= -INSIDE_MM:
-            any_mm = min(any_mm, gap)
+        if self._walls:
+            any_mm = min(any_mm, *_wall_gaps(body))
             on_mm = min(on_mm, _way_to_wall(body, straight)) if straight else 0.0
         cx, cy, _, _, _, _, wide, high = body
         for box in boxes:
@@ -189,12 +227,15 @@ class Solids:
             if apart >= any_mm and not straight:
                 continue
             gap = _box_gap(body, box)
-            if gap < -INSIDE_MM:
-                continue
             any_mm = min(any_mm, gap)
-            if straight:
+            if gap < -TOUCH_MM:
+                on_mm = 0.0
+            elif straight:
                 along, aside, before = _box_beside(body, box)
-                if aside < 0.0 and before == (straight > 0):
+                if aside < 0.0 and along < 0.0:
+                    # Only a corner is clear of it: the way may lead into it wherever its middle is.
+                    on_mm = min(on_mm, gap)
+                elif aside < 0.0 and before == (straight > 0):
                     on_mm = min(on_mm, along)
         return Room(pose, max(0.0, any_mm), straight, max(0.0, on_mm))
 
@@ -220,10 +261,14 @@ class Solids:
         )  # fmt: skip
 
 
-def _wall_gap(body: Body) -> float:
-    """How far the body is from the nearest wall, negative when it is in one."""
+_AWAY_FROM_WALLS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
+"""Directions from the walls into the field, in the order of `_wall_gaps`."""
+
+
+def _wall_gaps(body: Body) -> tuple[float, float, float, float]:
+    """How far the body is from the left, right, lower and upper wall, negative when it is in one."""
     cx, cy, _, _, _, _, wide, high = body
-    return min(cx - wide, FIELD_WIDTH_MM - wide - cx, cy - high, FIELD_HEIGHT_MM - high - cy)
+    return cx - wide, FIELD_WIDTH_MM - wide - cx, cy - high, FIELD_HEIGHT_MM - high - cy
 
 
 def _way_to_wall(body: Body, direction: int) -> float:
@@ -247,6 +292,22 @@ def _box_gap(body: Body, box: Box) -> float:
     return max(upright, level, along, aside)
 
 
+def _way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
+    """Return the direction in which a body that overlaps a box leaves it on the shortest way."""
+    cx, cy, fx, fy, _, _, wide, high = body
+    left, lower, right, upper = box
+    along, aside, in_front = _box_beside(body, box)
+    middle_x, middle_y = (left + right) / 2, (lower + upper) / 2
+    on_the_left = (middle_y - cy) * fx - (middle_x - cx) * fy > 0
+    ways = (
+        (max(left - cx, cx - right) - wide, (-1.0, 0.0) if cx < middle_x else (1.0, 0.0)),
+        (max(lower - cy, cy - upper) - high, (0.0, -1.0) if cy < middle_y else (0.0, 1.0)),
+        (along, (-fx, -fy) if in_front else (fx, fy)),
+        (aside, (fy, -fx) if on_the_left else (-fy, fx)),
+    )
+    return max(ways)[1]
+
+
 def _box_beside(body: Body, box: Box) -> tuple[float, float, bool]:
     """Return how far a box is apart along the heading and across it, and whether it is in front."""
     cx, cy, fx, fy, length, width, _, _ = body
@@ -257,6 +318,15 @@ def _box_beside(body: Body, box: Box) -> tuple[float, float, bool]:
     along = abs(forward) - length - half_x * abs(fx) - half_y * abs(fy)
     aside = abs(sideways) - width - half_x * abs(fy) - half_y * abs(fx)
     return along, aside, forward > 0
+
+
+def _free_part(meets: Callable[[float], bool], way_mm: float) -> float:
+    """Return which part of a way that nothing is met on; `meets` tells it for any part."""
+    steps = max(1, math.ceil(way_mm / STEP_MM))
+    for step in range(1, steps + 1):
+        if meets(step / steps):
+            return max(0.0, _last_clear(meets, (step - 1) / steps, step / steps) - BACK_OFF_MM / way_mm)
+    return 1.0
 
 
 def _last_clear(meets: Callable[[float], bool], clear: float, met: float) -> float:
