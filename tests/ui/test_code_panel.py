@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
-from tests.ui.panel_help import PanelApp, moment
+from tests.ui.app_help import until
+from tests.ui.panel_help import PanelApp, moment, screen_text
 from tuisim.ui.editor.area import CodeArea
 from tuisim.ui.panels.code import Code
 
@@ -56,11 +57,15 @@ Keys = list[str]
         (["enter", "ctrl+underscore"], "# " + TEXT),
         (["down", "enter", "end", "enter", "p"], TEXT.replace(":\n", ":\n    p\n")),
         (["down", "down", "down", "enter", "i", "f", "colon", "enter", "p"], TEXT + "if:\n    p"),
+        (["down", "down", "enter", "home", "backspace"], TEXT.replace("    ", "")),
+        (["down", "down", "enter", "home", "right", "backspace"], TEXT.replace("    p", "    ")),
+        (["down", "enter", "ctrl+a", "x"], "x"),
         (["enter", "shift+end", "ctrl+x", "down", "ctrl+v"], "\nprint('A: 1')" + TEXT.split("\n", 1)[1]),
     ],
     ids=[
         "letters are no text", "typing", "escape ends it", "undo", "redo", "tab", "indent", "outdent",
-        "comment", "indented line", "after a colon", "cut and paste",
+        "comment", "indented line", "after a colon", "backspace in an indent", "backspace in code", "select all",
+        "cut and paste",
     ],
 )  # fmt: skip
 async def test_keys_change_the_text(keys: Keys, after: str) -> None:
@@ -68,6 +73,18 @@ async def test_keys_change_the_text(keys: Keys, after: str) -> None:
         _, area = await alone(pilot)
         await pilot.press(*keys)
         assert area.program_text == after
+
+
+async def test_no_line_is_wrapped_and_the_rest_is_scrolled_to() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(30, 12)) as pilot:
+        await alone(pilot, "colorLeft.reflected_light_intensity_pc\nprint(1)\n")
+        await until(pilot, lambda: [row.split()[0] for row in screen_text(app)[:2]] == ["1", "2"])
+        assert screen_text(app)[0].endswith("…")
+        await pilot.press("enter", "end")
+        await until(pilot, lambda: "intensity_pc" in screen_text(app)[0])
+        await pilot.press("escape")
+        await until(pilot, lambda: "1 colorLeft" in screen_text(app)[0])
 
 
 async def test_the_gutter_shows_marks_and_tells_of_clicks() -> None:

@@ -146,6 +146,54 @@ async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path)
         assert app.work.dirty
 
 
+@pytest.mark.parametrize("size", [(80, 24), (100, 30), (120, 40), (200, 60)], ids=str)
+async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
+    async with Lab(own(tmp_path / "prog.py")).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        before = app.desk.code.size if app.desk.shown("code") and app.desk.code else None
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.typing)
+        await pilot.pause()
+        assert app.desk.code is not None
+        width, height = app.desk.code.size
+        assert width >= min(79 + 5, size[0] - 2)
+        assert height >= 13
+        # Where there is room for both, the world stays.
+        assert app.desk.shown("world") is (size == (200, 60))
+        await pilot.press(*"abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz", "escape")
+        await until(pilot, lambda: app.desk.shown("world") and before in (None, app.desk.code and app.desk.code.size))
+        await until(pilot, lambda: app.query_one(CodeArea).scroll_offset.x == 0)
+
+
+WRONG = "print('A: 1')\nfor n in range(3):\n    n.x\n"
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["panel hidden", "panel shown"])
+async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], tmp_path: Path) -> None:
+    async with Lab(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.typing)
+        assert app.desk.code is not None
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.error_line == 3)
+        assert app.query_one(CodeArea).cursor_location == (2, 4)
+
+
+async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with Lab(own(path, WRONG)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: code.error_line == 3)
+        path.write_text(WRONG.replace("n.x", "n + 1"))
+        app.loading.look()
+        await pilot.pause()
+        assert "n + 1" in code.query_one(CodeArea).program_text
+        assert code.error_line == 0
+
+
 async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None:
     async with Lab(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)

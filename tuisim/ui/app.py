@@ -176,8 +176,7 @@ class Lab(Wishes):
         if self.desk.brick:
             self.desk.brick.release_all()
         self.work.run_changed()
-        if self.desk.code:
-            self.desk.code.mark_run_error(error_line)
+        self.work.run_ended_at(error_line)
         self.debugging.run_changed()
         self.situation_changed()
 
@@ -240,8 +239,7 @@ class Lab(Wishes):
         words = ended.summary or end_label(ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
         self.debugging.ended()
-        if self.desk.code:
-            self.desk.code.mark_run_error(ended.error_line)
+        self.work.run_ended_at(ended.error_line)
         # What was wrong is among the rows already, as a traceback.
         known = ended.end in ("finished", "raised")
         self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"

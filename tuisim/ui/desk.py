@@ -10,7 +10,7 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.ui.layout import arrange, size_class
+from tuisim.ui.layout import arrange, size_class, with_room
 from tuisim.ui.panels import PANELS, Panel, PlanPanel
 from tuisim.ui.plan import Plan
 from tuisim.ui.snapshot import Snapshot
@@ -53,6 +53,8 @@ class Desk(Container):
         """What was asked for, the latest last."""
         self.alone = ""
         """Id of the panel that has the whole place, empty for none."""
+        self._roomy: tuple[str, int, int] | None = None
+        """The panel that is to have so many columns and rows."""
         self._left_out: tuple[str, ...] = ()
 
     # A hidden panel still takes what it is fed; one never shown is None.
@@ -115,7 +117,7 @@ class Desk(Container):
     def toggle(self, panel: str) -> None:
         """Show a panel, or hide it."""
         show = not self.shown(panel) or bool(self.alone)
-        self.alone = ""
+        self.alone, self._roomy = "", None
         self.ask({panel: show})
 
     def ask(self, wanted: Mapping[str, bool | None]) -> None:
@@ -138,14 +140,26 @@ class Desk(Container):
 
     def give_all(self, panel: str) -> None:
         """Let one panel have the whole place; with an empty id the others are back."""
+        if panel != self.alone or self._roomy:
+            self.alone, self._roomy = panel, None
+            self.lay_out()
+
+    def make_room(self, panel: str, columns: int, rows: int) -> None:
+        """Let a panel of the bottom strip have that alone; if it is still smaller than asked for, the whole place."""
         if panel != self.alone:
-            self.alone = panel
+            self._roomy = panel, columns, rows
             self.lay_out()
 
     def _wanted(self) -> list[str]:
         """Ids of the panels to show, the most wanted first."""
-        if self.alone:
-            return [self.alone]
+        if self._roomy:
+            panel, columns, rows = self._roomy
+            wanted = with_room(panel, self._usually_wanted(), (columns, rows), (self.size.width, self.size.height))
+            self.alone = panel if wanted == [panel] else ""
+            return wanted
+        return [self.alone] if self.alone else self._usually_wanted()
+
+    def _usually_wanted(self) -> list[str]:
         size = size_class(self.size.width, self.size.height + 1)
         asked = [panel for panel, on in reversed(self._asked.items()) if on]
         rest = [info.id for info in PANELS.values() if size in info.sizes and info.id not in self._asked]

@@ -150,3 +150,21 @@ def arrange(panels: Sequence[str], width: int, height: int) -> Arrangement:
     if strip:
         _place_strip(boxes, rows, top, left, height - top)
     return Arrangement(boxes, tuple(left_out))
+
+
+def with_room(panel: str, panels: Sequence[str], least: tuple[int, int], size: tuple[int, int]) -> list[str]:
+    """Return the panels to show so that one has room: as they are, else without those beside it, else it alone.
+
+    Args:
+        panel: The one.
+        panels: Ids, the most wanted first.
+        least: Columns and rows that are room enough.
+        size: Columns and rows of the screen.
+    """
+    others = [other for other in panels if other != panel]
+    elsewhere = [other for other in others if PANELS[other].place != PANELS[panel].place]
+    for beside in (others, elsewhere):
+        box = arrange([panel, *beside], *size).boxes[panel]
+        if box.width >= least[0] and box.height >= least[1]:
+            return [panel, *beside]
+    return [panel]

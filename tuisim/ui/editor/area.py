@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import ClassVar
 
+from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
@@ -32,9 +33,10 @@ EDITOR_KEYS = (
     ("ctrl+r F5", "Run the text as it stands"),
     ("ctrl+f F3 ⇧F3", "Find, next, previous"),
     ("ctrl+g", "Go to a line"),
-    ("tab ⇧tab", "Indent, outdent"),
+    ("tab ⇧tab", "Indent, outdent; backspace takes an indent back"),
     ("ctrl+/", "Lines to comments and back"),
     ("ctrl+z ctrl+y", "Undo, redo"),
+    ("ctrl+a", "Select all"),
     ("ctrl+x ctrl+c ctrl+v", "Cut, copy, paste"),
 )
 """For the help: what a key does while the cursor is in the text."""
@@ -51,6 +53,7 @@ class CodeArea(TextArea):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+f", "want('find')", "Find", show=False),
         Binding("ctrl+g", "want('line')", "Go to a line", show=False),
+        Binding("ctrl+a", "select_all", "Select all", show=False),
         Binding("f3", "want('next')", "Next place", show=False),
         Binding("shift+f3", "want('previous')", "Place before", show=False),
     ]
@@ -74,7 +77,9 @@ class CodeArea(TextArea):
         self._colouring = Colouring()
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
-        super().__init__(read_only=True, show_line_numbers=True, compact=True, highlight_cursor_line=False)
+        super().__init__(
+            read_only=True, show_line_numbers=True, compact=True, highlight_cursor_line=False, soft_wrap=False
+        )
         self.cursor_blink = False
         self.indent_type = "spaces"
 
@@ -126,6 +131,16 @@ class CodeArea(TextArea):
     def _component(self, kind: str) -> Style:
         return self.get_component_rich_style(f"code--{kind}", partial=True)
 
+    @property
+    def allow_horizontal_scroll(self) -> bool:
+        """Long lines are scrolled through, without a bar below the text: that would take a row of it."""
+        return True
+
+    def on_resize(self) -> None:
+        """Show the start of the lines again where nobody types."""
+        if not self.typing:
+            self.call_after_refresh(self.scroll_to, x=0, animate=False, force=True)
+
     # Marks
 
     def set_breaks(self, breaks: Mapping[int, str]) -> None:
@@ -171,6 +186,11 @@ class CodeArea(TextArea):
         if rows and not (self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height):
             self.scroll_to(y=max(0, rows.start - height // 3), animate=False, force=True)
 
+    def move_to_code(self, line: int) -> None:
+        """Put the cursor on the first character of a line that is no blank."""
+        text = self.document.get_line(min(line, self.document.line_count) - 1)
+        self.move_cursor((line - 1, len(text) - len(text.lstrip())))
+
     @property
     def gutter_width(self) -> int:
         """Cells before the text: a breakpoint, the run or an error, the number, a blank."""
@@ -193,6 +213,9 @@ class CodeArea(TextArea):
         if lit := "error" if line == self._error else "lit" if line == self._lit else "":
             number_style = base + self._component(lit)
             text = _on(text, base, number_style)
+        room = self.scrollable_content_region.width - gutter
+        if cell_len(text.text.rstrip()) > room and not (self.typing and line_index == self.cursor_location[0]):
+            text = Strip.join([text.crop(0, room - 1), Strip([Segment("…", number_style)], 1)])
         run_mark = {"error": "✗", "lit": "▶"}.get(lit, " ") if section == 0 else " "
         number = f"{line if section == 0 else '':>{gutter - 3}}"
         mark = self._breaks.get(line, " ") if section == 0 else " "
@@ -224,6 +247,10 @@ class CodeArea(TextArea):
             self._done(event)
             row, column = min(self.selection)
             self.insert_text("\n" + editing.indent_after(self.document.get_line(row)[:column]))
+        elif event.key == "backspace" and self.selection.is_empty and (blanks := self._blanks_to_delete()):
+            self._done(event)
+            row, column = self.cursor_location
+            self.delete((row, column - blanks), (row, column), maintain_selection_offset=False)
         elif event.key == "tab" and self.selection.is_empty:
             self._done(event)
             self.insert_text(" " * self._find_columns_to_next_tab_stop())
@@ -240,6 +267,11 @@ class CodeArea(TextArea):
     def _done(self, event: events.Key) -> None:
         event.stop()
         event.prevent_default()
+
+    def _blanks_to_delete(self) -> int:
+        """How many blanks before the cursor backspace deletes, 0 if there is more than an indent."""
+        row, column = self.cursor_location
+        return editing.blanks_to_delete(self.document.get_line(row)[:column])
 
     def insert_text(self, text: str) -> None:
         """Put a text in the place of the selection."""

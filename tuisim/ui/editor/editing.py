@@ -48,6 +48,11 @@ def _outdented(line: str) -> str:
     return line[(blanks - 1) % len(INDENT) + 1 if blanks else 0 :]
 
 
+def blanks_to_delete(before: str) -> int:
+    """Return how many blanks backspace takes away at once after `before`: a step of an indent, nothing elsewhere."""
+    return (len(before) - 1) % len(INDENT) + 1 if before and not before.strip(" ") else 0
+
+
 def comment_toggled(lines: Sequence[str]) -> list[str]:
     """Return lines as comments, or as code if all of them are comments already."""
     full = [line for line in lines if line.strip()]

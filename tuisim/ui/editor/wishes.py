@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from tuisim.ui.desk import Desk
     from tuisim.ui.panels.code import Code
 
-ROOMY_ROWS = 12
-"""A code panel of fewer rows grows while one types."""
+ROOMY_COLUMNS, ROOMY_ROWS = 86, 15
+"""A smaller code panel grows while one types: lines of 79 characters are seen whole."""
 
 
 class EditorWishes(TerminalApp):
@@ -23,12 +23,12 @@ class EditorWishes(TerminalApp):
     desk: Desk
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
-        """While one types, a panel of a few lines has the whole place, and the footer tells the editor's keys."""
+        """While one types, the text gets room, and the footer tells the editor's keys."""
         cast("Lab", self).situation_changed()
         if not message.typing:
             self.desk.give_all("")
-        elif self.desk.code and self.desk.code.size.height < ROOMY_ROWS:
-            self.desk.give_all("code")
+        else:
+            self.desk.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
 
     def on_code_edited(self, message: Code.Edited) -> None:
         """The text was changed."""
@@ -43,7 +43,7 @@ class EditorWishes(TerminalApp):
             case "run":
                 cast("Lab", self).action_act("run")
                 # The robot is to be seen, or where the text is wrong.
-                if not (self.desk.code and self.desk.code.error_line):
+                if self.desk.alone and not (self.desk.code and self.desk.code.error_line):
                     self.desk.give_all("")
             case "new" | "open":
                 cast("Lab", self).action_act(message.what)
@@ -62,7 +62,7 @@ def _type(lab: Lab) -> None:
     if lab.desk.shown("code") and (code := lab.desk.code):
         # A panel that has just been made has not been given the program yet.
         lab.work.introduce()
-        code.start_typing()
+        code.start_typing(at_error=True)
 
 
 def new_program(lab: Lab) -> None:

@@ -48,6 +48,8 @@ class Work:
         self._is_file = False
         """Whether the text is that of the file, so that it may be saved there without a question."""
         self._keeping = self._asking = False
+        self._error_line = 0
+        """Of the text of the run at hand, where it ended with an error; 0 for none, or once the text is another."""
         self._ran: tuple[Recording, str] | None = None
         """A recording, and the text that it ran, as it was in the editor."""
 
@@ -77,7 +79,7 @@ class Work:
     def _take(self, program: Program | None, offers: bool) -> None:
         self._name, self._path = (program.name, program.path) if program else ("", "")
         self._text = self._saved = program.text if program else ""
-        self._form, self._is_file = Form(), False
+        self._form, self._is_file, self._error_line = Form(), False, 0
         if program is None:
             return
         if program.path:
@@ -110,6 +112,8 @@ class Work:
             code.set_program(self._name, self._text, self._path or self._name)
             code.set_title(self._name, self.dirty)
             self.run_changed()
+            if self._error_line and not code.error_line:
+                code.mark_run_error(self._error_line)
         if controls := self._lab.desk.controls:
             controls.set_program(self._name)
 
@@ -126,6 +130,12 @@ class Work:
         elif code is not None:
             code.set_running(None)
 
+    def run_ended_at(self, line: int) -> None:
+        """The run at hand ended with an error at a line of its text, which is marked; 0: with none."""
+        self._error_line = line
+        if code := self._lab.desk.code:
+            code.mark_run_error(line)
+
     def lines(self) -> LineMap:
         """Return which lines of the program as it stands are which of the run at hand."""
         now = source_lines(self._text)
@@ -135,7 +145,7 @@ class Work:
 
     def edited(self, text: str) -> None:
         """The text was changed in the code panel."""
-        self._text = text
+        self._text, self._error_line = text, 0
         if code := self._lab.desk.code:
             code.set_title(self._name, self.dirty)
         if not self._keeping:

@@ -120,6 +120,8 @@ class Code(Vertical):
                 self.stop_typing()
         elif text != self._shown:
             self._area.replace_program(text)
+            # What was wrong was wrong with the text before.
+            self._area.set_error(0)
         self._shown = text
         self.set_title(name)
 
@@ -201,17 +203,24 @@ class Code(Vertical):
 
     # Typing
 
-    def start_typing(self) -> None:
-        """Let letters go into the text."""
+    def start_typing(self, at_error: bool = False) -> None:
+        """Let letters go into the text.
+
+        Args:
+            at_error: Begin on the line that is marked as wrong, if there is one.
+        """
         if not self._key:
             self.post_message(self.Wanted("none"))
             return
         self._area.focus()
+        if at_error and self.error_line:
+            self._area.move_to_code(self.error_line)
         self._type(True)
 
     def stop_typing(self) -> None:
         """Let letters be the app's keys again."""
         self._type(False)
+        self._area.scroll_to(x=0, animate=False, force=True)
 
     def _type(self, typing: bool) -> None:
         if typing != self.typing:
