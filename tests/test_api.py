@@ -28,9 +28,9 @@ def test_a_run_has_samples_telemetry_output_and_a_picture() -> None:
     assert run.telemetry["x_mm"].iloc[0] == 100
     assert run.time_s == pytest.approx(run.telemetry["time"].iloc[-1])
     picture = run.picture()
-    assert picture.size == (787, 381)
+    assert picture.size == (897, 491)
     # The red trace crosses the first grey band.
-    assert {picture.getpixel((120, row)) for row in range(211, 218)} == {(255, 0, 0), (220, 220, 220)}
+    assert {picture.getpixel((175, row)) for row in range(266, 273)} == {(255, 0, 0), (220, 220, 220)}
 
 
 def test_same_seed_same_frames() -> None:

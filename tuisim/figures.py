@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import cos, radians, sin
+from math import ceil, cos, radians, sin
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.css import css_rgb
 from tuisim.core.geometry import Pose, world_point
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RunSpec
+from tuisim.core.sensors.ultrasonic import rays_mm
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
 from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.datalog.samples import Sample
+from tuisim.robotpaint import COLORED, draw_robot, shape_of
+from tuisim.ticks import Limits, label, ticks, value_limits
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,8 +33,17 @@ ARRAY_PX = 6
 """Side of one sensor pixel in the arrays' picture."""
 
 _TRACE_COLORS = ((31, 119, 180), (255, 127, 14), (44, 160, 44), (214, 39, 40), (148, 103, 189), (140, 86, 75))
-_BODY, _WHEEL, _OBSTACLE, _RAY = (70, 110, 170), (20, 20, 20), (150, 150, 160), (230, 120, 0)
-_MARGIN_LEFT, _MARGIN = 56, 24
+_OBSTACLE, _OBSTACLE_EDGE, _RAY = (150, 150, 160), (20, 20, 20), (230, 120, 0)
+_RIM, _FRAME = (232, 234, 238), (70, 74, 82)
+_FRAME_PX = 2
+_MARGIN_LEFT, _MARGIN = 64, 24
+_LETTERS_PX = 12
+_MOST = 1e150
+"""What is larger is drawn there: the distance between two such numbers may be infinite."""
+_LONG = 8
+"""Labels with more characters than that are written with a power of ten."""
+
+_FIELD_PX = (round(FIELD_WIDTH_MM / MM_PER_PX), round(FIELD_HEIGHT_MM / MM_PER_PX))
 
 Point = tuple[float, float]
 
@@ -40,9 +52,37 @@ def _at(x_mm: float, y_mm: float) -> Point:
     return x_mm / MM_PER_PX, (FIELD_HEIGHT_MM - y_mm) / MM_PER_PX
 
 
-def _box(pose: Pose, left: float, back: float, right: float, front: float) -> list[Point]:
-    corners = ((left, back), (right, back), (right, front), (left, front))
-    return [_at(*world_point(pose, x_mm, y_mm)) for x_mm, y_mm in corners]
+@dataclass(frozen=True, slots=True)
+class WorldView:
+    """What a picture of the world shows: the field in its frame, and around it room for a robot on its edge."""
+
+    rim_px: int
+    """Width of that room."""
+
+    @property
+    def width_px(self) -> int:
+        """Width of the picture."""
+        return _FIELD_PX[0] + 2 * self.rim_px
+
+    @property
+    def height_px(self) -> int:
+        """Height of the picture."""
+        return _FIELD_PX[1] + 2 * self.rim_px
+
+    @property
+    def mm_per_px(self) -> float:
+        """Scale."""
+        return MM_PER_PX
+
+    def to_px(self, x_mm: float, y_mm: float) -> Point:
+        """Return where a point of the world is in the picture; whole numbers are corners of pixels."""
+        x_px, y_px = _at(x_mm, y_mm)
+        return self.rim_px + x_px, self.rim_px + y_px
+
+
+def world_view(robot: RobotSpec) -> WorldView:
+    """Return what a picture shows in which a robot is wholly to be seen as long as its axle is on the field."""
+    return WorldView(ceil(shape_of(robot).reach_mm / MM_PER_PX) + _FRAME_PX)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +92,7 @@ class PenTrace:
     color: str
     width_px: int
     lines: tuple[tuple[Point, ...], ...]
-    """In pixels of the world's picture."""
+    """In pixels from the upper left corner of the field."""
 
 
 def pen_trace(spec: RunSpec, telemetry: NDArray[Any]) -> PenTrace:
@@ -94,47 +134,44 @@ def world_picture(
         pose: Where the robot is, by default at its start.
         traces: What pens have drawn.
         rays: Whether the ultrasonic sensor's rays are drawn.
+
+    Returns:
+        What `world_view` says of the robot, in that size.
     """
+    import numpy as np
     from PIL import Image, ImageDraw
 
-    size = (round(FIELD_WIDTH_MM / MM_PER_PX), round(FIELD_HEIGHT_MM / MM_PER_PX))
-    picture = Image.fromarray(mat).resize(size, Image.Resampling.BOX)
-    draw = ImageDraw.Draw(picture)
+    field = Image.fromarray(mat).resize(_FIELD_PX, Image.Resampling.BOX)
+    draw = ImageDraw.Draw(field)
     for box in spec.world.obstacles:
         low = _at(box.x_mm, box.y_mm)
         high = _at(box.x_mm + box.width_mm, box.y_mm + box.height_mm)
-        draw.rectangle((low[0], high[1], high[0], low[1]), fill=_OBSTACLE, outline=_WHEEL)
+        draw.rectangle((low[0], high[1], high[0], low[1]), fill=_OBSTACLE, outline=_OBSTACLE_EDGE)
     for trace in traces:
         for line in trace.lines:
             draw.line(line, fill=css_rgb(trace.color), width=trace.width_px)
     pose = pose or spec.world.start
     if rays and spec.robot.ultrasonic is not None:
         _draw_rays(draw, spec, pose)
-    _draw_robot(draw, spec, pose)
-    return picture
+    view = world_view(spec.robot)
+    picture = Image.new("RGB", (view.width_px, view.height_px), _RIM)
+    corners = (view.rim_px - _FRAME_PX, view.rim_px - _FRAME_PX,
+               view.rim_px + _FIELD_PX[0] + _FRAME_PX - 1, view.rim_px + _FIELD_PX[1] + _FRAME_PX - 1)  # fmt: skip
+    ImageDraw.Draw(picture).rectangle(corners, fill=_FRAME)
+    picture.paste(field, (view.rim_px, view.rim_px))
+    pixels = np.array(picture)
+    draw_robot(pixels, view, pose, shape_of(spec.robot), COLORED)
+    return Image.fromarray(pixels)
 
 
 def _draw_rays(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:
     sensor = spec.robot.ultrasonic
     assert sensor is not None
     x_mm, y_mm = world_point(pose, sensor.x_mm, sensor.y_mm)
-    for angle in sensor.ray_angles_deg:
-        turn = radians(pose.heading_deg + sensor.angle_deg + angle)
-        end = _at(x_mm + cos(turn) * sensor.max_range_mm, y_mm + sin(turn) * sensor.max_range_mm)
+    for angle_deg, length_mm in rays_mm(pose, sensor, spec.world):
+        turn = radians(angle_deg)
+        end = _at(x_mm + cos(turn) * length_mm, y_mm + sin(turn) * length_mm)
         draw.line([_at(x_mm, y_mm), end], fill=_RAY)
-
-
-def _draw_robot(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:
-    robot = spec.robot
-    half, radius, tyre = robot.wheel_spacing_mm / 2, robot.wheel_diameter_mm / 2, robot.wheel_width_mm / 2
-    front = max((sensor.y_mm + sensor.diameter_mm / 2 for sensor in robot.color_sensors), default=radius)
-    draw.polygon(_box(pose, -half + tyre, robot.back_mm, half - tyre, front), outline=_BODY, width=3)
-    for side in (-half, half):
-        draw.polygon(_box(pose, side - tyre, -radius, side + tyre, radius), fill=_WHEEL)
-    for sensor in robot.color_sensors:
-        x_px, y_px = _at(*world_point(pose, sensor.x_mm, sensor.y_mm))
-        reach = max(2.0, sensor.diameter_mm / 2 / MM_PER_PX)
-        draw.ellipse((x_px - reach, y_px - reach, x_px + reach, y_px + reach), outline=(255, 0, 255), width=2)
 
 
 def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:
@@ -163,13 +200,14 @@ def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:
 
 def chart_picture(samples: Iterable[Sample]) -> Image:
     """Return the samples over simulated time, one line a name."""
-    from PIL import Image, ImageDraw
+    from PIL import Image, ImageDraw, ImageFont
 
     traces: dict[str, list[Point]] = {}
     for sample in samples:
-        traces.setdefault(sample.name, []).append((sample.time_s, sample.value))
+        traces.setdefault(sample.name, []).append((sample.time_s, min(max(sample.value, -_MOST), _MOST)))
     picture = Image.new("RGB", CHART_SIZE, "white")
     draw = ImageDraw.Draw(picture)
+    draw.font = ImageFont.load_default(_LETTERS_PX)
     width, height = CHART_SIZE
     draw.rectangle((_MARGIN_LEFT, _MARGIN, width - _MARGIN, height - _MARGIN), outline="black")
     if not traces:
@@ -178,14 +216,57 @@ def chart_picture(samples: Iterable[Sample]) -> Image:
     traces = {name: _thinned(trace) for name, trace in traces.items()}
     points = [point for trace in traces.values() for point in trace]
     lows, highs = [min(axis) for axis in zip(*points, strict=True)], [max(axis) for axis in zip(*points, strict=True)]
-    for low, high, place in ((lows[1], highs[1], "y"), (lows[0], highs[0], "x")):
-        ends = ((6, height - _MARGIN - 10), (6, _MARGIN)) if place == "y" else (
-            (_MARGIN_LEFT, height - _MARGIN + 4), (width - _MARGIN - 40, height - _MARGIN + 4))  # fmt: skip
-        unit = " s" if place == "x" else ""
-        draw.text(ends[0], f"{low:.4g}{unit}", fill="black")
-        draw.text(ends[1], f"{high:.4g}{unit}", fill="black")
-    _draw_traces(draw, traces, lows, highs)
+    frame = _ChartFrame.around((lows[0], highs[0]), (lows[1], highs[1]))
+    _draw_axes(draw, frame)
+    _draw_traces(draw, traces, frame)
     return picture
+
+
+@dataclass(frozen=True, slots=True)
+class _ChartFrame:
+    """The rectangle that the samples are drawn in, and which values its edges stand for."""
+
+    x: Limits
+    y: Limits
+    x_ticks: tuple[float, ...]
+    y_ticks: tuple[float, ...]
+
+    @classmethod
+    def around(cls, x: Limits, y: Limits) -> _ChartFrame:
+        """The frame of samples in these limits."""
+        # A single moment stands at the left; values that are all the same have one label, in the middle.
+        end = x[1] if x[1] > x[0] else x[0] + 1.0
+        limits, constant = value_limits(*y), y[0] == y[1]
+        if constant:
+            half = y[0] - limits[0]
+            limits = (y[0] - half, y[0] + half)
+        y_ticks = (y[0],) if constant else tuple(ticks(limits, 5))
+        return cls((x[0], end), limits, tuple(ticks((x[0], end), 8)), y_ticks)
+
+    def to_px(self, x: float, y: float) -> Point:
+        """Return where a sample is in the picture."""
+        width, height = CHART_SIZE
+        share_x, share_y = (x - self.x[0]) / (self.x[1] - self.x[0]), (y - self.y[0]) / (self.y[1] - self.y[0])
+        return (_MARGIN_LEFT + share_x * (width - _MARGIN - _MARGIN_LEFT),
+                height - _MARGIN - share_y * (height - 2 * _MARGIN))  # fmt: skip
+
+
+def _draw_axes(draw: ImageDraw, frame: _ChartFrame) -> None:
+    """Write what the ticks stand for: values at the left, simulated seconds below."""
+    for value in frame.y_ticks:
+        y_px = frame.to_px(frame.x[0], value)[1]
+        draw.line((_MARGIN_LEFT - 4, y_px, _MARGIN_LEFT, y_px), fill="black")
+        draw.text((_MARGIN_LEFT - 8, y_px), _tick_label(value, frame.y_ticks), fill="black", anchor="rm")
+    for second in frame.x_ticks:
+        x_px, y_px = frame.to_px(second, frame.y[0])
+        unit = " s" if second == frame.x_ticks[-1] else ""
+        draw.line((x_px, y_px, x_px, y_px + 4), fill="black")
+        draw.text((x_px, y_px + 6), _tick_label(second, frame.x_ticks) + unit, fill="black", anchor="mt")
+
+
+def _tick_label(value: float, places: Sequence[float]) -> str:
+    text = label(value, places[1] - places[0]) if len(places) > 1 else f"{value:.6g}"
+    return text if len(text) <= _LONG else f"{value:.2e}"
 
 
 def _thinned(trace: list[Point]) -> list[Point]:
@@ -200,18 +281,13 @@ def _thinned(trace: list[Point]) -> list[Point]:
     return [*kept, trace[-1]]
 
 
-def _draw_traces(draw: ImageDraw, traces: Mapping[str, list[Point]], lows: list[float], highs: list[float]) -> None:
-    width, height = CHART_SIZE
-    spans = [high - low or 1.0 for low, high in zip(lows, highs, strict=True)]
-    inner_width, inner_height = width - _MARGIN - _MARGIN_LEFT, height - 2 * _MARGIN
+def _draw_traces(draw: ImageDraw, traces: Mapping[str, list[Point]], frame: _ChartFrame) -> None:
+    left_px = _MARGIN_LEFT + 8.0
     for order, (name, trace) in enumerate(traces.items()):
         color = _TRACE_COLORS[order % len(_TRACE_COLORS)]
-        line = [
-            (_MARGIN_LEFT + (x - lows[0]) / spans[0] * inner_width,
-             height - _MARGIN - (y - lows[1]) / spans[1] * inner_height)
-            for x, y in trace
-        ]  # fmt: skip
+        line = [frame.to_px(x, y) for x, y in trace]
         draw.line(line, fill=color, width=2)
         for x_px, y_px in line[:: max(1, len(line) // 200)]:
             draw.ellipse((x_px - 2, y_px - 2, x_px + 2, y_px + 2), fill=color)
-        draw.text((_MARGIN_LEFT + 8 + 120 * order, 6), name, fill=color)
+        draw.text((left_px, 4), name, fill=color)
+        left_px += draw.textlength(name) + 20

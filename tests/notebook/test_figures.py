@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import atan2, degrees, hypot
+from typing import Any
+
 import numpy as np
+import pytest
+from PIL import Image
 
 from tests.running import Run
-from tuisim.core.spec import PenSpec
+from tuisim.config import ROBOTS, build_run_spec
+from tuisim.core.geometry import Pose, world_point
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
 from tuisim.datalog.samples import Sample
-from tuisim.figures import CHART_SIZE, chart_picture, pen_trace
+from tuisim.figures import CHART_SIZE, chart_picture, pen_trace, world_picture, world_view
+from tuisim.robotpaint import COLORED, shape_of
+from tuisim.switches import Settings
 
 BLUE = (31, 119, 180)
 
@@ -39,3 +49,82 @@ def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
     assert end is not None
     assert [round(3 * x) for x, _ in (line[0], line[-1])] == [round(start.x_mm), round(end.x_mm)]
     assert len(line) < done.run.telemetry.count
+
+
+WHITE = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
+CORNERS = [(x_mm, y_mm) for x_mm in (0, FIELD_WIDTH_MM) for y_mm in (0, FIELD_HEIGHT_MM)]
+MIDDLE = Pose(1200, 570, 30)
+
+
+def at(robot: str = "Default_Robot", **choices: Any) -> RunSpec:
+    return build_run_spec(Settings(robot=robot, **choices))
+
+
+def pixel(picture: Image.Image, robot: RobotSpec, place: tuple[float, float]) -> Any:
+    """The colour at a point of the world."""
+    x_px, y_px = world_view(robot).to_px(*place)
+    return picture.getpixel((int(x_px), int(y_px)))
+
+
+@pytest.mark.parametrize("corner", CORNERS, ids=str)
+def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
+    spec = at()
+    picture, (x_mm, y_mm) = world_picture(spec, WHITE, MIDDLE), corner
+    inward, outward = (-3, 3) if x_mm else (3, -3)
+    edge = pixel(picture, spec.robot, (x_mm + outward / 2, 570))
+    assert pixel(picture, spec.robot, (x_mm + inward, y_mm + (-3 if y_mm else 3))) == (255, 255, 255)
+    assert max(edge) < 100
+    assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
+
+
+def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> bool:
+    return any(hypot(x_mm - x, y_mm - y) < 20 for x, y in places)
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
+    spec = at(robot)
+    shape, picture = shape_of(spec.robot), world_picture(spec, WHITE, MIDDLE)
+    parts = {
+        COLORED.body: [(side * 0.7 * (shape.half_width_mm - shape.wheel_half_width_mm), 0.0) for side in (-1, 1)],
+        COLORED.wheel: [(-shape.half_width_mm, 0.0), (shape.half_width_mm, 0.0)],
+        COLORED.marker: [(0.0, shape.back_mm / 3), (0.0, shape.front_mm)],
+        # Another sensor in the same place lies on top of an eye.
+        COLORED.sensor: [(x, y) for x, y, radius in shape.eyes_mm if radius > 5 and not near(x, y, shape.spots_mm)],
+    }
+    for color, places in parts.items():
+        for place in places:
+            found = pixel(picture, spec.robot, world_point(MIDDLE, *place))
+            assert np.abs(np.subtract(found, color)).max() < 60, (color, place)
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
+    spec = at(robot)
+    for x_mm, y_mm in CORNERS:
+        outward = degrees(atan2(y_mm - FIELD_HEIGHT_MM / 2, x_mm - FIELD_WIDTH_MM / 2))
+        picture = np.asarray(world_picture(spec, WHITE, Pose(x_mm, y_mm, outward)))
+        border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+        assert len(np.unique(border, axis=0)) == 1
+
+
+def rows_of_labels(values: list[float]) -> int:
+    """How many labels a chart of values has on its left."""
+    rows = [Sample("Grey", value, at / 10, at, at, 1) for at, value in enumerate(values)]
+    left = np.asarray(chart_picture(rows))[:, :56]
+    inked = np.flatnonzero((left < 200).any(axis=(1, 2)))
+    return 1 + int((np.diff(inked) > 2).sum())
+
+
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [
+        pytest.param([100.0] * 5, 1, id="constant"),
+        pytest.param([0.0] * 5, 1, id="nothing"),
+        pytest.param([1e300], 1, id="huge"),
+        pytest.param([0.0, 100.0], 6, id="percent"),
+        pytest.param([-1e308, 1e308], 5, id="everything"),
+    ],
+)
+def test_each_label_of_a_chart_stands_for_another_value(values: list[float], count: int) -> None:
+    assert rows_of_labels(values) == count

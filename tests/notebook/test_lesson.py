@@ -13,14 +13,17 @@ from PIL import Image
 
 from tests.conftest import ROOT
 from tests.notebook.lesson import CELLS, COLOURS, GREYS, execute, kinds, pictures, result, stream, texts
+from tuisim.robotpaint import COLORED
 
 pytestmark = pytest.mark.slow
 
 Done = dict[str, NotebookNode]
 
 PLATEAUS = [100.0, 86.27450980392157, 82.74509803921568, 50.19607843137255, 0.0]
-WORLD = "<world, 787 × 381 pixels>"
-WORLD_SIZE = (787, 381)
+WORLD = "<world, 897 × 491 pixels>"
+WORLD_SIZE = (897, 491)
+RIM = 55
+"""How far the field is from the edge of its picture."""
 
 
 def colours_of(picture: Image.Image) -> Counter[tuple[int, ...]]:
@@ -60,9 +63,14 @@ def test_instruments_and_world_are_shown(done: Done) -> None:
     assert world.size == WORLD_SIZE
     # The red, green and blue band, and the white around them.
     places = ((100, 200), (167, 200), (234, 200), (5, 5))
-    assert [world.getpixel(place) for place in places] == [(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)]
+    assert [world.getpixel((RIM + x, RIM + y)) for x, y in places] == [
+        (255, 0, 0),
+        (0, 255, 0),
+        (0, 0, 255),
+        (255, 255, 255),
+    ]
     # The robot stands on two bands: its wheels are black there.
-    assert {world.getpixel((152, row)) for row in (84, 144)} == {(20, 20, 20)}
+    assert {world.getpixel((RIM + 152, RIM + row)) for row in (84, 144)} == {COLORED.wheel}
 
 
 def test_arrays_show_what_the_sensors_see(done: Done) -> None:
@@ -82,7 +90,7 @@ def test_the_loop_reads_until_black(done: Done) -> None:
     assert set(PLATEAUS) <= set(read)
     assert texts(done["until black"]) == [WORLD, "finished · 5.300 s · 530 samples"]
     (world,) = pictures(done["until black"])
-    greys = [world.getpixel((place // 3, 120)) for place in (100, 360, 760, 1160, 1560)]
+    greys = [world.getpixel((RIM + place // 3, RIM + 120)) for place in (100, 360, 760, 1160, 1560)]
     assert greys == [(grey,) * 3 for grey in (255, *list(GREYS.values())[1:])]
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tuisim.robotpaint import COLORED, GREY
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.palette import PALETTE_16, PALETTE_256, ColorMode, reduce_pixels, sgr_index
-from tuisim.ui.render.robot import COLORED, GREY
 
 MODES = [
     pytest.param(ColorMode(), id="full"),

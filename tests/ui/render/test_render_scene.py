@@ -10,10 +10,10 @@ import pytest
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import BeaconSpec, InfraredSpec, TouchSpec
 from tuisim.core.spec import Obstacle, PenSpec, RobotSpec
+from tuisim.robotpaint import COLORED, draw_robot, shape_of
 from tuisim.ui.render.lines import BEACON_CORE_RGB, BEACON_RGB
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.pentrace import PenTrace, pen_rgb
-from tuisim.ui.render.robot import COLORED, draw_robot, shape_of
 from tuisim.ui.render.scene import ScenePainter, SceneState
 from tuisim.ui.render.viewport import Viewport, whole_field
 

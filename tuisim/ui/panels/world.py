@@ -15,12 +15,12 @@ from textual.widget import Widget
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
+from tuisim.robotpaint import drawn_scale, shape_of
 from tuisim.ui.cellview import PixelView
 from tuisim.ui.panels.boxdrag import BoxGrip, box_at
 from tuisim.ui.panels.timebar import TimeBar
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.pentrace import PenTrace
-from tuisim.ui.render.robot import drawn_scale, shape_of
 from tuisim.ui.render.scene import ScenePainter, SceneState
 from tuisim.ui.render.viewport import ZOOMS, Viewport, following
 from tuisim.ui.snapshot import Snapshot

@@ -7,9 +7,8 @@ import io
 from typing import TYPE_CHECKING
 
 from tuisim.api import world_at_end
-from tuisim.core.spec import FIELD_HEIGHT_MM
 from tuisim.core.state import FLAG_PEN_DOWN
-from tuisim.figures import MM_PER_PX
+from tuisim.figures import world_view
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -29,8 +28,8 @@ def way_picture(run: StoredRun) -> Image:
 
     picture = world_at_end(run)
     records = run.telemetry.array()
-    xs, ys = records["x_mm"] / MM_PER_PX, (FIELD_HEIGHT_MM - records["y_mm"]) / MM_PER_PX
-    way = list(zip(xs.tolist(), ys.tolist(), strict=True))
+    view = world_view(run.spec.robot)
+    way = [view.to_px(x, y) for x, y in zip(records["x_mm"].tolist(), records["y_mm"].tolist(), strict=True)]
     draw = ImageDraw.Draw(picture)
     drawn = bool((records["flags"] & FLAG_PEN_DOWN).any())
     # The halo makes it seen on bright and dark mats alike, but would cover what a pen drew along it.

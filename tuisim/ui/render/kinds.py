@@ -6,8 +6,7 @@ from typing import TypeAlias
 
 from rich.style import Style
 
-Rgb: TypeAlias = tuple[int, int, int]
-"""A colour, 0 to 255 each."""
+from tuisim.robotpaint import Rgb as Rgb
 
 Run: TypeAlias = tuple[str, Style]
 """A piece of a line in one style."""

@@ -7,10 +7,8 @@ from collections import OrderedDict
 import numpy as np
 import numpy.typing as npt
 
+from tuisim.robotpaint import Pixels as Pixels
 from tuisim.ui.render.viewport import Viewport
-
-Pixels = npt.NDArray[np.uint8]
-"""Shape (height, width, 3): red, green, blue."""
 
 _REMEMBERED = 4
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.parts import BeaconSpec
 from tuisim.core.spec import Obstacle, RobotSpec
+from tuisim.robotpaint import COLORED, GHOST, GREY, GREY_GHOST, RobotShape, draw_robot, shape_of
 from tuisim.ui.render.kinds import Rgb
 from tuisim.ui.render.lines import draw_beacon, draw_obstacles, draw_rays, trace_pixels
 from tuisim.ui.render.mat import MatPictures, Pixels
 from tuisim.ui.render.pentrace import PenTrace
-from tuisim.ui.render.robot import COLORED, GHOST, GREY, GREY_GHOST, RobotShape, draw_robot, shape_of
 from tuisim.ui.render.viewport import Viewport
 
 _GHOST_OPACITY = 0.75

@@ -1,10 +1,11 @@
-"""The robot from above, turned and with smooth edges."""
+"""The robot from above, turned and with smooth edges: in the app, and in every picture."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -12,9 +13,12 @@ import numpy.typing as npt
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import TouchSpec
 from tuisim.core.spec import RobotSpec, UltrasonicSpec
-from tuisim.ui.render.kinds import Rgb
-from tuisim.ui.render.mat import Pixels
-from tuisim.ui.render.viewport import Viewport
+
+Rgb: TypeAlias = tuple[int, int, int]
+"""A colour, 0 to 255 each."""
+
+Pixels = npt.NDArray[np.uint8]
+"""Shape (height, width, 3): red, green, blue."""
 
 _SAMPLES = 4
 """Samples along each side of a pixel."""
@@ -29,6 +33,25 @@ _SPOT_MM = 10.0
 """Radius of a further sensor."""
 
 _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
+
+
+class View(Protocol):
+    """Which part of the field a picture shows, and how large."""
+
+    @property
+    def width_px(self) -> int:
+        """Width of the picture."""
+
+    @property
+    def height_px(self) -> int:
+        """Height of the picture."""
+
+    @property
+    def mm_per_px(self) -> float:
+        """Scale."""
+
+    def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
+        """Return the picture column and row of a point of the world; whole numbers are pixel corners."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,14 +136,14 @@ def _spots(robot: RobotSpec) -> Iterator[tuple[float, float]]:
             yield sensor.x_mm, sensor.y_mm
 
 
-def drawn_scale(shape: RobotShape, view: Viewport) -> float:
+def drawn_scale(shape: RobotShape, view: View) -> float:
     """Return how much larger than life a robot is drawn, at least 1."""
     return max(1.0, _MIN_PX * view.mm_per_px / (2 * (shape.half_width_mm + shape.wheel_half_width_mm)))
 
 
 def draw_robot(
     picture: Pixels,
-    view: Viewport,
+    view: View,
     pose: Pose,
     shape: RobotShape,
     colors: RobotColors,
