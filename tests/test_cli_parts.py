@@ -74,11 +74,51 @@ def test_missing_part_tells_which_ports_have_what(
     assert "line 3" in done.stderr
 
 
-def test_prelude_that_misses_a_part_says_what_to_do(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "prog.py").write_text("say('hello')\n")
-    done = here("run", "prog.py", "-r", "Explorer")
-    assert done.returncode == 1
-    assert "--preload imports" in done.stderr
+WITHOUT_WHEELS = "left_port = 'outA'\nright_port = 'outD'\nultrasonic = false\n"
+TEAM = (
+    "from ev3dev2.motor import MoveTank, OUTPUT_A, OUTPUT_D\n"
+    "def go():\n    MoveTank(OUTPUT_A, OUTPUT_D).on_for_rotations(20, 20, 1)\n"
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from lib import go\ngo()\nprint('Gone')\n",
+        "# %%sim_magic_preloaded\nsay('Gone')\n",
+        "print(colorLeft and 'Gone')",
+    ],
+    ids=["own module", "magic", "another part"],
+)
+def test_prelude_misses_nothing_that_is_not_used(here: Command, tmp_path: Path, text: str) -> None:
+    (tmp_path / "robot.toml").write_text(WITHOUT_WHEELS)
+    (tmp_path / "lib.py").write_text(TEAM)
+    (tmp_path / "prog.py").write_text(text)
+    done = here("run", "prog.py", "-r", "robot.toml")
+    assert (done.returncode, done.stdout.splitlines()[:1]) == (0, ["Gone"]), done.stderr
+
+
+@pytest.mark.parametrize(
+    ("use", "missing"),
+    [
+        ("tank_drive.on(10, 10)", "LargeMotor(ev3-ports:outB)"),
+        ("tank_turn.off()", "LargeMotor(ev3-ports:outB)"),
+        ("x = ultrasonic.distance_centimeters", "UltrasonicSensor(ev3-ports:in1)"),
+        ("ultrasonic.mode = 'US-LISTEN'", "UltrasonicSensor(ev3-ports:in1)"),
+        ("print(ultrasonic)", "UltrasonicSensor(ev3-ports:in1)"),
+        ("hasattr(tank_drive, 'on')", "LargeMotor(ev3-ports:outB)"),
+    ],
+    ids=["call", "other call", "read", "write", "print", "hasattr"],
+)
+def test_missing_part_of_the_prelude_is_told_where_it_is_used(
+    here: Command, tmp_path: Path, use: str, missing: str
+) -> None:
+    (tmp_path / "robot.toml").write_text(WITHOUT_WHEELS)
+    (tmp_path / "prog.py").write_text(f"# %%sim_magic_preloaded -r robot.toml\nprint('First')\n{use}\n")
+    done = here("run", "prog.py")
+    assert (done.returncode, done.stdout) == (1, "First\n")
+    assert f"DeviceNotFound: {missing} is not connected" in done.stderr
+    assert "line 3" in done.stderr
 
 
 def test_list_of_robots_tells_their_ports(here: Command) -> None:

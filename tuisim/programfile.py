@@ -6,6 +6,7 @@ import ast
 import os
 import re
 import shlex
+import symtable
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 
 from tuisim.assets import programs
 from tuisim.errors import ConfigError
+from tuisim.preludes import PRELUDE_TEXTS
 from tuisim.source import decode_source, source_lines
 from tuisim.switches import nearest, parse_words
 
@@ -29,6 +31,9 @@ _FILE_FIELDS = {"background", "robot", "obstacles", "profile"}
 """Settings that may name a file."""
 
 _MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
+_READS_ANY_NAME = {"eval", "exec", "globals", "vars"}
+"""Functions that may use a name without its standing in the program."""
+
 _DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
 
 
@@ -119,12 +124,41 @@ def find_magic(text: str, name: str) -> Magic | None:
     return None
 
 
-def _imports_ev3dev2(text: str) -> bool:
+def prelude_for(text: str) -> str:
+    """Return the prelude that a program without a magic line gets.
+
+    One that imports the library, or needs no name of a prelude, gets none.
+    """
     try:
-        tree = ast.parse(text)
+        if _imports_ev3dev2(ast.parse(text)):
+            return "none"
+        used, defined = _global_names(text)
     # The program's own mistakes are reported when it runs; here a glance must do.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return re.search(r"^\s*(from|import)\s+ev3dev2\b", text, re.MULTILINE) is not None
+        return "none" if re.search(r"^\s*(from|import)\s+ev3dev2\b", text, re.MULTILINE) else "preloaded"
+    _, ready = _global_names(PRELUDE_TEXTS["preloaded"])
+    return "preloaded" if (used - defined) & (ready | _READS_ANY_NAME) else "none"
+
+
+def _global_names(text: str) -> tuple[set[str], set[str]]:
+    """Return the global names that a text uses, and those that it defines."""
+    used: set[str] = set()
+    defined: set[str] = set()
+    tables = [symtable.symtable(text, "", "exec")]
+    while tables:
+        table = tables.pop()
+        tables += table.get_children()
+        for symbol in table.get_symbols():
+            if table.get_type() != "module" and not symbol.is_global():
+                continue
+            if symbol.is_referenced():
+                used.add(symbol.get_name())
+            if symbol.is_assigned() or symbol.is_imported():
+                defined.add(symbol.get_name())
+    return used, defined
+
+
+def _imports_ev3dev2(tree: ast.AST) -> bool:
     for node in ast.walk(tree):
         match node:
             case ast.Import(names=names) if any(alias.name.split(".")[0] == "ev3dev2" for alias in names):
@@ -142,7 +176,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     """
     magic = find_magic(text, name)
     if magic is None:
-        return ProgramSource(name, path, text, "none" if _imports_ev3dev2(text) else "preloaded")
+        return ProgramSource(name, path, text, prelude_for(text))
     if not magic.comment:
         lines = source_lines(text)
         lines[magic.line - 1] = ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import types
+from collections.abc import Iterator
 
 from tuisim.preludes import PRELUDE_TEXTS
 
@@ -36,10 +37,16 @@ def compile_program(text: str, file: str) -> types.CodeType:
     return compile(_LoopHooks().visit(tree), file, "exec", dont_inherit=True)
 
 
-def compile_prelude(name: str) -> types.CodeType:
-    """Return the code of a prelude.
+def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
+    """Yield the statements of a prelude: the name of the part that one makes, else nothing, and its code.
 
     Raises:
         KeyError: there is no such prelude.
     """
-    return compile(PRELUDE_TEXTS[name], PRELUDE_FILE, "exec", dont_inherit=True)
+    for statement in ast.parse(PRELUDE_TEXTS[name], PRELUDE_FILE).body:
+        code = compile(ast.Module([statement], []), PRELUDE_FILE, "exec", dont_inherit=True)
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=part)]):
+                yield part, code
+            case _:
+                yield "", code

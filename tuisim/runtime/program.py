@@ -21,6 +21,7 @@ from tuisim.runtime.baton import Baton
 from tuisim.runtime.config import RunConfig
 from tuisim.runtime.halt import Deadlock, StopProgram
 from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program
+from tuisim.runtime.missing import MissingPart
 from tuisim.runtime.output import LineStream, Output
 from tuisim.runtime.report import report_error
 from tuisim.runtime.session import Session
@@ -122,17 +123,19 @@ class ProgramRunner:
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
     def _execute(self) -> None:
-        self.code = code = compile_program(self._config.text, self._session.program_file)
+        self.code = program = compile_program(self._config.text, self._session.program_file)
         module = self._module
         module.__dict__.update(__file__=self._session.program_file, __builtins__=builtins)
         sys.modules["__main__"] = module
         # What is prepared for the program costs it nothing.
         self._session.free += 1
-        try:
-            exec(compile_prelude(self._config.prelude), module.__dict__)
-        except Exception as error:  # such as a sensor that this robot has not
-            error.add_note(f"The prelude `{self._config.prelude}` asked for it: --preload imports makes no devices.")
-            raise
+        for part, code in compile_prelude(self._config.prelude):
+            try:
+                exec(code, module.__dict__)
+            except Exception as error:  # such as a sensor that this robot has not
+                if not part:
+                    raise
+                module.__dict__[part] = MissingPart(part, error)
         self._session.free -= 1
         # Not before: a program called logging.py is not what the library means by `import logging`.
         sys.path.insert(0, os.path.dirname(os.path.abspath(self._session.program_file)))
@@ -142,7 +145,7 @@ class ProgramRunner:
         gc.enable()
         if self._config.debugged:
             self._session.debug().begin(self._config)
-        exec(code, module.__dict__)
+        exec(program, module.__dict__)
 
     # Ends
 
