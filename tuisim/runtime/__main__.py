@@ -17,10 +17,18 @@ from tuisim.datalog.face import motors_row
 from tuisim.datalog.lock import hold
 from tuisim.datalog.records import MOTORS, OutputWriter, TelemetryWriter
 from tuisim.fields import open_field
-from tuisim.runtime.chance import finish_random, patch_urandom
+from tuisim.runtime.chance import finish_random, finish_uuid, patch_urandom
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.clock import finish_selectors, loop_hook, patch_datetime, patch_time
+from tuisim.runtime.clock import (
+    finish_pandas,
+    finish_resource,
+    loop_hook,
+    patch_datetime,
+    patch_process_times,
+    patch_time,
+)
 from tuisim.runtime.config import RunConfig, read_config
+from tuisim.runtime.file_waits import FileWaits
 from tuisim.runtime.guard import limit_memory, refuse_processes
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.output import Output
@@ -95,15 +103,22 @@ class Child:
         baton = Baton(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
         patch_time(session)
         patch_datetime(session, session.program_file)
+        patch_process_times(session)
         patch_urandom(self._config.spec.seed)
+        waits = FileWaits(session)
+        waits.patch_select()
         refuse_processes()
         patch_threads(baton)
         limit_memory()
         install(
             session,
             {
+                "pandas": lambda module: finish_pandas(session, module),
                 "random": lambda module: finish_random(self._config.spec.seed, module),
-                "selectors": lambda module: finish_selectors(session, module),
+                "resource": lambda module: finish_resource(session, module),
+                "selectors": waits.finish_selectors,
+                "socket": waits.finish_socket,
+                "uuid": lambda module: finish_uuid(self._config.spec.seed, module),
             },
             replace,
         )

@@ -25,6 +25,17 @@ def patch_urandom(seed: int) -> None:
         return stream(seed, next(draws), "urandom", length) if length >= 0 else real_urandom(length)
 
     replace(os, "urandom", urandom, (1, 1))
+    if hasattr(os, "getrandom"):
+        # Its flags say where the real one takes them from.
+        replace(os, "getrandom", lambda size, flags=0: urandom(size), (1, 2))
+
+
+def finish_uuid(seed: int, module: types.ModuleType) -> None:
+    """Let `uuid1` and `getnode` depend on simulated time and the seed, not on the machine."""
+    made_up: Any = module
+    made_up._generate_time_safe = made_up._UuidCreate = None
+    # RFC 9562, 6.10: a node number that belongs to no network card has the lowest bit of its first byte set.
+    made_up._node = int.from_bytes(stream(seed, 0, "uuid node", 6), "big") | 1 << 40
 
 
 def finish_random(seed: int, module: types.ModuleType) -> None:

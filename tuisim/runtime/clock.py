@@ -1,4 +1,4 @@
-"""Simulated time for the program's own modules: time, datetime, random, selectors."""
+"""Simulated time for the program's own modules: time, datetime, process times, pandas."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.simulation import NS_PER_S
-from tuisim.runtime.session import THREADS, Session
+from tuisim.runtime.session import Session
 from tuisim.runtime.standin import replace
 
 EPOCH_S = 1_577_836_800
@@ -21,9 +21,6 @@ EPOCH_S = 1_577_836_800
 
 LONGEST_SLEEP_S = 9_000_000_000
 """The real functions count nanoseconds in 63 bits."""
-
-POLL_NS = 1_000_000
-"""How often an event loop with threads behind it looks for what they did."""
 
 
 def patch_time(session: Session) -> None:
@@ -184,32 +181,61 @@ def _look_like(replacement: Any, real: Any) -> None:
     replacement.__repr__, replacement.__reduce_ex__ = show, reduce
 
 
-def finish_selectors(session: Session, module: types.ModuleType) -> None:
-    """Let everything that waits for files wait in simulated time."""
-    for name in ("SelectSelector", "PollSelector", "EpollSelector", "KqueueSelector", "DevpollSelector"):
-        found = getattr(module, name, None)
-        if found is not None:
-            found.select = _simulated_select(session, found.select)
+def patch_process_times(session: Session) -> None:
+    """Let the time that a process has used be the simulated time that has passed."""
+    real_times = os.times
+
+    def times() -> Any:
+        used_s = session.now / NS_PER_S
+        return type(real_times())((used_s, 0.0, 0.0, 0.0, EPOCH_S + used_s))
+
+    replace(os, "times", times, (0, 0))
 
 
-def _simulated_select(session: Session, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
-    """Return a `select` that looks at the real files without waiting, and waits on the simulated clock."""
+def finish_resource(session: Session, module: types.ModuleType) -> None:
+    """Let `resource` tell the same process times as `os.times`."""
+    real_usage = module.getrusage
 
-    @wraps(look)
-    def select(self: Any, timeout: float | None = None) -> Any:
-        ready = look(self, 0)
-        if ready or (timeout is not None and timeout <= 0):
-            if not ready:
-                session.command()
-            return ready
-        until = None if timeout is None else session.now + round(timeout * NS_PER_S)
-        while not ready and (until is None or session.now < until):
-            rest = POLL_NS if until is None else until - session.now
-            session.spend(min(rest, POLL_NS) if session.slow & THREADS else rest)
-            ready = look(self, 0)
-        return ready
+    def getrusage(who: Any) -> Any:
+        usage = real_usage(who)
+        used_s = session.now / NS_PER_S if who == module.RUSAGE_SELF else 0.0
+        return type(usage)((used_s, 0.0, *usage[2:]))
 
-    return select
+    replace(module, "getrusage", getrusage, (1, 1))
+
+
+def finish_pandas(session: Session, module: types.ModuleType) -> None:
+    """Let pandas' own "now" be simulated time; its compiled code does not look at `time`."""
+    cost = session.sim.spec.profile.clock_read_ns
+    stamp, period = module.Timestamp, module.Period
+
+    def seconds() -> float:
+        session.charge(cost)
+        return EPOCH_S + session.now / NS_PER_S
+
+    def now(cls: Any, tz: Any = None) -> Any:
+        return cls.fromtimestamp(seconds(), tz)
+
+    def utcnow(cls: Any) -> Any:
+        return cls.fromtimestamp(seconds(), "UTC")
+
+    def period_now(cls: Any, freq: Any) -> Any:
+        return cls(now(stamp), freq=freq)
+
+    for owner, name, does in (
+        (stamp, "now", now), (stamp, "today", now), (stamp, "utcnow", utcnow), (period, "now", period_now),
+    ):  # fmt: skip
+        does.__doc__ = getattr(owner, name).__doc__
+        setattr(owner, name, classmethod(does))
+    make = stamp.__new__
+
+    @wraps(make)
+    def new(cls: Any, *given: Any, **named: Any) -> Any:
+        if given and isinstance(given[0], str) and given[0] in ("now", "today"):
+            return cls.now(named.get("tz"))
+        return make(cls, *given, **named)
+
+    stamp.__new__ = new
 
 
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:

@@ -1,0 +1,71 @@
+"""What a program can ask the machine for instead of the robot: other clocks, chance, files and sockets."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.running import Run
+
+NOW = "import time\ndef now(): return round(time.monotonic(), 1)\n"
+PROGRAMS = {
+    "getrandom": ("import os\nprint(os.getrandom(8).hex(), len(os.getrandom(3, os.GRND_NONBLOCK)))", None),
+    "uuid1": ("import uuid\nprint(uuid.uuid1(), hex(uuid.getnode()))", None),
+    "process times": (
+        NOW + "import os, resource\ntime.sleep(1.5)\nused = os.times()\n"
+        "print(used.user, used.system, round(used.elapsed), resource.getrusage(resource.RUSAGE_SELF).ru_utime)",
+        ["1.5 0.0 1577836802 1.5"],
+    ),
+    "pandas": (
+        NOW + "import pandas as pd\ntime.sleep(2)\n"
+        "print(pd.Timestamp.now().year, pd.Timestamp.utcnow().second, pd.Timestamp('now').year)\n"
+        "print(pd.to_datetime('now').year, pd.Timestamp.today('UTC').floor('s'), pd.Period.now('D'))",
+        ["2020 2 2020", "2020 2020-01-01 00:00:02+00:00 2020-01-01"],
+    ),
+    "select": (
+        NOW + "import os, select\nr, w = os.pipe()\nprint(select.select([r], [], [], 2.5), now())\n"
+        "os.write(w, b'x')\nprint(select.select([r], [], [], 5)[0] == [r], now())",
+        ["([], [], []) 2.5", "True 2.5"],
+    ),
+    "poll": (
+        NOW + "import os, select\nr, w = os.pipe()\np = select.poll()\np.register(r, select.POLLIN)\n"
+        "print(p.poll(1500), now())\nos.write(w, b'x')\nprint(p.poll() == [(r, select.POLLIN)], now())",
+        ["[] 1.5", "True 1.5"],
+    ),
+    "epoll": (
+        NOW + "import os, select\nr, w = os.pipe()\nwith select.epoll() as p:\n    p.register(r, select.EPOLLIN)\n"
+        "    print(p.poll(1.5), now())\n    os.write(w, b'x')\n"
+        "    print(p.poll() == [(r, select.EPOLLIN)], now(), p.closed)",
+        ["[] 1.5", "True 1.5 False"],
+    ),
+    "a thread ends a select": (
+        NOW + "import os, select, threading\nr, w = os.pipe()\n"
+        "threading.Timer(0.5, lambda: os.write(w, b'x')).start()\nprint(select.select([r], [], [])[0] == [r], now())",
+        ["True 0.5"],
+    ),
+    "socket timeout": (
+        NOW + "import socket\na, b = socket.socketpair()\na.settimeout(3)\n"
+        "try: a.recv(10)\nexcept TimeoutError as error: print(error, now())\n"
+        "b.sendall(b'hello')\nprint(a.recv(10), now())",
+        ["timed out 3.0", "b'hello' 3.0"],
+    ),
+    "threads over a socket": (
+        NOW + "import socket, threading\nserver = socket.create_server(('127.0.0.1', 0))\n"
+        "def serve():\n    peer, _ = server.accept()\n    with peer: peer.sendall(b'x' * 5_000_000)\n"
+        "threading.Thread(target=serve).start()\ngot = 0\n"
+        "with socket.create_connection(server.getsockname(), timeout=60) as s:\n"
+        "    while part := s.recv(1 << 16): got += len(part)\nprint(got)",
+        ["5000000"],
+    ),
+    "nobody listens": (
+        "import socket\nfree = socket.create_server(('127.0.0.1', 0))\nplace = free.getsockname()\nfree.close()\n"
+        "try: socket.create_connection(place, timeout=2)\nexcept ConnectionRefusedError: print('refused')",
+        ["refused"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
+def test_it_is_the_runs(run: Run, text: str, lines: list[str] | None) -> None:
+    first = run(text, prelude="none")
+    assert first.ended.end == "finished", first.errors
+    assert first.lines == (run(text, prelude="none").lines if lines is None else lines)

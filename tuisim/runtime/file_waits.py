@@ -1,0 +1,238 @@
+"""Waits for files, pipes and sockets in simulated time: `select`, `selectors` and `socket`."""
+
+from __future__ import annotations
+
+import errno
+import os
+import select
+import types
+from collections.abc import Callable
+from functools import partial, wraps
+from typing import Any, TypeVar
+
+from tuisim.core.simulation import NS_PER_S
+from tuisim.runtime.session import THREADS, Session
+from tuisim.runtime.standin import replace
+
+Found = TypeVar("Found")
+
+POLL_NS = 1_000_000
+"""How often a wait with threads behind it looks for what they did."""
+_NS_PER_MS = 1_000_000
+
+_SELECTORS = {
+    "PollSelector": "poll",
+    "EpollSelector": "epoll",
+    "KqueueSelector": "kqueue",
+    "DevpollSelector": "devpoll",
+}
+"""Classes of `selectors`, and the class of `select` that each is built on."""
+_READS = ("_accept", "recv", "recv_into", "recvfrom", "recvfrom_into", "recvmsg", "recvmsg_into")
+_WRITES = ("send", "sendto", "sendmsg")
+
+
+class FileWaits:
+    """Looks at the real files without waiting, and waits on the simulated clock.
+
+    Args:
+        session: The run.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._select = select.select
+        self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
+
+    def until_found(self, look: Callable[[], Found], timeout_ns: int | None) -> Found:
+        """Return what a look finds, as soon as it finds something; what it finds last when the time is over.
+
+        Args:
+            look: Looks without waiting; what it finds is empty if there is nothing.
+            timeout_ns: Longest simulated time to wait, at most 0 for one look; None for as long as it takes.
+        """
+        session = self._session
+        found = look()
+        if found or (timeout_ns is not None and timeout_ns <= 0):
+            if not found:
+                session.command()
+            return found
+        until = None if timeout_ns is None else session.now + timeout_ns
+        while not found and (until is None or session.now < until):
+            rest = POLL_NS if until is None else until - session.now
+            session.spend(min(rest, POLL_NS) if session.slow & THREADS else rest)
+            found = look()
+        return found
+
+    # select
+
+    def patch_select(self) -> None:
+        """Replace what waits in the module `select`."""
+        real = self._select
+
+        def simulated(readers: Any, writers: Any, others: Any, timeout: Any = None) -> Any:
+            # The real one says what is wrong with its arguments.
+            found = real(readers, writers, others, 0 if timeout is None or timeout >= 0 else timeout)
+            if any(found) or timeout == 0:
+                return found
+
+            def look() -> tuple[Any, ...]:
+                found = real(readers, writers, others, 0)
+                return found if any(found) else ()
+
+            return self.until_found(look, _nanoseconds(timeout, NS_PER_S)) or ([], [], [])
+
+        replace(select, "select", simulated, (3, 4))
+        module: Any = select
+        if self._classes["poll"] is not None:
+            real_poll = self._classes["poll"]
+            replace(select, "poll", lambda: _Polling(self, real_poll(), "poll", _NS_PER_MS), (0, 0))
+        if self._classes["epoll"] is not None:
+            module.epoll = _epoll_class(self, self._classes["epoll"])
+
+    # selectors
+
+    def finish_selectors(self, module: types.ModuleType) -> None:
+        """Let every selector wait in simulated time; they look at the files by the real functions."""
+        selector: Any = module
+        selector.SelectSelector._select = staticmethod(self._select)
+        for name in ("SelectSelector", *_SELECTORS):
+            found = getattr(module, name, None)
+            if found is None:
+                continue
+            if name in _SELECTORS:
+                found._selector_cls = self._classes[_SELECTORS[name]]
+            found.select = self._selector_select(found.select)
+
+    def _selector_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
+        @wraps(look)
+        def select_simulated(selector: Any, timeout: float | None = None) -> Any:
+            return self.until_found(lambda: look(selector, 0), _nanoseconds(timeout, NS_PER_S))
+
+        return select_simulated
+
+    # socket
+
+    def finish_socket(self, module: types.ModuleType) -> None:
+        """Let sockets that may wait do so in simulated time."""
+        sockets: Any = module.socket
+        for names, writes in ((_READS, False), (_WRITES, True)):
+            for name in names:
+                if hasattr(sockets, name):
+                    setattr(sockets, name, self._after_wait(getattr(sockets, name), writes))
+        sockets.sendall = self._sendall(sockets.sendall, sockets.send)
+        sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
+
+    def _wait_for_socket(self, socket: Any, writes: bool) -> None:
+        """Return when it can be read or written; raise TimeoutError after its time."""
+        timeout_s = socket.gettimeout()
+        if timeout_s == 0.0:
+            return
+        parts = ([], [socket], []) if writes else ([socket], [], [])
+        look = partial(self._select, *parts, 0)
+        if not self.until_found(lambda: any(look()), _nanoseconds(timeout_s, NS_PER_S)):
+            raise TimeoutError("timed out")
+
+    def _after_wait(self, real: Any, writes: bool) -> Callable[..., Any]:
+        @wraps(real)
+        def method(socket: Any, *given: Any, **named: Any) -> Any:
+            self._wait_for_socket(socket, writes)
+            return real(socket, *given, **named)
+
+        return method
+
+    def _sendall(self, real: Any, send: Callable[..., int]) -> Callable[..., Any]:
+        @wraps(real)
+        def sendall(socket: Any, data: Any, flags: int = 0) -> None:
+            rest = memoryview(data).cast("B")
+            # As much at a time as there is room for: whoever reads may be another thread of the program.
+            while len(rest):
+                rest = rest[send(socket, rest, flags | _dont_wait()) :]
+
+        return sendall
+
+    def _connect(self, real: Any, connect_ex: Callable[[Any, Any], int]) -> Callable[..., Any]:
+        @wraps(real)
+        def connect(socket: Any, address: Any) -> None:
+            timeout_s = socket.gettimeout()
+            if timeout_s == 0.0:
+                real(socket, address)
+                return
+            socket.settimeout(0.0)
+            try:
+                code = connect_ex(socket, address)
+            finally:
+                socket.settimeout(timeout_s)
+            if code in (errno.EINPROGRESS, errno.EALREADY, errno.EAGAIN):
+                self._wait_for_socket(socket, writes=True)
+                code = _pending_error(socket)
+            if code:
+                raise OSError(code, os.strerror(code))
+
+        return connect
+
+
+def _pending_error(socket: Any) -> int:
+    import socket as module
+
+    return int(socket.getsockopt(module.SOL_SOCKET, module.SO_ERROR))
+
+
+def _dont_wait() -> int:
+    import socket as module
+
+    return int(module.MSG_DONTWAIT)
+
+
+def _nanoseconds(timeout: Any, per_unit: int) -> int | None:
+    """Return a time limit in nanoseconds; None for one that is not given."""
+    return None if timeout is None else round(timeout * per_unit)
+
+
+class _Polling:
+    """Stands in for an object that polls files: all but its waiting is done by the real one.
+
+    Args:
+        waits: How to wait.
+        real: The object.
+        method: Name of its method that waits.
+        per_unit: Nanoseconds that one of its time limit stands for.
+    """
+
+    def __init__(self, waits: FileWaits, real: Any, method: str, per_unit: int) -> None:
+        self._waits, self._real, self._method, self._per_unit = waits, real, method, per_unit
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._real, name)
+
+    def poll(self, timeout: Any = None, *more: Any) -> Any:
+        """Return the events, waiting for them in simulated time."""
+        # Less than nothing means without end, as in the real one.
+        limit = None if timeout is None or timeout < 0 else _nanoseconds(timeout, self._per_unit)
+        return self._waits.until_found(lambda: getattr(self._real, self._method)(0, *more), limit)
+
+
+def _epoll_class(waits: FileWaits, real: Any) -> type:
+    class epoll(_Polling):  # noqa: N801 - the name that the program sees
+        def __init__(self, sizehint: int = -1, flags: int = 0) -> None:
+            super().__init__(waits, real(sizehint, flags), "poll", NS_PER_S)
+
+        @classmethod
+        def fromfd(cls, fd: int) -> epoll:
+            """Return one that stands for a descriptor."""
+            made = cls.__new__(cls)
+            _Polling.__init__(made, waits, real.fromfd(fd), "poll", NS_PER_S)
+            return made
+
+        def poll(self, timeout: Any = None, maxevents: int = -1) -> Any:
+            """Return the events, waiting for them in simulated time."""
+            return super().poll(timeout, maxevents)
+
+        def __enter__(self) -> epoll:
+            self._real.__enter__()
+            return self
+
+        def __exit__(self, *error: Any) -> None:
+            self._real.__exit__(*error)
+
+    epoll.__module__, epoll.__qualname__, epoll.__doc__ = "select", "epoll", real.__doc__
+    return epoll
