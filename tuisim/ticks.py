@@ -17,8 +17,16 @@ def nice_step(span: float, count: int) -> float:
     return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
 
 
-def value_limits(low: float, high: float) -> Limits:
-    """Return round limits around values, so that they seldom change while values come in."""
+def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
+    """Return round limits around values, so that they seldom change while values come in.
+
+    Args:
+        low: The least value.
+        high: The greatest one.
+        from_zero: Whether 0 is to be seen.
+    """
+    if from_zero:
+        low = min(low, 0.0)
     size = max(abs(low), abs(high), 1.0)
     if high - low < 1e-9 * size:
         # One more or less would make no difference to a number with more than sixteen digits.

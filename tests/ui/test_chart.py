@@ -114,6 +114,22 @@ async def test_the_mouse_puts_the_cursor() -> None:
     assert 2 < first < second < 3.5
 
 
+async def test_the_mouse_reads_values_without_a_press() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        rows(app)
+        await pilot.hover(app.panel, offset=(60, 5))
+        read = str(app.panel.border_subtitle).split()
+        await pilot.hover(app.panel, offset=(60, 0))
+        await pilot.pause()
+
+    assert read[1:] == ["s", "Colour", "20"]
+    assert 2.5 < float(read[0]) < 4.9
+    assert not app.panel.border_subtitle
+    assert not app.heard(Chart.CursorMoved)
+
+
 async def test_freezing_keeps_the_window() -> None:
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
@@ -126,9 +142,9 @@ async def test_freezing_keeps_the_window() -> None:
         await pilot.press("f")
         following = (rows(app)[-1], app.panel.border_subtitle)
 
-    assert frozen[0].rstrip().endswith("5 s")
+    assert frozen[0].rstrip().endswith("4 s")
     assert frozen[1] == Chart.FROZEN
-    assert following[0].rstrip().endswith("120 s")
+    assert following[0].rstrip().endswith("100 s")
     assert not following[1]
 
 

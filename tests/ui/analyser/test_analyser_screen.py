@@ -84,6 +84,17 @@ async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
         assert screen.model is model
 
 
+async def test_the_mouse_reads_the_chart_without_a_press(run: StoredRun) -> None:
+    async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
+        screen, model = await opened(pilot)
+        before = model.row
+        await pilot.hover(screen.chart, offset=(40, 5))
+        await until(pilot, lambda: " s  Colour " in str(screen.chart.border_subtitle))
+        assert model.row == before
+        await pilot.hover(screen.pane, offset=(5, 5))
+        await until(pilot, lambda: not screen.chart.border_subtitle)
+
+
 async def test_one_cursor_moves_all(run: StoredRun) -> None:
     async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
         _, model = await opened(pilot)

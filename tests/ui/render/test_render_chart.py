@@ -51,6 +51,48 @@ def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
     assert "print('Colour: '" in "\n".join(rows)
 
 
+@pytest.mark.parametrize(
+    ("name", "values", "state", "lowest"),
+    [
+        ("Colour", [60.0, 98.8], ChartState(), "0"),
+        ("Light_left", [180.0, 255.0], ChartState(), "0"),
+        ("left red %", [60.0, 98.8], ChartState(), "0"),
+        ("right_green #2", [180.0, 200.0], ChartState(), "0"),
+        ("Colour", [60.0, 98.8], ChartState(zoomed=True), "60"),
+        ("Light", [600.0, 980.0], ChartState(), "600"),
+        ("Distance", [60.0, 98.8], ChartState(), "60"),
+        ("Light_slope", [-20.0, 40.0], ChartState(), "-20"),
+    ],
+    ids=["percent", "level", "telemetry", "column", "zoomed", "out of range", "other reading", "below zero"],
+)
+def test_readings_with_a_known_range_begin_at_zero(
+    name: str, values: list[float], state: ChartState, lowest: str
+) -> None:
+    made = Traces()
+    made.append(name, [0.0, 1.0], values)
+    next(iter(made)).on = True
+    rows = text(ChartPainter().paint(made, state, 60, 8))
+    assert [row.split("┤")[0].strip() for row in rows if "┤" in row][-1] == lowest
+
+
+@pytest.mark.parametrize("end_s", [0.7, 5.41, 61.3, 723.0])
+@pytest.mark.parametrize("grows", [False, True], ids=["over", "live"])
+def test_the_horizontal_axis_ends_at_the_data(end_s: float, grows: bool) -> None:
+    made = Traces()
+    made.append("Colour", [0.0, end_s], [1.0, 2.0])
+    limits = ChartPainter().paint(made, ChartState(grows=grows), 60, 12).x_limits
+    # While more is to come, there is a little room for it.
+    assert limits[0] == 0
+    assert limits[1] == end_s if not grows else end_s <= limits[1] <= max(1.3 * end_s, 1)
+
+
+@pytest.mark.parametrize("height", [6, 9, 12, 16, 24, 40])
+def test_tick_boxes_leave_most_of_a_chart_to_the_curves(height: int) -> None:
+    made = traces(*(f"a_long_name_of_trace_{at}" for at in range(8)))
+    picture = ChartPainter().paint(made, ChartState(), 30, height)
+    assert picture.top <= height / 6
+
+
 def test_telemetry_is_not_ticked_at_first() -> None:
     rows = text(ChartPainter().paint(traces("gyro °", "Colour"), ChartState(), 80, 16))
 
@@ -109,7 +151,7 @@ def test_limits_stay_while_frozen() -> None:
     made.append("Colour", [100.0], [1.0])
 
     assert ChartPainter().paint(made, ChartState(x_limits=(0.0, 5.0)), 80, 16).x_limits == (0.0, 5.0)
-    assert ChartPainter().paint(made, ChartState(), 80, 16).x_limits == (0.0, 120.0)
+    assert ChartPainter().paint(made, ChartState(), 80, 16).x_limits == (0.0, 100.0)
 
 
 def test_points_out_of_order_and_numbers_that_are_none() -> None:

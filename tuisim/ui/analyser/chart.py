@@ -14,8 +14,7 @@ from textual.widget import Widget
 from tuisim.ui.analyser.aligning import DISTANCE
 from tuisim.ui.analyser.events import marks
 from tuisim.ui.cellview import LinesView
-from tuisim.ui.render import axes
-from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState
+from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.ui.render.kinds import Run
 from tuisim.ui.render.plot import BRAILLE
 from tuisim.ui.render.traces import Traces
@@ -58,7 +57,7 @@ class LogChart(Widget):
 
     ALLOW_SELECT = False
     DEFAULT_CSS = """
-    LogChart { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; }
+    LogChart { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; border-subtitle-color: #87d7af; }
     LogChart > LinesView { width: 1fr; height: 1fr; }
     """
 
@@ -114,7 +113,7 @@ class LogChart(Widget):
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
             model.selected, model.cursor_s if model.log.rows else None, x_limits, bool(self.app.no_color),
-            model.mark_s, unit, self.look.marks,
+            model.mark_s, unit, self.look.marks, zoomed=model.limits is not None,
         )  # fmt: skip
         self._pictures = []
         lines: list[list[Run]] = []
@@ -157,19 +156,40 @@ class LogChart(Widget):
         if self._model is not None:
             self.show(self._model)
 
+    def _cell(self, event: events.MouseEvent) -> tuple[int, int]:
+        """Column and row of the mouse in the text."""
+        origin = self._text.region
+        return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
+
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Go to what is pointed at."""
-        origin = self._text.region
-        column, row = int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
+        column, row = self._cell(event)
         for first, picture in self._pictures:
             for box in picture.boxes:
                 if box.row == row - first and box.first <= column < box.end:
                     self.post_message(self.Ticked(box.name))
                     return
-            inside = 0 <= row - first - picture.top < picture.rows and 0 <= column - picture.left < picture.columns
-            if inside:
-                time_s = axes.at_column(column - picture.left, picture.x_limits, picture.columns)
+            time_s = picture.time_at(column, row - first)
+            if time_s is not None:
                 self.post_message(self.Pointed(time_s))
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        """Read what the variables are where the mouse is."""
+        column, row = self._cell(event)
+        times_s = (picture.time_at(column, row - first) for first, picture in self._pictures)
+        self._read(next((time_s for time_s in times_s if time_s is not None), None))
+
+    def on_leave(self) -> None:
+        """The mouse reads nothing any more."""
+        self._read(None)
+
+    def _read(self, time_s: float | None) -> None:
+        """Say below the chart what the variables are at a time."""
+        read: list[Run] = []
+        if time_s is not None and self._model is not None:
+            unit = "mm" if self._model.alignment == DISTANCE else "s"
+            read = values_at(self._model.traces.drawn(), time_s, unit, self.size.width - 4)
+        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
 
 
 def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:

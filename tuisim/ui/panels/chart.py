@@ -14,9 +14,9 @@ from textual.widget import Widget
 
 from tuisim.ui.cellview import LinesView
 from tuisim.ui.render import axes
-from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState
+from tuisim.ui.render.chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.ui.render.traces import Trace, Traces
-from tuisim.ui.snapshot import Snapshot
+from tuisim.ui.snapshot import PAUSED, RUNNING, WAITING, Snapshot
 from tuisim.ui.throttle import Throttle
 
 _PERIOD_S = 0.33
@@ -83,7 +83,7 @@ class Chart(Widget, can_focus=True):
         """Drop all points; ticks stay."""
         self._traces.clear()
         self._state = replace(self._state, x_limits=None)
-        self.border_subtitle = ""
+        self._read(None)
         self.action_drop_cursor()
         self._changed()
 
@@ -92,6 +92,10 @@ class Chart(Widget, can_focus=True):
         cursor_s = snapshot.time_s if snapshot.past else None
         if cursor_s != self._state.cursor_s and not self._dragging:
             self._state = replace(self._state, cursor_s=cursor_s)
+            self._dirty = True
+        grows = snapshot.state in (RUNNING, PAUSED, WAITING)
+        if grows != self._state.grows:
+            self._state = replace(self._state, grows=grows)
             self._dirty = True
         if self._dirty:
             self._throttle.ask()
@@ -157,7 +161,7 @@ class Chart(Widget, can_focus=True):
         """Stop following the run, or follow it again."""
         frozen = self._state.x_limits is None and self._picture is not None and self._picture.columns > 0
         self._state = replace(self._state, x_limits=self._picture.x_limits if frozen and self._picture else None)
-        self.border_subtitle = self.FROZEN if frozen else ""
+        self._read(None)
         self._draw_now()
 
     def action_clear(self) -> None:
@@ -204,16 +208,33 @@ class Chart(Widget, can_focus=True):
             if box.row == row and box.first <= column < box.end:
                 self._switch(next(trace for trace in self._traces if trace.name == box.name))
                 return
-        on_canvas = 0 <= column - picture.left < picture.columns and 0 <= row - picture.top < picture.rows
-        if on_canvas:
+        if picture.time_at(column, row) is not None:
             self._dragging = True
             self.capture_mouse()
             self._cursor_to(column, picture)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Drag the cursor."""
-        if self._dragging and self._picture is not None:
-            self._cursor_to(self._cell(event)[0], self._picture)
+        """Drag the cursor, or read what the traces are where the mouse is."""
+        picture = self._picture
+        if picture is None:
+            return
+        column, row = self._cell(event)
+        if self._dragging:
+            self._cursor_to(column, picture)
+        else:
+            self._read(picture.time_at(column, row))
+
+    def on_leave(self) -> None:
+        """The mouse reads nothing any more."""
+        self._read(None)
+
+    def _read(self, time_s: float | None) -> None:
+        """Say below the chart what the traces are at a time."""
+        if time_s is None:
+            self.border_subtitle = self.FROZEN if self._state.x_limits else ""
+            return
+        read = values_at(self._traces.drawn(), time_s, self._state.unit, self.size.width - 4)
+        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         """Let go of the cursor."""

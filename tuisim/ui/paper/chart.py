@@ -83,6 +83,8 @@ class Chart:
     path: bool = False
     """Whether one variable is drawn against another."""
     spans: tuple[Span, ...] = ()
+    zoomed: bool = False
+    """Whether a part of the time is shown: then the vertical axis fits what is seen there."""
 
 
 def with_unit(name: str) -> str:
@@ -119,7 +121,13 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
     if model.alignment == DISTANCE:
         x_label = "distance driven (mm)"
     return Chart(
-        printable(model.log.title), tuple(lines), x_limits, x_label, view.facets and len(lines) > 1, view.marks
+        printable(model.log.title),
+        tuple(lines),
+        x_limits,
+        x_label,
+        view.facets and len(lines) > 1,
+        view.marks,
+        zoomed=model.limits is not None,
     )
 
 

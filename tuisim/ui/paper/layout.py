@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 
 from tuisim.datalog.arrays import FloatArray
+from tuisim.datalog.units import begins_at_zero
 from tuisim.ui.paper.chart import Chart, Line, unit_of
 from tuisim.ui.render.axes import Limits, label, ticks, value_limits
 from tuisim.ui.render.kinds import Rgb
@@ -129,7 +130,7 @@ def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> D
         shapes += legend
         top += lines * _LINE_PX + 4
     groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
-    scales = [_Scales.of(group) for group in groups]
+    scales = [_Scales.of(group, chart.zoomed or chart.path) for group in groups]
     left = _PAD + max(scale.left_px for scale in scales)
     right = max(width - _PAD - max(max(scale.right_px for scale in scales), 3 * _LETTER_PX), left + 1)
     bottom = height - _PAD - 2 * _LINE_PX
@@ -163,7 +164,7 @@ def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape],
     """A stroke and the name of each line, and which have the scale on the right; how many lines of text that takes."""
     shapes: list[Shape] = []
     x, row = float(_PAD), 0
-    two = _Scales.of(lines).right is not None
+    two = _with_two_scales(lines)
     for line in lines:
         text = _cut(line.label + (", right scale" if two and line.other_scale else ""), width - 2 * _PAD - 30)
         taken = 30 + len(text) * _LETTER_PX
@@ -184,12 +185,11 @@ class _Scales:
     right: Limits | None
 
     @classmethod
-    def of(cls, lines: Sequence[Line]) -> _Scales:
-        others = [line for line in lines if line.other_scale]
-        two = 0 < len(others) < len(lines)
+    def of(cls, lines: Sequence[Line], zoomed: bool) -> _Scales:
+        two = _with_two_scales(lines)
         return cls(
-            _limits([line for line in lines if not line.other_scale] if two else lines),
-            _limits(others) if two else None,
+            _limits([line for line in lines if not line.other_scale] if two else lines, zoomed),
+            _limits([line for line in lines if line.other_scale], zoomed) if two else None,
         )
 
     @property
@@ -201,11 +201,16 @@ class _Scales:
         return _widest(self.right) if self.right else 0.0
 
 
-def _limits(lines: Sequence[Line]) -> Limits:
-    drawn = [line.ys for line in lines if len(line.ys)]
-    if not drawn:
+def _with_two_scales(lines: Sequence[Line]) -> bool:
+    return 0 < sum(line.other_scale for line in lines) < len(lines)
+
+
+def _limits(lines: Sequence[Line], zoomed: bool) -> Limits:
+    ends = [(line.name, float(line.ys.min()), float(line.ys.max())) for line in lines if len(line.ys)]
+    if not ends:
         return 0.0, 1.0
-    return value_limits(min(float(ys.min()) for ys in drawn), max(float(ys.max()) for ys in drawn))
+    from_zero = not zoomed and any(begins_at_zero(*one) for one in ends)
+    return value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
 
 
 def _labelled(limits: Limits, count: int) -> list[tuple[float, str]]:

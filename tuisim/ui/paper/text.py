@@ -49,7 +49,9 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
         rows = max(height // len(parts), LEAST_ROWS)
         for part in parts:
             grey = not colors and len(part) > 1
-            state = ChartState(x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart))
+            state = ChartState(
+                x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart), zoomed=chart.zoomed
+            )
             shown += ChartPainter().paint(_Drawn(part), state, width, rows).lines
     lines = [Text(chart.title, "bold"), *(Text.assemble(*map(_on_any_ground, line)) for line in shown)]
     for at in lines:

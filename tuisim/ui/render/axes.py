@@ -7,11 +7,17 @@ import math
 from tuisim.ticks import Limits, label, nice_step, ticks, value_limits
 
 __all__ = [
-    "Limits", "at_column", "column_of", "label", "nice_step", "row_labels", "ticks", "time_axis", "time_limits",
-    "value_limits",
+    "Limits", "at_column", "column_of", "growing_limits", "label", "nice_step", "row_labels", "ticks", "time_axis",
+    "time_limits", "value_limits",
 ]  # fmt: skip
 
 _SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
+
+
+def growing_limits(end_s: float) -> Limits:
+    """Return limits from 0 to soon after `end_s`, which grow in steps: a curve is not squeezed by each new point."""
+    step = nice_step(max(end_s, 1.0), 8)
+    return 0.0, max(math.ceil(end_s / step - 1e-9) * step, 1.0)
 
 
 def time_limits(end_s: float) -> Limits:

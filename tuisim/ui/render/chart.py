@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from rich.color import Color
 from rich.style import Style
 
+from tuisim.datalog.units import begins_at_zero
 from tuisim.ui.render import axes
 from tuisim.ui.render.axes import Limits
 from tuisim.ui.render.kinds import Run
@@ -19,6 +20,8 @@ _PLAIN = Style(color="#d8dee6")
 _CURSOR = Style(color="#ffffff", bgcolor="#44505e")
 _STRONG = Style(color="#ffffff", bold=True)
 
+_ROWS_A_LEGEND_LINE = 8
+"""A chart has one line of tick boxes for so many rows, so that most of it is left for the curves."""
 _MIN_TWO_SCALES = 36
 """Narrower charts have no room for a second scale on the right."""
 
@@ -45,6 +48,10 @@ class ChartState:
     """Of the horizontal axis."""
     marks: bool = False
     """Draw the points as marks, not joined by lines."""
+    grows: bool = False
+    """Whether more is to come, so that the horizontal axis goes on a little beyond the data."""
+    zoomed: bool = False
+    """Whether a part of the time is looked at: then the vertical axis fits what is seen there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +77,12 @@ class ChartPicture:
     rows: int = 0
     x_limits: Limits = (0.0, 1.0)
 
+    def time_at(self, column: int, row: int) -> float | None:
+        """Return the time at a place, None beside the canvas."""
+        if 0 <= column - self.left < self.columns and 0 <= row - self.top < self.rows:
+            return axes.at_column(column - self.left, self.x_limits, self.columns)
+        return None
+
 
 @dataclass(slots=True)
 class ChartPainter:
@@ -80,15 +93,15 @@ class ChartPainter:
 
     def paint(self, traces: Traces, state: ChartState, width: int, height: int) -> ChartPicture:
         """Return the chart in a panel of that inner size, each at least 1."""
-        lines, boxes = _tick_boxes(traces, state, width, 1 if height < 9 else 2 if height < 16 else 3)
+        lines, boxes = _tick_boxes(traces, state, width, min(max(height // _ROWS_A_LEGEND_LINE, 1), 3))
         drawn = traces.drawn()
         if not drawn:
             return ChartPicture((lines + _empty(len(traces) > 0, width, height - len(lines)))[:height], boxes)
-        values = _values_at(drawn, state.cursor_s, state.unit, width) if state.cursor_s is not None else []
+        values = [values_at(drawn, state.cursor_s, state.unit, width)] if state.cursor_s is not None else []
         with_line = height >= 9
         rows = max(height - len(lines) - len(values) - 1 - with_line, 1)
-        x_limits = state.x_limits or axes.time_limits(traces.end_s())
-        scales = _Scales.of(drawn, width, rows)
+        x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
+        scales = _Scales.of(drawn, width, rows, state.zoomed)
         columns = max(width - scales.left_width - scales.right_width, 2)
         self._draw(drawn, scales, columns, rows, x_limits, state.grey or state.marks)
         left, top = scales.left_width, len(lines)
@@ -123,11 +136,11 @@ class _Scales:
     right_labels: dict[int, str]
 
     @classmethod
-    def of(cls, drawn: list[Trace], width: int, rows: int) -> _Scales:
+    def of(cls, drawn: list[Trace], width: int, rows: int, zoomed: bool) -> _Scales:
         others = [trace for trace in drawn if trace.other_scale]
         two = 0 < len(others) < len(drawn) and width >= _MIN_TWO_SCALES
-        left = _limits([trace for trace in drawn if not trace.other_scale] if two else drawn)
-        right = _limits(others) if two else None
+        left = _limits([trace for trace in drawn if not trace.other_scale] if two else drawn, zoomed)
+        right = _limits(others, zoomed) if two else None
         labels = axes.row_labels(right, rows) if right else {}
         return cls(left, right, axes.row_labels(left, rows), labels)
 
@@ -155,10 +168,16 @@ class _Scales:
         return line
 
 
-def _limits(traces: Sequence[Trace]) -> Limits:
-    return axes.value_limits(
-        min(float(trace.values.min()) for trace in traces), max(float(trace.values.max()) for trace in traces)
-    )
+def _time_limits(end_s: float, grows: bool) -> Limits:
+    if grows:
+        return axes.growing_limits(end_s)
+    return 0.0, end_s if end_s > 0 else 1.0
+
+
+def _limits(traces: Sequence[Trace], zoomed: bool) -> Limits:
+    ends = [(trace.name, float(trace.values.min()), float(trace.values.max())) for trace in traces]
+    from_zero = not zoomed and any(begins_at_zero(*one) for one in ends)
+    return axes.value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
 
 
 def _color(trace: Trace) -> Style:
@@ -229,8 +248,8 @@ def _box_runs(text: str, trace: Trace, selected: bool, grey: bool) -> list[Run]:
     return [(text, color + Style(reverse=True) if selected else color)]
 
 
-def _values_at(drawn: list[Trace], cursor_s: float, unit: str, width: int) -> list[list[Run]]:
-    """Return the line that says what each trace is at the cursor, as many as there is room for."""
+def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> list[Run]:
+    """Return the line that says what each trace is at a time, as many as there is room for."""
     line: list[Run] = [(f"{cursor_s:.2f} {unit}", _STRONG)]
     used = len(line[0][0])
     for at, trace in enumerate(drawn):
@@ -243,7 +262,7 @@ def _values_at(drawn: list[Trace], cursor_s: float, unit: str, width: int) -> li
             break
         line += [("  ", _PLAIN), (f"{trace.name} ", _color(trace)), (text, _STRONG)]
         used += need
-    return [line]
+    return line
 
 
 def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
