@@ -43,7 +43,7 @@ _MOST = 1e150
 _LONG = 8
 """Labels with more characters than that are written with a power of ten."""
 
-_FIELD_PX = (round(FIELD_WIDTH_MM / MM_PER_PX), round(FIELD_HEIGHT_MM / MM_PER_PX))
+_FIELD_PX = (FIELD_WIDTH_MM // MM_PER_PX, FIELD_HEIGHT_MM // MM_PER_PX)
 
 Point = tuple[float, float]
 
@@ -141,7 +141,8 @@ def world_picture(
     import numpy as np
     from PIL import Image, ImageDraw
 
-    field = Image.fromarray(mat).resize(_FIELD_PX, Image.Resampling.BOX)
+    # What is left of the last column, when each pixel is three mm, is less than one.
+    field = Image.fromarray(mat).reduce(MM_PER_PX, box=(0, 0, _FIELD_PX[0] * MM_PER_PX, _FIELD_PX[1] * MM_PER_PX))
     draw = ImageDraw.Draw(field)
     for box in spec.world.obstacles:
         low = _at(box.x_mm, box.y_mm)
@@ -204,7 +205,7 @@ def chart_picture(samples: Iterable[Sample]) -> Image:
 
     traces: dict[str, list[Point]] = {}
     for sample in samples:
-        traces.setdefault(sample.name, []).append((sample.time_s, min(max(sample.value, -_MOST), _MOST)))
+        traces.setdefault(sample.name, []).append((sample.time_s, sample.value))
     picture = Image.new("RGB", CHART_SIZE, "white")
     draw = ImageDraw.Draw(picture)
     draw.font = ImageFont.load_default(_LETTERS_PX)
@@ -213,7 +214,7 @@ def chart_picture(samples: Iterable[Sample]) -> Image:
     if not traces:
         draw.text((_MARGIN_LEFT + 8, _MARGIN + 8), "no samples", fill="black")
         return picture
-    traces = {name: _thinned(trace) for name, trace in traces.items()}
+    traces = {name: _drawable(_thinned(trace)) for name, trace in traces.items()}
     points = [point for trace in traces.values() for point in trace]
     lows, highs = [min(axis) for axis in zip(*points, strict=True)], [max(axis) for axis in zip(*points, strict=True)]
     frame = _ChartFrame.around((lows[0], highs[0]), (lows[1], highs[1]))
@@ -279,6 +280,10 @@ def _thinned(trace: list[Point]) -> list[Point]:
         stretch = sorted(trace[at : at + step], key=itemgetter(1))
         kept += sorted((stretch[0], stretch[-1]))
     return [*kept, trace[-1]]
+
+
+def _drawable(trace: list[Point]) -> list[Point]:
+    return [(x, min(max(y, -_MOST), _MOST)) for x, y in trace]
 
 
 def _draw_traces(draw: ImageDraw, traces: Mapping[str, list[Point]], frame: _ChartFrame) -> None:

@@ -17,12 +17,14 @@ def test_displays_are_drawn_anew_in_their_places_until_the_end(kernel: Kernel) -
     parent = kernel.begin(DRIVE)
     drawn: dict[str, list[str]] = {}
     kinds: list[str] = []
+    pictures: list[str] = []
     while True:
         message = kernel.message(parent, lambda _: True)
         content = message["content"]
         if "display_data" in message["msg_type"]:
             kinds.append(message["msg_type"])
             drawn.setdefault(content["transient"]["display_id"], []).append(content["data"]["text/plain"])
+            pictures += [content["data"]["image/png"]] if "image/png" in content["data"] else []
         if content.get("execution_state") == "idle":
             break
     # World, positioning and the line about the run, each once; then each of them again and again.
@@ -33,5 +35,7 @@ def test_displays_are_drawn_anew_in_their_places_until_the_end(kernel: Kernel) -
     xs = [float(re.findall(r"x +([\d.]+) mm", place)[0]) for place in places]
     assert xs == sorted(xs)
     assert xs[0] < xs[len(xs) // 2] < xs[-1]
+    # The robot moves in the picture while it moves in the world.
+    assert len(set(pictures)) > 3
     assert all(line.startswith("running · ") for line in status[:-1])
     assert status[-1] == "finished · 2.000 s · 0 samples"
