@@ -42,11 +42,13 @@ def test_installed_copy_runs_its_own_programs(installed: Path, tmp_path: Path) -
     assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "color_name: White"), done.stderr
 
 
-def test_wheel_holds_every_mat_program_and_style(installed: Path) -> None:
+def test_wheel_holds_every_mat_program_style_and_module(installed: Path) -> None:
     for folder, pattern in (("backgrounds", "*.png"), ("backgrounds", "*.toml"), ("programs", "*.py")):
         wanted = {path.name for path in (ROOT / folder).glob(pattern)}
         assert wanted == {path.name for path in (installed / "tuisim" / "_assets" / folder).glob(pattern)}
-    wanted = {str(path.relative_to(ROOT)) for path in (ROOT / "tuisim").rglob("*.tcss")}
-    assert wanted == {str(path.relative_to(installed)) for path in (installed / "tuisim").rglob("*.tcss")}
+    for pattern in ("*.tcss", "*.py"):
+        wanted = {str(path.relative_to(ROOT)) for path in (ROOT / "tuisim").rglob(pattern)}
+        found = {path.relative_to(installed) for path in (installed / "tuisim").rglob(pattern)}
+        assert wanted == {str(path) for path in found if "_assets" not in path.parts}
     (wheel,) = installed.parent.glob("*.whl")
     assert not [name for name in zipfile.ZipFile(wheel).namelist() if "__pycache__" in name]
