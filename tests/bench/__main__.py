@@ -20,6 +20,7 @@ from tests.bench.speed import LOADS, speeds
 from tests.bench.starts import first_line, first_paint, help_text, imports
 from tests.bench.stops import stop_latency
 from tests.bench.variables import variables
+from tests.bench.wire import wire
 from tuisim.host import RunOptions
 
 BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
@@ -37,6 +38,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "recording": recording,
     "variables": variables,
     "logs": logs,
+    "wire": wire,
 }
 """Every bench by name."""
 

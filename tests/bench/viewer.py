@@ -8,18 +8,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-import pyte
-
 from tests.bench.processes import cpu_s
-from tests.bench.terminal import COLUMNS, ROWS, Terminal
+from tests.bench.screen import Screen
+from tests.bench.terminal import Terminal
 
 QUIET_S = 0.08
 """So long after the last output the answer to a key is on the screen."""
 _CALM_S, _CALM_SHARE = 0.5, 0.05
 """A program that uses no more than this part of a core for so long has nothing left to do."""
 _PATIENCE_S = 120.0
-_UNKNOWN = re.compile(rb"\x1b\[[<>=?][0-9;]*[a-zA-Z]|\x1b\[[?>]?[0-9;]*\$p|\x1bP[^\x1b]*\x1b\\|\x1b_[^\x1b]*\x1b\\")
-"""Sequences that ask for abilities of a terminal; the screen in memory has none of them."""
 
 
 class Viewer:
@@ -31,9 +28,7 @@ class Viewer:
 
     def __init__(self, command: Sequence[str]) -> None:
         self._terminal = Terminal(command[1:], command[:1])
-        self._screen = pyte.Screen(COLUMNS, ROWS)
-        self._stream = pyte.ByteStream(self._screen)
-        self._fed = 0
+        self._screen = Screen(self._terminal)
 
     def __enter__(self) -> Self:
         return self
@@ -45,12 +40,7 @@ class Viewer:
 
     def text(self) -> str:
         """Return what is on the screen."""
-        # What may be but the beginning of a sequence waits for its end.
-        seen = bytes(self._terminal.seen[self._fed :])
-        whole = len(seen) if b"\x1b" not in seen[-40:] else seen.rfind(b"\x1b")
-        self._stream.feed(_UNKNOWN.sub(b"", seen[:whole]))
-        self._fed += whole
-        return "\n".join(self._screen.display)
+        return self._screen.text()
 
     def cpu_s(self) -> float:
         """Return the CPU seconds used since its start, by all its threads."""
@@ -63,7 +53,7 @@ class Viewer:
         def there() -> bool:
             nonlocal used
             used = self.cpu_s()
-            return re.search(text, self.text()) is not None
+            return self._screen.has(text)
 
         self._terminal.read_until(there, _PATIENCE_S)
         return used

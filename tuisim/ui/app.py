@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
@@ -11,6 +12,7 @@ from textual import constants, events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.command import Provider
+from textual.timer import Timer
 from textual.widget import Widget
 
 from tuisim.errors import TuisimError
@@ -39,12 +41,17 @@ from tuisim.ui.watch import PERIOD_S
 from tuisim.ui.wishes import Wishes
 
 if TYPE_CHECKING:
+    from tuisim.core.field import Field
     from tuisim.ui.panels.output import Output
     from tuisim.ui.render.mat import Pixels
 
 AFTER_FIRST_PAINT_S = 0.05
 """The screen is painted more than once at the start; what is large is sent after that."""
 _CURSOR_QUERY = "\x1b[6n"
+_REST_GAP_S = 0.25
+"""Between two looks at what the run has written while nothing happens."""
+_AWAKE_S = 1.0
+"""So long it is looked at as often as there are frames after something has happened."""
 
 
 def _palette() -> type[Provider]:
@@ -86,6 +93,8 @@ class Lab(Wishes):
         self.debugging = Debugging(self)
         self.brick_hint = BrickHint(self)
         self._run_when_ready = settings.autorun and settings.replay is None
+        self._beats: Timer | None = None
+        self._awake_until_s = 0.0
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
 
@@ -115,7 +124,8 @@ class Lab(Wishes):
             self.loading.begin()
         # Breaks hold, and are kept, whether or not a panel shows the program.
         self.debugging.program_changed(self.bridge.program)
-        self.set_interval(1 / self.settings.fps, self._beat)
+        self._beats = self.set_interval(1 / self.settings.fps, self._beat)
+        self.set_interval(_REST_GAP_S, self._beat)
         self.set_interval(PERIOD_S, self.loading.look)
 
     def on_unmount(self) -> None:
@@ -183,16 +193,33 @@ class Lab(Wishes):
     def _beat(self) -> None:
         """Take what the run has written, and show a frame if the terminal has shown the last one."""
         try:
-            self._take(self.bridge.poll())
+            news = self.bridge.poll()
+            self._take(news)
             travel.beat(self)
             self.debugging.beat()
-            if self.pacer.ready():
-                self.draw()
+            # A frame that has to wait is as good as drawn.
+            if news or self.debugging.busy or not self.pacer.ready() or self.draw():
+                self._wake()
         except TuisimError as error:
             # What cannot be read now cannot be read at the next beat either.
             self.bridge.close()
             self.complain(error)
             self.situation_changed()
+
+        if self._beats is not None and time.monotonic() > self._awake_until_s:
+            self._beats.pause()
+
+    def _wake(self) -> None:
+        """Look often at what the run has written: something has happened."""
+        self._awake_until_s = time.monotonic() + _AWAKE_S
+        if self._beats is not None:
+            self._beats.resume()
+
+    async def on_event(self, event: events.Event) -> None:
+        """Be awake while the user does something."""
+        if isinstance(event, events.InputEvent):
+            self._wake()
+        await super().on_event(event)
 
     def _take(self, news: News) -> None:
         for sound in news.spoken:
@@ -248,23 +275,24 @@ class Lab(Wishes):
 
     # The picture
 
-    def draw(self, force: bool = False) -> None:
-        """Show the newest moment in every panel, if it is not what they show already."""
+    def draw(self, force: bool = False) -> bool:
+        """Show the newest moment in every panel; whether it was not what they show already."""
         snapshot = self.bridge.snapshot()
         now = (
             (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
             (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
             (snapshot.face, snapshot.pressed),
         )
-        if now == self._drawn and not force and not (self.feed and self.feed.is_behind):
-            return
+        is_behind = self.feed is not None and self.feed.is_behind and self._charted_field() is not None
+        if now == self._drawn and not force and not is_behind:
+            return False
         self._drawn = now
         self._feed_panels()
         self.lookback.show()
         self.desk.show(snapshot)
         show_footer(self, snapshot)
-        if self.pacer.drawn():
-            self.call_after_refresh(self._ask_terminal)
+        self.pacer.drawn()
+        return True
 
     def _feed_panels(self) -> None:
         if self.feed is None:
@@ -273,13 +301,19 @@ class Lab(Wishes):
             xs, ys = self.feed.trace_points()
             if xs:
                 world.extend_trace(xs, ys, self.feed.recording.spec.robot.pen)
-        mat = self.bridge.mat
-        if self.desk.shown("chart") and mat and mat.field and mat.serves(self.feed.recording.spec):
-            self._append(self.feed.chart_series(mat.field))
+        if field := self._charted_field():
+            self._append(self.feed.chart_series(field))
 
-    def _ask_terminal(self) -> None:
-        # The answer arrives as a CursorPosition event once the frame has been worked through.
-        if self._driver is not None:
+    def _charted_field(self) -> Field | None:
+        """The mat that the chart's readings are taken from; None where there is nothing to draw them with, or in."""
+        mat = self.bridge.mat
+        if self.feed is None or mat is None or not self.desk.shown("chart"):
+            return None
+        return mat.field if mat.serves(self.feed.recording.spec) else None
+
+    def painted(self, size: int) -> None:
+        """Ask the terminal to tell when it has shown what it was sent; that comes as a `CursorPosition` event."""
+        if self.pacer.painted(size) and self._driver is not None:
             self._driver.write(_CURSOR_QUERY)
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
@@ -288,6 +322,7 @@ class Lab(Wishes):
 
     def situation_changed(self) -> None:
         """Bring the footer up to date."""
+        self._wake()
         show_footer(self, self.bridge.snapshot())
 
     # Panels

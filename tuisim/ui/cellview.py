@@ -15,7 +15,7 @@ from tuisim.ui.render.cells import Cells, changed_runs, to_cells
 from tuisim.ui.render.kinds import Run
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.palette import TRUECOLOR, ColorMode, reduce_pixels
-from tuisim.ui.strips import CellStrip, TextStrip, color_depth
+from tuisim.ui.strips import CellStrip, color_depth
 
 _TEXT_GAP = 8
 """Unchanged characters that cost less than a new cursor position and style."""
@@ -149,7 +149,7 @@ class LinesView(RowsView):
         # What bypasses Textual's cache of styles has to apply its filters itself.
         for line_filter in self.app.get_line_filters():
             segments = line_filter.apply(segments, self.background_colors[1])
-        return TextStrip(segments, self.size.width)
+        return Strip(segments, self.size.width)
 
 
 def _cut(strips: list[Strip], crop: Region, width: int, style: Style) -> list[Strip]:

@@ -1,4 +1,4 @@
-"""How the apps stop, go on and end: in order, whoever makes them and whatever they are doing."""
+"""What the apps have in common: they stop, go on and end in order, and send the terminal only what it lacks."""
 
 from __future__ import annotations
 
@@ -6,15 +6,19 @@ import asyncio
 import signal
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
-from textual import on
+from rich.console import Console, ConsoleRenderable, RichCast
+from textual import events, on
+from textual._compositor import CompositorUpdate
 from textual.app import App
 from textual.css.query import NoMatches
 from textual.driver import Driver
 from textual.filter import LineFilter
+from textual.screen import Screen
 
 from tuisim.ui.driver import TerminalDriver
+from tuisim.ui.framebuffer import FrameBuffer
 from tuisim.ui.harmless import Harmless
 
 _HARMLESS = Harmless()
@@ -31,6 +35,36 @@ class TerminalApp(App[None]):
 
     def __init__(self) -> None:
         super().__init__(driver_class=TerminalDriver)
+        self.frame_buffer = FrameBuffer()
+
+    def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
+        # Textual writes what it is given; where it would write nothing, the terminal does not come to show it either.
+        update: object = renderable
+        codes: str | None = None
+        if isinstance(update, CompositorUpdate) and self._writes:
+            codes = self.frame_buffer.codes(update, self.console)
+            if codes is not None:
+                renderable = cast(ConsoleRenderable, _Codes(codes)) if codes else None
+        super()._display(screen, renderable)
+        if codes:
+            self.painted(len(codes))
+
+    def painted(self, size: int) -> None:
+        """Be told that the terminal was sent what it did not show, so many characters."""
+
+    @property
+    def _writes(self) -> bool:
+        return self._running and not (self._closed or self._batch_count or self.is_headless or self._driver is None)
+
+    @on(events.DescendantFocus)
+    def still_cursor(self, event: events.DescendantFocus) -> None:
+        """Let no cursor blink: where nothing happens nothing is sent."""
+        if hasattr(event.widget, "cursor_blink"):
+            event.widget.cursor_blink = False
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Send everything again: a terminal of another size has cut or moved what it showed."""
+        self.frame_buffer.forget()
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return what all that is drawn goes through."""
@@ -48,9 +82,21 @@ class TerminalApp(App[None]):
     @on(Driver.SignalResume)
     def draw_again(self) -> None:
         """Draw all of the screen: while the app was stopped the shell has written over it."""
+        self.frame_buffer.forget()
         self.refresh(layout=True)
 
     def _handle_exception(self, error: Exception) -> None:
         # A screen that was being opened when the app was told to end is taken down half built.
         if not (is_leaving(self) and isinstance(error, NoMatches)):
             super()._handle_exception(error)
+
+
+class _Codes(CompositorUpdate):
+    """An update that has been turned into codes."""
+
+    def __init__(self, codes: str) -> None:
+        self._codes = codes
+
+    def render_segments(self, console: Console) -> str:
+        """Return the codes."""
+        return self._codes

@@ -29,3 +29,7 @@ class News:
     """Set once, when a branch has come to its instant, or has ended before."""
     held: tuple[protocol.Message, ...] = ()
     """That the program stands still or goes on, and what it looks like."""
+
+    def __bool__(self) -> bool:
+        """Whether anything has come; that the program still waits for an answer is nothing new."""
+        return bool(self.rows or self.ended or self.spoken or self.branched or self.held)

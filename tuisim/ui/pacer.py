@@ -1,8 +1,9 @@
 """Frame pacing: no new frame while the terminal has not yet shown an older one.
 
-After each frame the terminal is asked for its cursor position; the answer comes when
-it has worked through all that was written before. So a slow link shows fewer frames,
-never old ones. A link with a long round trip may have several frames on the way.
+After a frame the terminal is asked for its cursor position; the answer comes when it has worked through all that was
+written before. So a slow line shows fewer frames, never old ones. A line with a long round trip may have several
+frames on the way. A terminal that answers late is waited for; one that has never answered is drawn for all the same,
+seldom at first, and is waited for as soon as it does answer.
 """
 
 from __future__ import annotations
@@ -11,11 +12,22 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-TIMEOUT_S = 1.0
-"""After this long an answer is given up."""
-MAX_MISSED = 3
-"""After so many lost answers in a row the terminal is taken not to answer at all."""
+PATIENCE_S = 1.0
+"""An answer takes no longer than this, besides the time for what is on the way before it."""
+SLOWEST_BYTES_S = 4_000.0
+"""No line is slower."""
+PROOF_S = 10.0
+"""A terminal that has not answered so long, besides the time for the first paint, is taken to answer never."""
+UNPROVEN_GAP_S = 0.5
+"""Between two frames while it is not known whether the terminal answers at all."""
 MAX_ON_THE_WAY = 3
+_REMEMBERED = 8
+"""Questions without an answer that are kept in mind."""
+FULL_BYTES = 3_000
+"""While more than this is on the way there is no further frame, however long the way: a quarter of a second of a line
+of 128 kbit/s."""
+LARGE_BYTES = 1_500
+"""So much is asked about even if it is no frame, such as a dialog."""
 
 
 class Pacer:
@@ -31,36 +43,67 @@ class Pacer:
         self._gap_s = 1.0 / fps
         self.asks = asks
         self._clock = clock
-        self._sent_at: deque[float] = deque()
+        self._asked: deque[tuple[float, int]] = deque(maxlen=_REMEMBERED)
+        """When each question was sent that has not been answered yet, and the bytes since the one before."""
+        self._heard_s = 0.0
+        """When there was last an answer, or nothing to wait for."""
+        self._proof_s: float | None = None
+        """When a terminal that has not answered by then is taken to answer never."""
+        self._loose_bytes = 0
+        """What was sent since the last question."""
+        self._frame_is_new = False
         self._last_s = -1.0
         self._round_trip_s = 0.0
-        self._missed = 0
+        self._allowed = 1
+        self.answers = False
+        """Whether the terminal has ever answered."""
 
     def ready(self) -> bool:
         """Whether a frame may be drawn now."""
         now = self._clock()
-        while self._sent_at and now - self._sent_at[0] > TIMEOUT_S:
-            self._sent_at.popleft()
-            self._missed += 1
-            if self._missed >= MAX_MISSED:
-                self.asks = False
-                self._sent_at.clear()
-        # The quickest answer of late is the way there and back; what is longer is a backlog.
-        allowed = min(MAX_ON_THE_WAY, 1 + int(self._round_trip_s / self._gap_s))
         # A tenth of a gap of grace, or a timer that is a little early would halve the rate.
-        return len(self._sent_at) < allowed and now - self._last_s >= 0.9 * self._gap_s
+        if now - self._last_s < 0.9 * self._gap_s:
+            return False
+        if not self._asked:
+            return True
+        if not self.answers:
+            return now - self._last_s >= UNPROVEN_GAP_S or (self._proof_s is not None and now >= self._proof_s)
+        way_bytes = sum(size for _, size in self._asked)
+        if now - self._heard_s >= PATIENCE_S + way_bytes / SLOWEST_BYTES_S:
+            # One that has answered before has lost a question: there is no use in waiting for all of them.
+            self._asked.clear()
+        return not self._asked or (len(self._asked) < self._allowed and way_bytes < FULL_BYTES)
 
-    def drawn(self) -> bool:
-        """Note that a frame was drawn; whether the terminal is to be asked now."""
+    def drawn(self) -> None:
+        """Note that a frame was drawn; it is on its way once it has been painted."""
         self._last_s = self._clock()
-        if self.asks:
-            self._sent_at.append(self._last_s)
-        return self.asks
+        self._frame_is_new = True
+
+    def painted(self, size: int) -> bool:
+        """Note that so many bytes were sent; whether the terminal is to be asked now when it has shown them."""
+        self._loose_bytes += size
+        if not self.asks or not (self._frame_is_new or self._loose_bytes >= LARGE_BYTES):
+            return False
+        self._frame_is_new = False
+        now = self._clock()
+        if not self._asked:
+            self._heard_s = now
+        if self._proof_s is None:
+            self._proof_s = now + PROOF_S + self._loose_bytes / SLOWEST_BYTES_S
+        self._asked.append((now, self._loose_bytes))
+        self._loose_bytes = 0
+        return True
 
     def answered(self) -> None:
         """Note an answer of the terminal."""
-        self._missed = 0
-        if self._sent_at:
-            took_s = self._clock() - self._sent_at.popleft()
-            # Falls at once, rises slowly: a backlog must not pass for a long way.
-            self._round_trip_s = min(took_s, self._round_trip_s + 0.004)
+        self._heard_s = self._clock()
+        first, self.answers = not self.answers, True
+        if not self._asked:
+            return
+        took_s = self._heard_s - self._asked.popleft()[0]
+        # Falls at once, rises slowly: a backlog must not pass for a long way.
+        self._round_trip_s = took_s if first else min(took_s, self._round_trip_s + 0.001)
+        if took_s > self._round_trip_s + 2 * self._gap_s:
+            self._allowed = 1
+        else:
+            self._allowed = min(self._allowed + 1, MAX_ON_THE_WAY, 1 + int(self._round_trip_s / self._gap_s))

@@ -24,7 +24,6 @@ from tuisim.ui.render.pentrace import PenTrace
 from tuisim.ui.render.scene import ScenePainter, SceneState
 from tuisim.ui.render.viewport import ZOOMS, Viewport, following
 from tuisim.ui.snapshot import Snapshot
-from tuisim.ui.strips import use_exact_crops
 
 TURN_STEP_DEG = 5.0
 """How far one notch of the mouse wheel turns the robot."""
@@ -188,10 +187,6 @@ class WorldView(PixelView):
         self._grip: _Grip | None = None
         self._held: Pose | None = None
         self._held_shows = 0
-
-    def on_mount(self) -> None:
-        """See to it that only changed cells are sent."""
-        use_exact_crops()
 
     def on_resize(self) -> None:
         """Draw for the new size."""
