@@ -7,9 +7,21 @@ import pytest
 from tuisim.assets import backgrounds
 from tuisim.config import OBSTACLES, ROBOTS, build_run_spec
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import Obstacle, RobotSpec, from_plain, to_plain
+from tuisim.core.solid import reach_mm
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec, from_plain, to_plain
 from tuisim.errors import BackgroundError, ConfigError, ObstacleError, ProfileError, RobotError
 from tuisim.switches import Settings, parse_words, settings_of
+
+
+@pytest.mark.parametrize("name", backgrounds())
+def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
+    spec = build_run_spec(Settings(background=name, profile="ev3"))
+    reach, start, mat = reach_mm(spec.robot), spec.world.start, backgrounds()[name].start
+    assert reach <= start.x_mm <= FIELD_WIDTH_MM - reach
+    assert reach <= start.y_mm <= FIELD_HEIGHT_MM - reach
+    assert start.heading_deg == mat.heading_deg
+    assert build_run_spec(Settings(background=name)).world.start == mat
+    assert build_run_spec(Settings(background=name, profile="ev3", x_mm=90.0)).world.start.x_mm == 90.0
 
 
 def test_default_robot_is_the_default_of_the_specification() -> None:

@@ -25,6 +25,8 @@ EXAMPLES: dict[str, dict[str, object]] = {
     "until_black.py": {"background": "Grey_bands", "samples": 530},
 }
 """What is known of each run beside that it finishes."""
+AWAY_FROM_THE_WALL: dict[str, dict[str, object]] = {"until_black.py": {"samples": 527}}
+"""What is else under `ev3`, where walls are solid and the robot starts with room to turn."""
 
 
 def test_every_example_is_in_the_table() -> None:
@@ -48,7 +50,8 @@ def test_example_finishes(name: str, profile: str, here: Command) -> None:
     done = here("run", name, "--json", "--profile", profile, "--timeout", 100)
     facts: dict[str, Any] = json.loads(done.stdout)
     assert (done.returncode, facts["state"], facts["profile"]) == (0, "finished", profile)
-    assert facts.items() >= EXAMPLES[name].items()
+    other = AWAY_FROM_THE_WALL.get(name, {}) if profile == "ev3" else {}
+    assert facts.items() >= {**EXAMPLES[name], **other}.items()
 
 
 @pytest.mark.parametrize(

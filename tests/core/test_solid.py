@@ -63,6 +63,15 @@ def test_a_thin_post_is_not_passed_at_full_speed() -> None:
     assert sim.x_mm + 45 == pytest.approx(1000.0, abs=0.001)
 
 
+@pytest.mark.parametrize("left_dps", [-300.0, 0.0], ids=["on the spot", "round one wheel"])
+@pytest.mark.parametrize("x_mm", [121.0, 140.0], ids=["at the wall", "near it"])
+def test_a_turn_pushes_the_robot_away_from_a_wall(left_dps: float, x_mm: float) -> None:
+    sim = simulation(WorldSpec(start=Pose(x_mm, 571.0, 0.0), solid=True), profile="ev3")
+    assert drive(sim, [("forever", left_dps, 300.0, 400)]) <= ALLOWED_MM
+    assert sim.heading_deg > 90.0
+    assert sim.left.blocked_ticks == 0
+
+
 def test_without_solid_the_robot_drives_through() -> None:
     sim = simulation(WorldSpec(start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 500.0, 100.0, 100.0),)))
     for motor in (sim.left, sim.right):

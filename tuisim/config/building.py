@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import replace
 from typing import Any
@@ -13,7 +14,8 @@ from tuisim.config.reading import told_as
 from tuisim.config.robots import choose_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ProfileSpec
-from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.solid import reach_mm
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
 from tuisim.switches import RobotChoice, Settings
 
 
@@ -32,9 +34,24 @@ def mat_name(word: str) -> str:
     return word if word in backgrounds() else os.path.abspath(os.path.expanduser(word))
 
 
-def _start(settings: Settings, mat: Background) -> Pose:
+def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
+    """Return the mat's start pose with what the settings say; away from solid walls, so that the robot can turn."""
+    start = mat.start
+    if walled:
+        margin_mm = reach_mm(robot)
+        start = replace(
+            start,
+            x_mm=_inside(start.x_mm, margin_mm, FIELD_WIDTH_MM),
+            y_mm=_inside(start.y_mm, margin_mm, FIELD_HEIGHT_MM),
+        )
     chosen = {"x_mm": settings.x_mm, "y_mm": settings.y_mm, "heading_deg": settings.heading_deg}
-    return replace(mat.start, **{key: value for key, value in chosen.items() if value is not None})
+    return replace(start, **{key: value for key, value in chosen.items() if value is not None})
+
+
+def _inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
+    """Return the place that has a margin to both ends of a side of the field, in whole mm; its middle if none has."""
+    least, most = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
+    return min(max(at_mm, least), most) if least <= most else size_mm / 2
 
 
 def _with_pen(robot: RobotSpec, settings: Settings) -> RobotSpec:
@@ -70,17 +87,19 @@ def build_run_spec(settings: Settings) -> RunSpec:
     chosen = settings.robot
     choice = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
     profile = _profile(settings)
+    solid = profile.solid if settings.solid is None else settings.solid
+    robot = _with_pen(robot_on_mat(choice, mat), settings)
     motor = settings.motor_noise if settings.motor_noise is not None else choice.motor_noise or 0
     return RunSpec(
-        robot=_with_pen(robot_on_mat(choice, mat), settings),
+        robot=robot,
         world=WorldSpec(
             background=mat_name(settings.background),
             obstacles=_obstacles(settings, mat),
             walls=settings.walls,
-            solid=profile.solid if settings.solid is None else settings.solid,
+            solid=solid,
             background_fit=settings.background_fit,
             pen_marks=settings.pen_marks,
-            start=_start(settings, mat),
+            start=_start(settings, mat, robot, walled=solid and settings.walls),
             noise=NoiseSpec(light=settings.light_noise, motor=motor),
             beacon=settings.beacon,
             remote=settings.remote,

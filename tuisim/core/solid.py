@@ -6,7 +6,8 @@ thing by more than `TOUCH_MM`.
 
 A robot may be put where it overlaps a thing. From there it never gets deeper into that thing:
 straight on or back it drives only away from it, and a turn pushes it aside by as much as the
-turn would lead it deeper.
+turn would lead it deeper. A turn on the spot or round one wheel also pushes a robot aside that meets a
+thing on the way, as its corner slides along it.
 """
 
 from __future__ import annotations
@@ -88,6 +89,11 @@ def outline(robot: RobotSpec) -> tuple[tuple[float, float], ...]:
     return (-side, back), (side, back), (side, front), (-side, front)
 
 
+def reach_mm(robot: RobotSpec) -> float:
+    """Return how far the body reaches from the middle of the axle, about which it turns."""
+    return max(math.hypot(x, y) for x, y in outline(robot))
+
+
 class Solids:
     """The solid things of a world, for one robot.
 
@@ -106,7 +112,9 @@ class Solids:
         self._boxes: list[Box] = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
         self._half_width, front, back = half_width_mm(robot), front_mm(robot), robot.back_mm
         self._middle, self._half_length = (front + back) / 2, (front - back) / 2
-        self.reach_mm = max(math.hypot(x, y) for x, y in outline(robot))
+        self._turns_mm = robot.wheel_spacing_mm / 2 * (1.0 + 1e-9)
+        """A motion whose way is at most this times its turn in radians is a turn: no two wheels push the same way."""
+        self.reach_mm = reach_mm(robot)
         """How far the body reaches from the middle of the axle."""
         self._near: list[Box] = []
         self._near_at = (math.inf, math.inf)
@@ -176,7 +184,12 @@ class Solids:
         def meets(part: float) -> bool:
             return any(gap < floor for gap, floor in zip(self._gaps(moved(part), boxes), floors, strict=True))
 
-        return Leeway(_free_part(meets, way_mm), (0.0, 0.0))
+        part = _free_part(meets, way_mm)
+        if part < 1.0 and abs(forward_mm) <= abs(math.radians(turn_deg)) * self._turns_mm:
+            pushed = self._pushed_aside(moved(1.0), boxes, floors)
+            if pushed.part:
+                return pushed
+        return Leeway(part, (0.0, 0.0))
 
     def _pushed_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
         """Push a body aside until it is as far from each thing as `floors` tell, or let it not move at all."""

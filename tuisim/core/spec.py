@@ -233,7 +233,9 @@ class RobotSpec:
             require_one_of(sensor.port, "port", INPUT_PORTS, f"{sensor.name}.port")
             if sensor.port in used:
                 raise RobotError(
-                    f"two sensors are on {sensor.port}", "give each its own port", key=f"{sensor.name}.port"
+                    f"two sensors are on {sensor.port}",
+                    "give each its own port, or take one away, such as `ultrasonic = false`",
+                    key=f"{sensor.name}.port",
                 )
             used.add(sensor.port)
         names = [sensor.name for sensor in self.color_sensors]
