@@ -41,8 +41,8 @@ MISUSES = {
         "AssertionError: grid columns must be between 0 and 21, 22 was requested",
     ),
     "unknown font": (
-        "from ev3dev2.display import Display; Display().text_pixels('x', font='luBS14')",
-        "AssertionError: luBS14 is an invalid font",
+        "from ev3dev2.display import Display; Display().text_pixels('x', font='luBS15')",
+        "AssertionError: luBS15 is an invalid font",
     ),
     "font not loaded": ("from ev3dev2 import fonts; fonts.load('x')", 'Exception: Failed to load font "x". Check'),
     "picture not there": (

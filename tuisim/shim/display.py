@@ -9,6 +9,7 @@ from typing import Any
 
 from tuisim.datalog.face import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
 from tuisim.datalog.records import DISPLAY
+from tuisim.shim.fonts import plain_font
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
 
@@ -95,11 +96,7 @@ def patch_display_module(session: Session, module: types.ModuleType, screen: Scr
 
 
 def _use_the_bricks_font(display: Any) -> None:
-    """Write text without a named font as the Pillow on the brick does, whatever Pillow this is."""
-    from PIL import ImageFont
-
-    # Newer ones draw a smooth font, whose grey edges a black and white display tears apart.
-    plain_font = getattr(ImageFont, "load_default_imagefont", ImageFont.load_default)
+    """Write text without a named font as the Pillow on the brick does."""
     make = display.Display.__init__
 
     @wraps(make)

@@ -11,6 +11,7 @@ from tuisim.shim.building import build_brick
 from tuisim.shim.buttons import evdev_module, patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
 from tuisim.shim.display import patch_display_module
+from tuisim.shim.fonts import patch_fonts_module
 from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.overlay import glue_module, patch_lego_module
@@ -79,6 +80,7 @@ def install(session: Session, more_finishers: Mapping[str, Finish], replace: Rep
         "ev3dev2.button": lambda module: patch_button_module(session, module),
         "ev3dev2.console": lambda module: patch_console_module(module, terminal),
         "ev3dev2.display": lambda module: patch_display_module(session, module, screen),
+        "ev3dev2.fonts": patch_fonts_module,
         "ev3dev2.led": lambda module: patch_led_module(session, module, brick),
         "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
