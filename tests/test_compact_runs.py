@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +12,7 @@ import pytest
 
 from tests.running import Start, over, until_tick
 from tuisim.cli import run_command
+from tuisim.datalog import packer
 from tuisim.datalog.compact import PACKED_SUFFIX
 from tuisim.datalog.records import TELEMETRY_FILE
 from tuisim.datalog.store import RunStore, compact_run
@@ -32,9 +32,8 @@ def packed(folder: Path) -> bool:
 
 def settle() -> None:
     """Wait until nothing is packed any more."""
-    for thread in threading.enumerate():
-        if thread.name.startswith("compact "):
-            thread.join()
+    for waiting in packer.AT_WORK:
+        waiting.join()
 
 
 def test_a_long_run_is_packed_when_it_is_over(start: Start) -> None:

@@ -160,4 +160,4 @@ def simulate(
         handle.wait()
     finally:
         handle.close()
-    return SimulatedRun(store.load_run(handle.run_id))
+    return SimulatedRun(handle.stored())

@@ -11,17 +11,19 @@ import select
 import signal
 import subprocess
 import time
-from dataclasses import asdict, dataclass
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from tuisim import assets
 from tuisim.breaks import parse_breaks
 from tuisim.child import await_stack, start_child, stuck_line, what_ended, write_command
 from tuisim.core.spec import RunSpec
+from tuisim.datalog.runfile import RunEnd, StoredRun, end_document
 from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView
 from tuisim.decoding import decode_event
-from tuisim.errors import HostError
+from tuisim.errors import HostError, LogError
 from tuisim.fields import FieldFiles, prepare
 from tuisim.protocol import (
     PROTOCOL_VERSION,
@@ -122,7 +124,14 @@ class RunHandle:
         self._stack_asked = False
         self._announced: Ended | None = None
         self._announced_at = 0.0
-        self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(run.folder)
+        self.unstored = ""
+        """Why the end of the run is not on record, empty if it is."""
+        try:
+            self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(run.folder)
+        except OSError as error:
+            self._store.forget(run.id)
+            what = error.strerror or str(error)
+            raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
 
     # Events
 
@@ -213,9 +222,27 @@ class RunHandle:
             os.close(fd)
         for name in ("child.log", "stack.txt"):
             path = self.folder / name
-            if path.exists() and not path.stat().st_size:
-                path.unlink()
-        self._store.finish(self.run_id, final)
+            # Somebody may be deleting the folder.
+            with suppress(OSError):
+                if not path.stat().st_size:
+                    path.unlink()
+        try:
+            self._store.finish(self.run_id, final)
+        except LogError as error:
+            self.unstored = str(error) if self.folder.is_dir() else "its folder was deleted while it ran"
+            summary = f"{final.summary}; its end" if final.summary else "its end"
+            self.ended = replace(final, summary=f"{summary} cannot be stored: {self.unstored}")
+
+    def stored(self) -> StoredRun:
+        """Return the run as it is in the store; with its end, also where that could not be written.
+
+        Raises:
+            LogError: it is not there any more, or damaged.
+        """
+        run = self._store.load_run(self.folder)
+        if run.end is None and self.ended is not None:
+            return replace(run, end=RunEnd(**end_document(self.ended)))
+        return run
 
     def wait(self, timeout_s: float | None = None) -> Ended | None:
         """Wait until the run is over.
@@ -290,6 +317,9 @@ class RunHandle:
         now = time.monotonic()
         if self._announced is not None:
             return
+        if self._stop_at is None and not self.folder.is_dir():
+            # Deleted while it runs: whatever it does now nobody will ever see.
+            self.stop()
         if self._stop_at is not None:
             if now - self._stop_at > STUCK_AFTER_S:
                 self._read_stack_and_kill()

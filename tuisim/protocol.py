@@ -338,7 +338,7 @@ class ReplyWanted(Message):
 class Ended(Message):
     """The last event of a run.
 
-    `end` is one of finished, raised, stopped, time_limit, stalled, deadlock, output_limit.
+    `end` is one of finished, raised, stopped, time_limit, stalled, deadlock, output_limit, disk_full.
     `error` is the program's own traceback text, `error_line` its last line in the program,
     `summary` the one line that says what happened.
     """

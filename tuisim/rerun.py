@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tuisim.datalog.runfile import StoredRun
     from tuisim.datalog.store import RunStore
 
-CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled"})
+CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled", "disk_full"})
 """Ends that did not come out of the program and its limits: such a run is a piece of the one that is run again."""
 
 

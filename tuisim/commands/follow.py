@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from itertools import groupby
 from types import FrameType
-from typing import TextIO
+from typing import Self, TextIO
 
 from tuisim.commands.echo import echo_error
 from tuisim.commands.outcome import EXIT_BROKEN_PIPE
@@ -18,6 +17,42 @@ from tuisim.protocol import Ended, Message
 
 POLL_S = 0.05
 """How long a printed line may wait before it is passed on."""
+
+
+class Interrupts:
+    """Ctrl-C and SIGTERM, from the start of the first run until all is written that was asked for.
+
+    The first one stops the run at hand, and no further one is begun; what has been logged is exported all the same.
+    A second one ends the command at once.
+    """
+
+    def __init__(self) -> None:
+        self.exit_code = 0
+        """As a shell shows a program that the signal has ended; 0 while there was none."""
+        self._handle: RunHandle | None = None
+
+    def __enter__(self) -> Self:
+        self._before = {number: signal.signal(number, self._take) for number in (signal.SIGINT, signal.SIGTERM)}
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def watch(self, handle: RunHandle) -> None:
+        """Take a run as the one at hand."""
+        self._handle = handle
+        if self.exit_code:
+            handle.stop()
+
+    def _take(self, number: int, frame: FrameType | None) -> None:
+        if self.exit_code:
+            if self._handle is not None and self._handle.ended is None:
+                self._handle.kill()
+            raise KeyboardInterrupt
+        self.exit_code = 128 + number
+        if self._handle is not None:
+            self._handle.stop()
 
 
 class Follower:
@@ -33,55 +68,27 @@ class Follower:
         self._listen = listen
         self._handle = handle
         self._out = out
-        self._cut = 0
+        self.cut = 0
+        """The exit code that a closed stdout asks for, else 0."""
         self.lost = ""
         """Why printed lines could not be passed on, empty if they were."""
 
-    def to_the_end(self) -> tuple[Ended, int]:
-        """Wait until the run has ended.
-
-        Returns:
-            How it ended, and the exit code that an interruption or a closed stdout asks for, else 0.
-
-        Raises:
-            KeyboardInterrupt: a second signal came; the run has been killed.
-        """
-        with self._signals():
-            while True:
-                events: list[Message] = []
-                if self._listen is None:
-                    ended = self._handle.wait(POLL_S)
-                else:
-                    self._handle.wait_for_event(POLL_S)
-                    events = self._handle.pump()
-                    ended = self._handle.ended
-                self._pass_on(self._handle.output.new_rows())
-                for event in events:
-                    if self._listen is not None:
-                        self._listen(event)
-                if ended:
-                    return ended, self._cut
-
-    @contextmanager
-    def _signals(self) -> Iterator[None]:
-        """Let ctrl-C and SIGTERM stop the run, and not strike in the middle of reading its messages."""
-        before = {number: signal.signal(number, self._interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
-
-    def _interrupt(self, number: int, frame: FrameType | None) -> None:
-        if self._cut:
-            self._handle.kill()
-            raise KeyboardInterrupt
-        # As a shell shows a program that the signal has ended.
-        self._stop(128 + number)
-
-    def _stop(self, exit_code: int) -> None:
-        self._cut = exit_code
-        self._handle.stop()
+    def to_the_end(self) -> Ended:
+        """Wait until the run has ended, and return how."""
+        while True:
+            events: list[Message] = []
+            if self._listen is None:
+                ended = self._handle.wait(POLL_S)
+            else:
+                self._handle.wait_for_event(POLL_S)
+                events = self._handle.pump()
+                ended = self._handle.ended
+            self._pass_on(self._handle.output.new_rows())
+            for event in events:
+                if self._listen is not None:
+                    self._listen(event)
+            if ended:
+                return ended
 
     def _pass_on(self, rows: Iterable[OutputRow]) -> None:
         """Write rows in the order in which they came, also where some go to stdout and some to stderr."""
@@ -97,13 +104,14 @@ class Follower:
                     echo_error(line_of(row))
 
     def _write(self, text: str) -> None:
-        if self._cut == EXIT_BROKEN_PIPE or self.lost:
+        if self.cut or self.lost:
             return
         try:
             self._out.write(text)
             self._out.flush()
         except BrokenPipeError:
-            self._stop(EXIT_BROKEN_PIPE)
+            self.cut = EXIT_BROKEN_PIPE
+            self._handle.stop()
         except OSError as error:
             # The run and its recording are worth more than its echo here.
             self.lost = f"cannot write to stdout: {error.strerror or error}"

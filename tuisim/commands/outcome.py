@@ -15,7 +15,7 @@ EXIT_BROKEN_PIPE = 141
 """What a shell shows for a program that SIGPIPE has ended."""
 SIGNALLED = 128
 """Exit codes above it mean that somebody wants no more, and so no further program either."""
-LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit"})
+LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit", "disk_full"})
 """The ends of a run that a limit brought about."""
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from tuisim.commands import outcome
 from tuisim.commands.breaks import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
 from tuisim.commands.echo import echo_error
-from tuisim.commands.follow import Follower
+from tuisim.commands.follow import Follower, Interrupts
 from tuisim.commands.notebooks import print_list, print_results, to_list
 from tuisim.commands.prepare import Prepared, prepare_runs
 from tuisim.commands.press import parse_press, press_actions
@@ -18,8 +18,8 @@ from tuisim.commands.targets import check_targets
 from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
-from tuisim.errors import ConfigError
-from tuisim.host import RunOptions, field_files, start_run
+from tuisim.errors import ConfigError, ExportError, LogError, TuisimError
+from tuisim.host import RunHandle, RunOptions, field_files, start_run
 from tuisim.switches import SwitchParser, number
 
 MAX_TIME_LIMIT_S = 1e6
@@ -74,14 +74,32 @@ def execute(arguments: Namespace) -> int:
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
     store = RunStore()
-    code, done = _run_all(prepared, arguments, store)
-    for target in arguments.export:
-        export_samples(done, target)
-    if telemetry is not None:
-        export_telemetry(done[0], telemetry)
-    if arguments.all and not arguments.json:
-        print_results(done)
-    return code
+    with Interrupts() as interrupts:
+        code, done = _run_all(prepared, arguments, store, interrupts)
+        if done:
+            _export(done, arguments)
+        if arguments.all and not arguments.json:
+            print_results(done)
+    return max(code, interrupts.exit_code)
+
+
+def _export(done: Sequence[StoredRun], arguments: Namespace) -> None:
+    """Write every export that can be written; then complain about the others."""
+    writers: list[tuple[str, Callable[[str], None]]] = [
+        (target, lambda target: export_samples(done, target)) for target in arguments.export
+    ]
+    if arguments.telemetry is not None:
+        writers.append((arguments.telemetry, lambda target: export_telemetry(done[0], target)))
+    errors: list[TuisimError] = []
+    for target, write in writers:
+        try:
+            write(target)
+        except (ExportError, LogError) as error:
+            errors.append(error)
+    for other in errors[1:]:
+        echo_error(f"tuisim: {other}")
+    if errors:
+        raise errors[0]
 
 
 def _check_only_listed(arguments: Namespace, count: int) -> None:
@@ -91,22 +109,27 @@ def _check_only_listed(arguments: Namespace, count: int) -> None:
         raise ConfigError(f"has {count} program cells, and none is named", f"--all, or {word}#1", file=word)
 
 
-def _run_all(prepared: Sequence[Prepared], arguments: Namespace, store: RunStore) -> tuple[int, list[StoredRun]]:
+def _run_all(
+    prepared: Sequence[Prepared], arguments: Namespace, store: RunStore, interrupts: Interrupts
+) -> tuple[int, list[StoredRun]]:
     """Run one after another until all are done or the user interrupts; return exit code and runs."""
     done: list[StoredRun] = []
     code = 0
     for one in prepared:
-        exit_code, run_id = _run_one(one, arguments, store)
-        done.append(store.load_run(run_id))
-        outcome.report(done[-1], exit_code, as_json=arguments.json)
+        exit_code, handle = _run_one(one, arguments, store, interrupts)
+        if handle.folder.is_dir():
+            done.append(handle.stored())
+            outcome.report(done[-1], exit_code, as_json=arguments.json)
+        else:
+            echo_error(f"tuisim: {handle.program.name}: nothing of run {handle.number} is kept: {handle.unstored}")
         code = max(code, exit_code)
         if exit_code > outcome.SIGNALLED:
             break
     return code, done
 
 
-def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int, str]:
-    """Run one program to its end and return exit code and run id."""
+def _run_one(one: Prepared, arguments: Namespace, store: RunStore, interrupts: Interrupts) -> tuple[int, RunHandle]:
+    """Run one program to its end and return exit code and run."""
     assert one.program is not None
     speed = one.settings.speed or 0.0
     options = RunOptions(
@@ -118,15 +141,18 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore) -> tuple[int,
         breaks=tuple(arguments.breaks),
     )
     handle = start_run(one.program, one.spec, options, store)
+    interrupts.watch(handle)
     stops = arguments.break_then == STOP
     teller = BreakTeller(handle, BreakOptions(options.breaks, tuple(arguments.watches), stops))
     try:
         out = sys.stderr if arguments.json else sys.stdout
         follower = Follower(handle, out, teller.take if options.breaks else None)
-        ended, cut = follower.to_the_end()
+        ended = follower.to_the_end()
     finally:
         handle.close()
     if follower.lost:
         echo_error(f"tuisim: {follower.lost} (run {handle.number} has every line)")
-    code = cut or (outcome.EXIT_LIMIT if teller.stopped else outcome.exit_code_of(ended))
-    return max(code, outcome.EXIT_BAD_OUTPUT) if follower.lost else code, handle.run_id
+    code = (
+        interrupts.exit_code or follower.cut or (outcome.EXIT_LIMIT if teller.stopped else outcome.exit_code_of(ended))
+    )
+    return max(code, outcome.EXIT_BAD_OUTPUT) if follower.lost or handle.unstored else code, handle

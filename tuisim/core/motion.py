@@ -129,6 +129,9 @@ class Motion:
 
     def tick_once(self) -> None:
         """Do one tick in full: the rule that the loops below abbreviate."""
+        count = self._sink.count
+        # Before anything moves: where there is no room for its record, there is no tick.
+        buffer = self._buffer if count < self._room_end else self._make_room(1)
         self.tick = tick = self.tick + 1
         left, right, tick_s, noise = self.left, self.right, self._tick_s, self.noise.motor
         before, aside_mm = None, None
@@ -163,11 +166,10 @@ class Motion:
         if aside_mm is not None:
             self.x_mm, self.y_mm = self.x_mm + aside_mm[0], self.y_mm + aside_mm[1]
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
-        count = self._sink.count
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
         flags |= self.pen_down and FLAG_PEN_DOWN
         TICK_RECORD.pack_into(
-            self._buffer if count < self._room_end else self._make_room(1), 64 + 64 * count,
+            buffer, 64 + 64 * count,
             tick, self.line, self.x_mm, self.y_mm, self.heading_deg, left.position_deg, right.position_deg,
             self._left_dps, self._right_dps, self.gyro_zero_deg, flags, self.actions & 0xFFFF,
         )  # fmt: skip
@@ -281,6 +283,7 @@ class Motion:
         return min(most, longest)
 
     def _glide_ramping(self, ticks: int) -> None:
+        buffer = self._make_room(ticks)
         left, right, tick_s = self.left, self.right, self._tick_s
         mm_per_deg, spacing = self._mm_per_deg, self._spacing_mm
         left_speeds, left_counts = self._ahead(left, ticks)
@@ -292,7 +295,7 @@ class Motion:
         across = up = 0.0
         faced, early = False, self._early
         sink = self._sink
-        buffer, at = self._make_room(ticks), 64 + 64 * sink.count
+        at = 64 + 64 * sink.count
         left_deg = right_deg = 0.0
         for tick, left_speed, right_speed in zip(
             range(self.tick + 1, self.tick + ticks + 1), left_speeds, right_speeds, strict=True

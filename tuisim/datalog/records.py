@@ -10,9 +10,10 @@ header, so that a reader, also after a `kill -9`, never sees half a record.
 
 from __future__ import annotations
 
+import errno
 import mmap
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
@@ -73,6 +74,10 @@ TELEMETRY_CHUNK = 64 * 16384
 OUTPUT_CHUNK = 1 << 16
 """Bytes after the header that a recording has at least while it is written; then it is cut to its true size."""
 
+_ZEROS = 1 << 16
+_LEAST_STEP = 4096
+"""A file asks for at least so many bytes less where it did not get what it asked for."""
+
 MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
 
@@ -82,21 +87,54 @@ def header(magic: bytes, record_bytes: int, length: int) -> bytes:
     return _HEADER.pack(magic, FORMAT_VERSION, record_bytes, length).ljust(HEADER_BYTES, b"\0")
 
 
+def is_full(error: OSError) -> bool:
+    """Return whether an error says that no more can be written: a full disk, a quota, a limit of file sizes."""
+    return error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def _reserve(fd: int, start: int, size: int) -> None:
+    """Let a file have room on its disk: a map of what has none ends its process when the disk is full."""
+    try:
+        os.posix_fallocate(fd, start, size)
+    # macOS has no such call, and some file systems refuse it.
+    except (AttributeError, OSError) as error:
+        if isinstance(error, OSError) and error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
+            raise
+        nothing, end = bytes(min(size, _ZEROS)), start + size
+        while start < end:
+            start += os.pwrite(fd, nothing[: end - start], start)
+
+
 class _GrowingMap:
-    """A file mapped into memory that grows in ever larger steps."""
+    """A file mapped into memory that grows in ever larger steps, as far as the disk has room.
+
+    Raises:
+        OSError: by the constructor and `grow`: it has none; what has been written stays.
+    """
 
     def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
         self._fd = private(str(path), os.O_RDWR | os.O_CREAT | os.O_EXCL)
         self.capacity = HEADER_BYTES + first_bytes
-        os.ftruncate(self._fd, self.capacity)
+        _reserve(self._fd, 0, self.capacity)
         self._map_file()
         self.map[0:HEADER_BYTES] = header(magic, record_bytes, 0)
 
     def grow(self, need: int) -> None:
-        while self.capacity < need:
-            self.capacity *= 2
+        wanted = self.capacity
+        while wanted < need:
+            wanted *= 2
+        while True:
+            try:
+                _reserve(self._fd, self.capacity, wanted - self.capacity)
+                break
+            except OSError as error:
+                # Some file systems keep the part that they had room for.
+                os.ftruncate(self._fd, self.capacity)
+                if not is_full(error) or wanted == need:
+                    raise
+                wanted = max(need, (self.capacity + wanted) // 2 - _LEAST_STEP)
+        self.capacity = wanted
         self._unmap()
-        os.ftruncate(self._fd, self.capacity)
         self._map_file()
 
     def _map_file(self) -> None:
@@ -117,10 +155,16 @@ class _GrowingMap:
         os.close(self._fd)
 
 
+def _raised(error: OSError) -> BaseException:
+    return error
+
+
 class TelemetryWriter:
     """Appends tick records. The hot loop packs into `map` itself, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
+        self.full: Callable[[OSError], BaseException] = _raised
+        """Says what to raise where the disk has no more room."""
         self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
         self._length = self._file.length
         self.count = 0
@@ -129,7 +173,10 @@ class TelemetryWriter:
         """Return the map, with room for `records` more records after `count`."""
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
         if need > self._file.capacity:
-            self._file.grow(need)
+            try:
+                self._file.grow(need)
+            except OSError as error:
+                raise self.full(error) from None
             self._length = self._file.length
         return self._file.map
 
@@ -148,6 +195,9 @@ class OutputWriter:
     """Appends printed lines, each published at once."""
 
     def __init__(self, folder: Path) -> None:
+        self.full: Callable[[OSError], BaseException] = _raised
+        """Says what to raise where the disk has no more room: once, what is printed after that is lost."""
+        self._is_full = False
         self._file = _GrowingMap(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
         self.length = 0
 
@@ -164,12 +214,18 @@ class OutputWriter:
         Raises:
             LogError: the output has reached MAX_OUTPUT_BYTES.
         """
+        if self._is_full:
+            return
         at = HEADER_BYTES + self.length
         end = at + OUTPUT_ROW.size + len(text)
         if end > self._file.capacity:
             if end > MAX_OUTPUT_BYTES:
                 raise LogError(f"the program printed more than {MAX_OUTPUT_BYTES >> 20} MiB")
-            self._file.grow(end)
+            try:
+                self._file.grow(end)
+            except OSError as error:
+                self._is_full = True
+                raise self.full(error) from None
         self._file.map[at:end] = OUTPUT_ROW.pack(len(text), tick, time_ns, line, stream) + text
         self.length = end - HEADER_BYTES
         self._file.publish(self.length)

@@ -87,7 +87,7 @@ class RunEnd:
     """How a run ended."""
 
     end: str
-    """finished, raised, stopped, time_limit, stalled, deadlock, output_limit, killed or crashed."""
+    """finished, raised, stopped, time_limit, stalled, deadlock, output_limit, disk_full, killed or crashed."""
     tick: int
     time_ns: int
     exit_code: int = 0

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -19,6 +18,7 @@ from tuisim.core.spec import RunSpec, to_plain
 from tuisim.datalog.catalogue import HOME_HINT, Catalogue, RunInfo, locked
 from tuisim.datalog.compact import compact
 from tuisim.datalog.lock import is_held
+from tuisim.datalog.packer import pack_later
 from tuisim.datalog.runfile import (
     INTERRUPTED,
     RUN_FILE,
@@ -50,8 +50,8 @@ DAMAGED = "damaged"
 """Stands for the end of a run whose `run.json` cannot be read."""
 
 COMPACT_TICKS = 6000
-"""A run of so many ticks or more is compacted as soon as it is over; for shorter ones that takes too much of the time
-of the run itself, and gains little."""
+"""A run of so many ticks or more is compacted as soon as it is over, by a process of its own; of shorter ones that
+gains little."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,17 +156,32 @@ class RunStore:
         self._edit(run_id, end=end_document(end))
         output = OutputView(self.folder(run_id))
         samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
-        self._catalogue.update(
-            run_id,
-            end=end.end,
-            ticks=end.tick,
-            time_s=end.time_ns / NS_PER_S,
-            samples=samples,
-            summary=end.summary,
-        )
-        if self._lasting and end.tick >= COMPACT_TICKS:
-            # Nobody waits for it but the end of the process; what dies before is as whole as before.
-            threading.Thread(target=_compact_quietly, args=(self.folder(run_id),), name=f"compact {run_id}").start()
+        # Where the list cannot be written now, it will notice by itself.
+        with suppress(LogError):
+            self._catalogue.update(
+                run_id,
+                end=end.end,
+                ticks=end.tick,
+                time_s=end.time_ns / NS_PER_S,
+                samples=samples,
+                summary=end.summary,
+            )
+        if self._lasting and (end.tick >= COMPACT_TICKS or samples is None):
+            pack_later(self.folder(run_id))
+
+    def count_samples(self, run_id: str) -> None:
+        """Count the samples of a run that is over, and remember how many there are.
+
+        Raises:
+            LogError: the run is damaged, or the catalogue cannot be written.
+        """
+        self._catalogue.update(run_id, samples=counts_of(OutputView(self.folder(run_id))).samples)
+
+    def forget(self, run_id: str) -> None:
+        """Take back a run that could not be started."""
+        shutil.rmtree(self.folder(run_id), ignore_errors=True)
+        with suppress(LogError):
+            self._catalogue.remove([run_id])
 
     def tag(self, run_id: str, tags: Iterable[str]) -> None:
         """Replace the tags of a run.
@@ -388,14 +403,6 @@ def bytes_in(folder: Path) -> int:
             with suppress(FileNotFoundError):
                 found += entry.stat().st_size
     return found
-
-
-def _compact_quietly(folder: Path) -> None:
-    try:
-        compact_run(read_run(folder))
-    except (LogError, OSError):
-        # It stays as it was written; `tuisim runs compact` would tell why.
-        return
 
 
 def _meant(text: str, rows: Sequence[RunInfo]) -> RunInfo:

@@ -118,7 +118,9 @@ class _Recording:
 
     def known(self, count: int) -> memoryview | None:
         """Return the recording if so many records have been read that will not change any more, else None."""
-        return memoryview(self._copy).toreadonly() if self._unpacked or count < self._there else None
+        if self.packed is not None or (count >= self._there and not self._unpacked):
+            return None
+        return memoryview(self._copy).toreadonly() if count <= self._there else None
 
     def _read_on(self) -> None:
         try:

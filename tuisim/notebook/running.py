@@ -94,7 +94,7 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
             raise
         finally:
             handle.close()
-            done = store.load_run(handle.run_id)
+            done = handle.stored()
             begun(done)
             # The user who has interrupted a flood of lines does not wait for all of them to be read.
             hurry = interruption.count > 0

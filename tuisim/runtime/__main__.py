@@ -15,7 +15,7 @@ from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.face import motors_row
 from tuisim.datalog.lock import hold
-from tuisim.datalog.records import MOTORS, OutputWriter, TelemetryWriter
+from tuisim.datalog.records import MOTORS, OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, TelemetryWriter, is_full
 from tuisim.fields import open_field
 from tuisim.runtime.chance import finish_random, finish_uuid, patch_urandom
 from tuisim.runtime.channel import Channel
@@ -30,6 +30,7 @@ from tuisim.runtime.clock import (
 from tuisim.runtime.config import RunConfig, read_config
 from tuisim.runtime.file_waits import FileWaits
 from tuisim.runtime.guard import limit_memory, refuse_processes
+from tuisim.runtime.halt import DISK_FULL
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.output import Output
 from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
@@ -51,8 +52,22 @@ def main(arguments: list[str]) -> NoReturn:
     folder = Path(arguments[0])
     command_fd, event_fd, lifeline_fd = map(int, arguments[1:4])
     die_with_host(lifeline_fd)
-    hold(folder)
-    Child(folder, read_config(folder), Channel(command_fd, event_fd)).run()
+    channel = Channel(command_fd, event_fd)
+    try:
+        hold(folder)
+        child = Child(folder, read_config(folder), channel)
+    except OSError as error:
+        if not is_full(error):
+            raise
+        for name in (TELEMETRY_FILE, OUTPUT_FILE):
+            (folder / name).unlink(missing_ok=True)
+        channel.send(protocol.Ended(DISK_FULL, 0, 0, 1, _no_room(error)))
+        real.exit_process(0)
+    child.run()
+
+
+def _no_room(error: OSError) -> str:
+    return f"the recording cannot grow: {error.strerror}"
 
 
 class Child:
@@ -68,13 +83,15 @@ class Child:
         self._folder, self._config, self._channel = folder, config, channel
         self._telemetry = TelemetryWriter(folder)
         self._sim = simulation_of(config.spec, self._telemetry)
-        self._output = Output(OutputWriter(folder))
+        writer = OutputWriter(folder)
+        self._output = Output(writer)
         steering = Steering(channel, folder, config.live, config.speed, config.start_paused, config.actions)
         limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
         file = config.path or config.name
         self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)
         session = self._session
         session.replies = config.replies
+        self._telemetry.full = writer.full = lambda error: session.request_stop(DISK_FULL, _no_room(error))
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+DISK_FULL = "disk_full"
+"""How a run ends that cannot be written down any further."""
+
 
 class StopProgram(BaseException):
     """Unwinds the program. Not an `Exception`, so that ordinary handlers let it pass.

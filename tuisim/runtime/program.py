@@ -76,6 +76,13 @@ class ProgramRunner:
     def run(self) -> Outcome:
         """Run prelude and program to their end, whatever it is."""
         try:
+            return self._run()
+        except StopProgram as stop:
+            # What was written last had no room any more.
+            return Outcome(stop.end, 0, stop.summary)
+
+    def _run(self) -> Outcome:
+        try:
             self._prepare()
             self._execute()
             self._baton.join_all()

@@ -10,6 +10,7 @@ import json
 import os
 from collections import deque
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,7 @@ from tuisim.datalog.records import ACTIONS_FILE, STOP_FILE
 from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Answer, Message, Reply, ScriptedAction
 from tuisim.runtime import real
 from tuisim.runtime.channel import Channel
+from tuisim.runtime.halt import DISK_FULL
 
 if TYPE_CHECKING:
     from tuisim.runtime.session import Session
@@ -287,11 +289,16 @@ class Steering:
                 raise TypeError(f"not a user action: {action!r}")
         sim.actions += 1
         sim.rewrite_record()
-        self._write_down(sim.tick, action)
+        try:
+            self._write_down(sim.tick, action)
+        except OSError as error:
+            # Not written down it would be no run that can be run again.
+            session.ask_stop(DISK_FULL, f"what was done cannot be written down: {error.strerror}")
 
     def write_down_stop(self, tick: int) -> None:
         """Note that the stop reaches the program right before the tick after `tick`."""
-        with open(self._folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
+        # Without it a re-run compares what there is.
+        with suppress(OSError), open(self._folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
             file.write(json.dumps({"tick": tick}))
 
     def _write_down(self, tick: int, action: Message) -> None:

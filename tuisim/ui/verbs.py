@@ -20,7 +20,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 """What `[` and `]` step through; 0 is as fast as possible."""
 
 
-_END_LABELS = {"raised": "error", "time_limit": "time limit", "output_limit": "output limit"}
+_END_LABELS = {"raised": "error", "time_limit": "time limit", "output_limit": "output limit", "disk_full": "disk full"}
 
 
 def speed_label(speed: float) -> str:
