@@ -62,6 +62,8 @@ def _environment() -> dict[str, str]:
         "PYTHONPATH": package_folder,
         "PYTHONHASHSEED": "0",
         "PYTHONUTF8": "1",
+        # One thread runs at a time: a further heap would only take address space.
+        "MALLOC_ARENA_MAX": "1",
         "OPENBLAS_NUM_THREADS": "1",
         "OMP_NUM_THREADS": "1",
         "TZ": "UTC",
@@ -106,10 +108,11 @@ def stuck_line(folder: Path, program_file: str) -> int:
     return 0
 
 
-def what_ended(exit_status: int, folder: Path) -> str:
-    """Return what ended a child that went without a word: a signal, or its exit status and last complaint."""
+def what_ended(exit_status: int, folder: Path, line: int) -> str:
+    """Return what ended a child that went without a word: a signal and in which line, or exit status and complaint."""
     if exit_status < 0:
-        return f"the program's process was ended by {signal.Signals(-exit_status).name}"
+        where = f" in line {line}" if line else ""
+        return f"the program's process was ended by {signal.Signals(-exit_status).name}{where}"
     log = (folder / "child.log").read_text("utf-8", "replace").strip()
     last = f": {source_lines(log)[-1]}" if log else ""
     return f"the program's process ended with exit status {exit_status}{last}"

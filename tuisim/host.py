@@ -213,7 +213,9 @@ class RunHandle:
         if self._stack_asked:
             summary = f"stuck in line {line}: no simulated time passed" if line else "stuck: no simulated time passed"
             return Ended("stalled", tick, time_ns, 1, summary, error_line=line)
-        return Ended("crashed", tick, time_ns, 1, what_ended(self._process.returncode, self.folder), error_line=line)
+        return Ended(
+            "crashed", tick, time_ns, 1, what_ended(self._process.returncode, self.folder, line), error_line=line
+        )
 
     def _finish(self, final: Ended) -> None:
         self.ended = final

@@ -9,6 +9,7 @@ stores each with the tick before which it was applied, so that a run can be repe
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
@@ -23,6 +24,8 @@ AFTER_TICK = 0
 """Ordinal of the moment at which a tick has just been done."""
 BEFORE_NEXT_TICK = -1
 """Ordinal of the moment right before the next tick: where a pause holds."""
+_SURROGATE = re.compile("[\ud800-\udfff]")
+
 UNKNOWN_ORDINAL = -2
 """Ordinal of a line that was met in a tick whose lines were not counted from its start."""
 
@@ -35,7 +38,9 @@ class Message:
 
     def encode(self) -> bytes:
         """Return the message as one JSON line."""
-        return json.dumps({"kind": self.kind, **asdict(self)}, separators=(",", ":")).encode() + b"\n"
+        text = json.dumps({"kind": self.kind, **asdict(self)}, separators=(",", ":"), ensure_ascii=False)
+        # A lone surrogate, such as of a file name that is no UTF-8, is no text: it is shown as Python would write it.
+        return _SURROGATE.sub(lambda found: f"\\\\u{ord(found[0]):x}", text).encode() + b"\n"
 
 
 # Commands: host to child.

@@ -29,10 +29,12 @@ from tuisim.runtime.clock import (
 )
 from tuisim.runtime.config import RunConfig, read_config
 from tuisim.runtime.file_waits import FileWaits
-from tuisim.runtime.guard import limit_memory, refuse_processes
+from tuisim.runtime.frames import finish_inspect, finish_traceback
+from tuisim.runtime.guard import STACK_BYTES, limit_memory, refuse_processes
 from tuisim.runtime.halt import DISK_FULL
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.output import Output
+from tuisim.runtime.report import remember_source
 from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
 from tuisim.runtime.standin import replace
 from tuisim.runtime.steering import Steering
@@ -126,12 +128,16 @@ class Child:
         waits.patch_select()
         refuse_processes()
         patch_threads(baton)
+        real.stack_size(STACK_BYTES)
         limit_memory()
         install(
             session,
             {
                 "pandas": lambda module: finish_pandas(session, module),
                 "random": lambda module: finish_random(self._config.spec.seed, module),
+                "linecache": lambda _module: remember_source(session.program_file, self._config.text),
+                "traceback": finish_traceback,
+                "inspect": finish_inspect,
                 "resource": lambda module: finish_resource(session, module),
                 "selectors": waits.finish_selectors,
                 "socket": waits.finish_socket,

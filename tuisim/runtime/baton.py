@@ -14,9 +14,12 @@ from collections.abc import Callable
 from typing import Any
 
 from tuisim.runtime import real
+from tuisim.runtime.guard import limit_memory
 from tuisim.runtime.halt import Deadlock, StopProgram
 from tuisim.runtime.session import STOPPING, THREADS, Session
 
+MOST_THREADS = 1000
+"""Each is a real one, of which a machine has only so many."""
 FOREVER = -1
 """A wait without a time limit."""
 
@@ -193,8 +196,11 @@ class Baton:
         """Start a thread; it runs when the current one waits.
 
         Raises:
-            RuntimeError: the machine has no room for another thread.
+            RuntimeError: there are as many as there may be, or the machine has no room for another one.
         """
+        count = len(self._alive) + 1
+        if count > MOST_THREADS:
+            raise RuntimeError(f"can't start new thread: a program may have {MOST_THREADS} at once")
         self._session.slow |= THREADS
         task = Task(daemon)
 
@@ -211,7 +217,11 @@ class Baton:
             finally:
                 self._finish(task)
 
-        real.start_new_thread(run, ())
+        limit_memory(threads=count)
+        try:
+            real.start_new_thread(run, ())
+        except RuntimeError as error:
+            raise RuntimeError(f"{error}: there are {count} already, and this machine allows no more") from None
         self._alive.append(task)
         self._ready.append(task)
         return task

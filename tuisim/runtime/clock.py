@@ -13,6 +13,7 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.simulation import NS_PER_S
+from tuisim.runtime import real
 from tuisim.runtime.session import Session
 from tuisim.runtime.standin import replace
 
@@ -83,14 +84,14 @@ def patch_datetime(session: Session, program_file: str) -> None:
     the real classes and crash on others.
     """
     real_import = builtins.__import__
-    folder = os.path.dirname(os.path.abspath(program_file))
+    folder = os.path.dirname(real.absolute(program_file))
     shadow: list[types.ModuleType] = []
 
     def wants_simulated(importer: Mapping[str, Any]) -> bool:
         name = str(importer.get("__name__", ""))
         if name == "__main__" or name.partition(".")[0] == "ev3dev2":
             return True
-        return os.path.dirname(os.path.abspath(str(importer.get("__file__") or "/"))) == folder
+        return os.path.dirname(real.absolute(str(importer.get("__file__") or "/"))) == folder
 
     def import_module(
         name: str,
@@ -150,13 +151,13 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
     shadow = types.ModuleType("datetime", module.__doc__)
     vars(shadow).update(vars(module))
     real_of: dict[type, type] = {datetime: real_datetime, date: real_date}
-    for replacement, real in real_of.items():
-        _look_like(replacement, real)
-        setattr(shadow, real.__name__, replacement)
+    for replacement, replaced in real_of.items():
+        _look_like(replacement, replaced)
+        setattr(shadow, replaced.__name__, replacement)
 
-    def reduce_class(replaced: Any) -> Any:
+    def reduce_class(one: Any) -> Any:
         # Pickled as the real classes: what is written can be read without this program.
-        return (type, (replaced.min,)) if replaced in real_of else replaced.__qualname__
+        return (type, (one.min,)) if one in real_of else one.__qualname__
 
     copyreg.pickle(LikeTheReal, reduce_class)
     return shadow

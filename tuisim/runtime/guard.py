@@ -6,10 +6,16 @@ import os
 import resource
 from typing import Any, NoReturn
 
+from tuisim.runtime import real
 from tuisim.runtime.standin import replace
 
 MEMORY_LIMIT_BYTES = 1 << 30
 """Address space of the child; beyond it the program gets a MemoryError."""
+
+STACK_BYTES = 8 << 20
+"""Of a thread. It costs memory only as far as it is used."""
+STACKS_KEPT = 8
+"""So many stacks of threads that are over may still be there."""
 
 _PROCESS_CALLS = (
     "fork", "forkpty", "posix_spawn", "posix_spawnp",
@@ -18,10 +24,12 @@ _PROCESS_CALLS = (
 )  # fmt: skip
 
 
-def limit_memory() -> None:
-    """Give the process a limit of address space."""
+def limit_memory(threads: int = 0) -> None:
+    """Give the process a limit of address space, with room for the stacks of so many threads above it."""
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    wanted = MEMORY_LIMIT_BYTES if hard == resource.RLIM_INFINITY else min(hard, MEMORY_LIMIT_BYTES)
+    stack = real.stack_size() or STACK_BYTES
+    wanted = MEMORY_LIMIT_BYTES + (threads and threads + STACKS_KEPT) * stack
+    wanted = wanted if hard == resource.RLIM_INFINITY else min(hard, wanted)
     try:
         resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
     except (OSError, ValueError):

@@ -49,6 +49,7 @@ class Interrupts:
         self._session = session
         self._soft_codes = soft_codes
         self._timer_on = False
+        self._removed = False
         self.main_is_parked = False
         """Whether the main thread waits for its turn, where raising is harmless."""
         self._stall_now, self._stall_s = -1, 0.0
@@ -60,6 +61,8 @@ class Interrupts:
             folder: Run folder; SIGUSR2 writes the stack there, also from inside a long C call.
         """
         self._stack_file = os.fdopen(private(str(folder / STACK_FILE), os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w")
+        # What ends the process from inside, such as SIGSEGV, is written there too.
+        faulthandler.enable(self._stack_file, all_threads=False)
         faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
         signal.signal(signal.SIGUSR1, self._on_command)
         signal.signal(signal.SIGALRM, self._on_command)
@@ -69,14 +72,15 @@ class Interrupts:
             signal.setitimer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
 
     def remove(self) -> None:
-        """Stop listening: the program is over."""
+        """Stop listening: the program is over. Any thread may end it, but only the main one can change handlers."""
+        self._removed = True
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-        for number in (signal.SIGUSR1, signal.SIGALRM, signal.SIGVTALRM):
-            signal.signal(number, signal.SIG_IGN)
 
     def _on_command(self, _number: int, frame: types.FrameType | None) -> None:
         session = self._session
+        if self._removed:
+            return
         session.slow |= ATTENTION
         if session.steering.holding:
             # Commands are waited for, maybe in another thread: it takes them from the pipe itself.
@@ -95,6 +99,8 @@ class Interrupts:
 
     def _on_stall(self, _number: int, frame: types.FrameType | None) -> None:
         session = self._session
+        if self._removed:
+            return
         if session.now != self._stall_now:
             self._stall_now, self._stall_s = session.now, 0.0
             return

@@ -27,7 +27,7 @@ class Output:
     def row(self, text: str, stream: int) -> None:
         """Write one row."""
         tick, now, line = self.place()
-        self._writer.write(text.encode("utf-8", "replace"), tick, now, line, stream)
+        self._writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
 
@@ -49,7 +49,7 @@ class LineStream(io.TextIOBase):
     """
 
     encoding = "utf-8"
-    errors = "replace"
+    errors = "backslashreplace"
 
     def __init__(self, output: Output, stream: int = STDOUT) -> None:
         self._output, self._stream = output, stream

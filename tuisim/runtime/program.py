@@ -5,8 +5,10 @@ from __future__ import annotations
 import atexit
 import builtins
 import gc
+import io
 import operator
 import os
+import re
 import sys
 import types
 from collections.abc import Callable
@@ -17,8 +19,10 @@ from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import INPUT, STDERR
 from tuisim.errors import LogError
 from tuisim.protocol import Answer, InputWanted
+from tuisim.runtime import real
 from tuisim.runtime.baton import Baton
 from tuisim.runtime.config import RunConfig
+from tuisim.runtime.frames import patch_faulthandler
 from tuisim.runtime.halt import Deadlock, StopProgram
 from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program
 from tuisim.runtime.missing import MissingPart
@@ -37,6 +41,28 @@ class Outcome:
     summary: str = ""
     error: str = ""
     error_line: int = 0
+
+
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
+
+
+def _has_last_words(value: object) -> bool:
+    """Whether something of the program's is run when a value goes."""
+    words = hasattr(type(value), "__del__") or isinstance(value, types.GeneratorType | types.CoroutineType)
+    return words and not isinstance(value, io.IOBase)
+
+
+def _is_data(value: object) -> bool:
+    """Whether a value is neither code nor a file that somebody may still write to."""
+    return not isinstance(value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase)
+
+
+def safe_text(write: Callable[[object], str], value: object) -> str:
+    """Return the `str` or `repr` of a value, or that there is none."""
+    try:
+        return write(value)
+    except BaseException:  # a program's own method may do anything
+        return f"<{type(value).__name__}, whose {write.__name__}() failed>"
 
 
 class ProgramRunner:
@@ -86,16 +112,15 @@ class ProgramRunner:
             self._prepare()
             self._execute()
             self._baton.join_all()
-            # A stop that struck one of its threads need not have reached the main one.
-            stop = self._session.stop_reason
-            outcome = Outcome("finished") if stop is None else Outcome(stop.end, 0, stop.summary)
+            outcome = Outcome("finished")
         except BaseException as error:  # whatever a program lets escape is an outcome, not an error of ours
             outcome = self._outcome_of(error)
         outcome = self._hold_at_end(outcome)
         self._wind_up()
-        self.stdout.finish()
-        self.stderr.finish()
-        return outcome
+        self._finish_streams()
+        # One that struck a thread, an exit function or a `__del__` need not have come here.
+        stop = self._session.stop_reason
+        return outcome if stop is None or outcome.end != "finished" else Outcome(stop.end, 0, stop.summary)
 
     def _hold_at_end(self, outcome: Outcome) -> Outcome:
         """Let the debugger hold a program that is over before the instant that was wanted."""
@@ -111,10 +136,30 @@ class ProgramRunner:
         """Do what Python does at the end of a program: exit functions, open files, what is left of objects."""
         try:
             atexit._run_exitfuncs()
-            self._module.__dict__.clear()
-            gc.collect()
+            if self._session.stop_reason is not None:
+                # It holds on to the frames that it came through.
+                self._session.stop_reason.with_traceback(None)
+            self._let_go()
         except BaseException as error:  # the program is over: what still goes wrong in it is only told
             self._thread_error(type(error), error, None)
+
+    def _let_go(self) -> None:
+        """Empty the program's module: what is run when an object goes still finds as many of its names as can be."""
+        for goes_now in (_has_last_words, _is_data):
+            for name in [name for name, value in self.names.items() if goes_now(value) and not name.startswith("__")]:
+                self.names.pop(name, None)
+            gc.collect()
+        self.names.clear()
+        gc.collect()
+
+    def _finish_streams(self) -> None:
+        """Write what the program printed without a line end."""
+        for stream in (self.stdout, self.stderr):
+            try:
+                stream.finish()
+            except LogError:
+                # The file is full, and says so itself.
+                continue
 
     def _prepare(self) -> None:
         file = self._session.program_file
@@ -122,10 +167,13 @@ class ProgramRunner:
         # Also for whatever puts another stream in place of one and goes back to it.
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
         sys.argv = [file]
-        sys.excepthook = self._thread_error
+        replace(sys, "excepthook", self._thread_error, (3, 3))
+        replace(sys, "unraisablehook", self._ignored_error, (1, 1))
+        vars(sys).update(__excepthook__=sys.excepthook, __unraisablehook__=sys.unraisablehook)
+        patch_faulthandler()
         import threading
 
-        threading.excepthook = lambda args: self._thread_error(args.exc_type, args.exc_value, args.exc_traceback)
+        replace(threading, "excepthook", lambda args: self._thread_error(*args[:3]), (1, 1))
         replace(builtins, "input", self._input, (0, 1))
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
@@ -145,7 +193,7 @@ class ProgramRunner:
                 module.__dict__[part] = MissingPart(part, error)
         self._session.free -= 1
         # Not before: a program called logging.py is not what the library means by `import logging`.
-        sys.path.insert(0, os.path.dirname(os.path.abspath(self._session.program_file)))
+        sys.path.insert(0, os.path.dirname(real.absolute(self._session.program_file)))
         self.prepared |= {name: id(value) for name, value in module.__dict__.items()}
         # What is there now stays; the program's own garbage is looked for from here on.
         gc.freeze()
@@ -172,30 +220,49 @@ class ProgramRunner:
     def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
         self.stdout.finish()
         report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
-        for line in report.text.rstrip("\n").split("\n"):
-            self._output.row(line, STDERR)
+        self._tell(report.text)
         end = "deadlock" if isinstance(error, Deadlock) else "raised"
         return Outcome(end, 1, report.summary, report.text, report.line)
 
     def _exit_outcome(self, code: object) -> Outcome:
-        if code is None or isinstance(code, int):
-            number = int(code or 0)
+        if code is None:
+            number = 0
+        elif isinstance(code, int):
+            number = int.__index__(code)
+            # As Python has it for what is no exit status at all.
+            number = number if abs(number) < 1 << 31 else -1
         else:
-            self._output.row(str(code), STDERR)
+            self._tell(safe_text(str, code))
             number = 1
         return Outcome("finished", number, f"the program ended itself with exit code {number}" if number else "")
 
     def _exit_now(self, status: int) -> NoReturn:
-        self.stdout.finish()
-        self.stderr.finish()
+        self._finish_streams()
         self._leave(self._exit_outcome(status))
 
     def _thread_error(self, _kind: Any, error: BaseException | None, _trace: Any) -> None:
         if error is None or isinstance(error, StopProgram):
             return
-        report = report_error(error, self._session.program_file, self._config.text)
-        for line in report.text.rstrip("\n").split("\n"):
-            self._output.row(line, STDERR)
+        self._tell(report_error(error, self._session.program_file, self._config.text).text)
+
+    def _ignored_error(self, ignored: Any) -> None:
+        """Tell an error that Python cannot raise, such as in a `__del__`; a stop is raised again elsewhere."""
+        if isinstance(ignored.exc_value, StopProgram):
+            self._session.stop_lost()
+            return
+        # The address would be another one in every run.
+        where = _ADDRESS.sub("", safe_text(repr, ignored.object))
+        self._tell(f"{ignored.err_msg or 'Exception ignored in'}: {where}")
+        self._thread_error(ignored.exc_type, ignored.exc_value, ignored.exc_traceback)
+
+    def _tell(self, text: str) -> None:
+        """Write down what went wrong."""
+        try:
+            for line in text.rstrip("\n").split("\n"):
+                self._output.row(line, STDERR)
+        except LogError:
+            # The file is full, and says so itself.
+            return
 
     # Input
 
@@ -210,10 +277,11 @@ class ProgramRunner:
             answer = None
         else:
             answer = self._users_answer(asked)
+        self._output.row(asked + (answer or ""), INPUT)
+        # Answers that are there already let no time pass: a stop comes between them.
+        self._output.after_write()
         if answer is None:
-            self._output.row(asked, INPUT)
             raise EOFError("there is no further answer to input()")
-        self._output.row(asked + answer, INPUT)
         return answer
 
     def _users_answer(self, asked: str) -> str | None:

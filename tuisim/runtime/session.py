@@ -316,6 +316,10 @@ class Session:
             self.steering.stop_asked()
         self.slow |= STOPPING
 
+    def stop_lost(self) -> None:
+        """Let the stop be raised again at the next checkpoint: Python has dropped it, such as in a `__del__`."""
+        self._stop_raised_at = None
+
     def program_line(self) -> int:
         """Return the line of the program that is being carried out, 0 if none is."""
         frame: types.FrameType | None = sys._getframe(1)

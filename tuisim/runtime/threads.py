@@ -88,7 +88,11 @@ def _patch_thread_class(baton: Baton, thread: Any) -> None:
         limbo: Any = threading
         with limbo._active_limbo_lock:
             limbo._limbo[self] = self
-        tasks[id(self)] = baton.spawn(self._bootstrap, daemon=bool(self.daemon))
+        try:
+            tasks[id(self)] = baton.spawn(self._bootstrap, daemon=bool(self.daemon))
+        except RuntimeError:
+            del limbo._limbo[self]
+            raise
         self._started.wait()
 
     @wraps(thread.join)

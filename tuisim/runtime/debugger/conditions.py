@@ -47,7 +47,11 @@ class Condition:
             values = {name: names.get(name, frame.f_globals.get(name, self)) for name in self._names}
             if all(type(value) in _SCALARS for value in values.values()):
                 return self._at_once(values)
-        answer = apart(lambda: evaluate_truth(self._text, {**frame.f_globals, **names}, frame.f_builtins).encode())
+        answer = apart(
+            lambda: evaluate_truth(self._text, {**frame.f_globals, **names}, frame.f_builtins).encode(
+                "utf-8", "backslashreplace"
+            )
+        )
         return "takes too long" if answer is None else answer.decode()[1:]
 
     def _at_once(self, values: dict[str, Any]) -> str:
