@@ -85,6 +85,13 @@ class TerminalApp(App[None]):
         self.frame_buffer.forget()
         self.refresh(layout=True)
 
+    def action_command_palette(self) -> None:
+        """Open the command palette, unless it is open."""
+        from tuisim.ui.palette import Palette
+
+        if self.use_command_palette and not Palette.is_open(self) and not is_leaving(self):
+            self.push_screen(Palette())
+
     def _handle_exception(self, error: Exception) -> None:
         # A screen that was being opened when the app was told to end is taken down half built.
         if not (is_leaving(self) and isinstance(error, NoMatches)):

@@ -7,12 +7,17 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
-from textual.command import DiscoveryHit, Hit, Hits, Provider
+from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
 from tuisim.ui.actions import ACTIONS
+from tuisim.ui.screens.dialog import ClosesOnce
 
 if TYPE_CHECKING:
     from tuisim.ui.app import Lab
+
+
+class Palette(CommandPalette, ClosesOnce[None]):
+    """Textual's command palette as a screen of ours."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,6 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.command import Provider
 from textual.containers import Horizontal, Vertical
-from textual.screen import ModalScreen
 
 from tuisim.errors import LogError, TuisimError
 from tuisim.ui.analyser import eventing
@@ -29,6 +28,7 @@ from tuisim.ui.analyser.subject import Wanted, opening
 from tuisim.ui.analyser.task import Task
 from tuisim.ui.cellview import LinesView
 from tuisim.ui.leaving import is_leaving
+from tuisim.ui.screens.dialog import ClosesOnce
 
 _KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
 _ALWAYS = ("help", "leave")
@@ -43,7 +43,7 @@ def _palette() -> type[Provider]:
     return AnalyserActions
 
 
-class Analyser(ModalScreen[None]):
+class Analyser(ClosesOnce[None]):
     """One log, looked at from all sides. Modal, so that no key of the lab below it works here.
 
     Args:

@@ -1,4 +1,4 @@
-"""What the dialogs have in common: a frame with a title in the middle of the screen, Escape to leave."""
+"""What the dialogs have in common: they close once, have a frame with a title, and are left by Escape."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from typing import ClassVar, Generic, TypeVar
 from rich.table import Table
 from rich.text import Text
 from textual.app import ComposeResult
+from textual.await_complete import AwaitComplete
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
+from textual.message import Message
 from textual.screen import ModalScreen
 
 Result = TypeVar("Result")
@@ -24,7 +26,40 @@ def name_and_title(name: str, title: str, name_cells: int) -> Table:
     return table
 
 
-class Dialog(ModalScreen[Result], Generic[Result]):
+class ClosesOnce(ModalScreen[Result], Generic[Result]):
+    """A screen over another one. It gives one result, and hears nothing after that.
+
+    Textual takes the uppermost screen away for each call of `dismiss`, whichever screen it is called for. A key that
+    is pressed twice would give two results, and take away the screen below as well.
+    """
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it has given its result, or has never been opened."""
+        return self not in self.app.screen_stack
+
+    def dismiss(self, result: Result | None = None) -> AwaitComplete:
+        """Give the result and close, with every screen above; do nothing if that has been done."""
+        if self.is_closed:
+            return AwaitComplete.nothing()
+        stack = self.app.screen_stack
+        opened = stack[stack.index(self) :]
+        for screen in opened:
+            if not screen.is_mounted:
+                # Textual cannot take away what it is still building.
+                screen.call_later(self.dismiss, result)
+                return AwaitComplete.nothing()
+        for above in reversed(opened[1:]):
+            above.dismiss(None)
+        return super().dismiss(result)
+
+    async def _on_message(self, message: Message) -> None:
+        # A widget of a closed screen may have more to tell, such as a second Enter.
+        if not (message.bubble and self.is_closed):
+            await super()._on_message(message)
+
+
+class Dialog(ClosesOnce[Result], Generic[Result]):
     """A frame with a title; gives None when left by Escape."""
 
     TITLE_TEXT: str = ""

@@ -1,0 +1,107 @@
+"""Keys that come faster than screens open and close."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from textual.screen import Screen
+
+import tuisim.ui
+from tests.ui.app_help import LOGS, ready, settings, until
+from tests.ui.monkey import at_once
+from tuisim.ui.analyser.app import AnalyserApp
+from tuisim.ui.analyser.help import AnalyserHelp
+from tuisim.ui.analyser.screen import Analyser
+from tuisim.ui.analyser.subject import Wanted
+from tuisim.ui.app import Lab
+from tuisim.ui.palette import Palette
+from tuisim.ui.screens.dialog import ClosesOnce
+from tuisim.ui.screens.help import HelpScreen
+from tuisim.ui.screens.question import Question
+
+IN_THE_LAB = {
+    "mat": "b enter enter escape",
+    "program": "o enter enter escape",
+    "stored run": "h enter enter escape",
+    "palette": "ctrl+p enter enter escape",
+    "palette asked for twice": "ctrl+p escape ctrl+p ctrl+p escape escape",
+    "two dialogs after each other": "b escape T escape escape",
+}
+
+
+@pytest.fixture(autouse=True)
+def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("keys", IN_THE_LAB.values(), ids=list(IN_THE_LAB))
+async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
+    async with Lab(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        at_once(pilot, keys.split())
+        await pilot.pause(0.1)
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        at_once(pilot, ["question_mark"])
+        await until(pilot, lambda: isinstance(app.screen, HelpScreen))
+
+
+IN_THE_ANALYSER = {
+    "note": "m A enter enter escape",
+    "palette": "ctrl+p enter enter escape",
+}
+
+
+@pytest.mark.parametrize("keys", IN_THE_ANALYSER.values(), ids=list(IN_THE_ANALYSER))
+async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
+    Path("log.txt").write_text("".join(f"Colour: {value}\n" for value in range(9)))
+    async with AnalyserApp(Wanted(file="log.txt")).run_test(size=(80, 24)) as pilot:
+        app = pilot.app
+        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.model is not None)
+        analyser = app.screen
+        at_once(pilot, keys.split())
+        await pilot.pause(0.1)
+        await until(pilot, lambda: app.screen is analyser)
+        at_once(pilot, ["question_mark"])
+        await until(pilot, lambda: isinstance(app.screen, AnalyserHelp))
+
+
+async def test_a_dialog_gives_its_result_once() -> None:
+    given: list[str | None] = []
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        app.push_screen(Question("", "", (("y", ""),)), given.append)
+        await pilot.pause()
+        at_once(pilot, ["y", "y", "enter"])
+        await pilot.pause()
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        await pilot.pause()
+    assert given == ["y"]
+
+
+@pytest.mark.parametrize("above", [HelpScreen, Palette])
+async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(above: type[Screen[None]]) -> None:
+    given: list[str | None] = []
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        below = Question("", "", (("y", ""),))
+        app.push_screen(below, given.append)
+        app.push_screen(above())
+        below.dismiss("y")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        await pilot.pause()
+    assert given == ["y"]
+
+
+def _screens() -> Iterator[type[Screen[object]]]:
+    for module in pkgutil.walk_packages(tuisim.ui.__path__, "tuisim.ui."):
+        for found in vars(importlib.import_module(module.name)).values():
+            if isinstance(found, type) and issubclass(found, Screen) and found.__module__ == module.name:
+                yield found
+
+
+def test_every_screen_closes_once() -> None:
+    assert [screen for screen in _screens() if not issubclass(screen, ClosesOnce)] == []
