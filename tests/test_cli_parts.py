@@ -128,7 +128,9 @@ def test_list_of_robots_tells_their_ports(here: Command) -> None:
 BAD = {
     "no port": ("[touch_sensors.nose]\nx_mm = 1", "touch_sensors.nose.port: is missing"),
     "a port twice": ("[touch_sensors.nose]\nport = 'in2'", "two sensors are on in2"),
-    "a motor port twice": ("[motors]\noutB = 'large'", "motors: two motors are on outB"),
+    "a wheel without a motor": ("[motors]\noutB = false", "motors.outB: drives a wheel"),
+    "no such motor of a wheel": ("[motors]\noutB = 'huge'", "motors.outB: no such value 'huge'"),
+    "an infrared port twice": ("[infrareds.back]\nport = 'in1'", "two sensors are on in1"),
     "no such motor": ("[motors]\noutA = 'huge'", "motors.outA: no such value 'huge'"),
     "no such motor port": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
     "no such port": ("[infrared]\nport = 'in9'", "no such port 'in9'"),
@@ -148,3 +150,50 @@ def test_wrong_robot_file(tmp_path: Path, text: str, expected: str) -> None:
         load_robot(str(path))
     assert expected in str(caught.value)
     assert str(path) in str(caught.value)
+
+
+MEDIUM_WHEELS = "ultrasonic = false\n[motors]\noutB = 'medium'\noutC = 'medium'\n"
+DRIVES = """# %%sim_magic -r robot.toml -x 500 -y 500
+from ev3dev2.motor import *
+tank = MoveTank(OUTPUT_B, OUTPUT_C, motor_class=MediumMotor)
+tank.on_for_rotations(SpeedPercent(50), SpeedPercent(50), 2)
+motor = MediumMotor(OUTPUT_B)
+print(motor.driver_name, motor.max_speed, motor.count_per_rot, motor.position)
+tank.on_for_seconds(SpeedPercent(100), SpeedPercent(100), 2.2, brake=False, block=False)
+tank.wait(lambda _: motor.speed == 1560, 4000)
+print(motor.speed, tank.left_motor.max_speed)
+tank.off()
+print(MediumMotor().address)
+try:
+    LargeMotor(OUTPUT_B)
+except Exception as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize(("profile", "position"), [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "810")])
+def test_wheels_of_medium_motors(here: Command, tmp_path: Path, profile: str, position: str) -> None:
+    (tmp_path / "robot.toml").write_text(MEDIUM_WHEELS)
+    (tmp_path / "prog.py").write_text(DRIVES)
+    done = here("run", "prog.py", "--profile", profile)
+    assert done.stdout.splitlines() == [
+        f"lego-ev3-m-motor 1560 360 {position}",
+        "1560 1560",
+        "ev3-ports:outB",
+        "LargeMotor(ev3-ports:outB) is not connected. This robot has: outB lego-ev3-m-motor, outC lego-ev3-m-motor.",
+    ], done.stderr
+
+
+def test_several_infrared_sensors(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").write_text(
+        "ultrasonic = false\ngyro = false\n[infrared]\nport = 'in1'\n"
+        "[infrareds.back]\nport = 'in4'\nangle_deg = 180\ny_mm = -60\n"
+    )
+    (tmp_path / "prog.py").write_text(
+        "# %%sim_magic -r robot.toml -x 2200 -y 500\n"
+        "from ev3dev2.sensor import INPUT_1, INPUT_4\nfrom ev3dev2.sensor.lego import InfraredSensor\n"
+        "print(InfraredSensor(INPUT_1).proximity, InfraredSensor(INPUT_4).proximity)\n"
+    )
+    done = here("run", "prog.py", "--telemetry", "log.csv")
+    assert done.stdout == "20 100\n", done.stderr
+    assert (tmp_path / "log.csv").read_text().partition("\n")[0].endswith("infrared_proximity,back_proximity,line")

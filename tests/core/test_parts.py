@@ -13,9 +13,11 @@ from tests.core.memory_sink import MemorySink
 from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
-from tuisim.core.profile import PROFILES
+from tuisim.core.profile import PROFILES, ROBOLAB
 from tuisim.core.sensors import infrared, touch
-from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec, from_plain, to_plain
+from tuisim.core.simulation import Simulation
+from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec, from_plain, to_plain
+from tuisim.core.state import TICK_RECORD
 from tuisim.errors import ConfigError
 
 ROBOT = RobotSpec(
@@ -157,3 +159,20 @@ def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: s
             assert motor.moving_dps == dps
     # Even turning is told once.
     assert len(told) < 100
+
+
+@pytest.mark.parametrize(("kind", "limit_dps"), [("large", 1050.0), ("medium", 1560.0)])
+def test_noise_makes_a_wheel_no_faster_than_its_motor(kind: str, limit_dps: float) -> None:
+    robot = RobotSpec(left_motor=kind, right_motor=kind, weight=0.0)
+    sink = MemorySink()
+    sim = Simulation(RunSpec(robot, WorldSpec(noise=NoiseSpec(0, 100)), ROBOLAB, seed=3), sink)
+    for motor in (sim.left, sim.right):
+        motor.run(limit_dps)
+    sim.advance(100)
+    speeds = [TICK_RECORD.unpack_from(sink.buffer, 64 * (tick + 1))[7] for tick in range(1, 101)]
+    assert max(speeds) == limit_dps
+
+
+def test_a_run_says_nothing_new_of_a_robot_without_new_parts() -> None:
+    plain = to_plain(RunSpec(RobotSpec(), WorldSpec(), ROBOLAB))
+    assert not {"left_motor", "right_motor", "extra_infrareds"} & plain["robot"].keys()

@@ -41,7 +41,10 @@ def execute(arguments: Namespace) -> int:
 def _row(robot: RobotSpec) -> tuple[str, ...]:
     wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
     sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
-    ports = [(robot.left_port, "left wheel"), (robot.right_port, "right wheel")]
+    ports = [
+        (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
+        for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
+    ]
     ports += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
     ports += [(sensor.port, sensor.name) for sensor in robot.sensors]
     on_ports = ", ".join(f"{port} {name}" for port, name in sorted(ports))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, replace
 from typing import Any
 
@@ -33,23 +33,35 @@ def parts_from_table(table: Section, base: RobotSpec) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     if "motors" in table:
-        found["extra_motors"] = _motors(table.section("motors"), base.extra_motors)
+        wheels = {table.text(key) if key in table else getattr(base, key): key for key in ("left_port", "right_port")}
+        found |= _motors(table.section("motors"), base.extra_motors, wheels)
     for mount in MOUNTS:
         if mount.key in table:
             found[mount.field] = _named(table, mount, base) if mount.many else _single(table, mount, base)
     return found
 
 
-def _motors(table: Section, base: Iterable[MotorSpec]) -> tuple[MotorSpec, ...]:
-    """Kinds by port; `false` takes the motor of the base away."""
+def _motors(table: Section, base: Iterable[MotorSpec], wheels: Mapping[str, str]) -> dict[str, Any]:
+    """Kinds by port, as fields of `RobotSpec`; `false` takes a motor of the base away.
+
+    Args:
+        table: The table.
+        base: The motors of the base that do not drive it.
+        wheels: `left_port` and `right_port`, by the port that they name.
+    """
     kinds = {motor.port: motor.kind for motor in base}
+    found: dict[str, Any] = {}
     table.allow(OUTPUT_PORTS)
     for port in table:
-        if table.raw(port) is False:
+        if port in wheels and table.raw(port) is False:
+            raise table.wrong(port, "drives a wheel", f"it stays; {wheels[port]} names the port")
+        if port in wheels:
+            found[wheels[port].replace("port", "motor")] = table.one_of(port, MOTOR_KINDS)
+        elif table.raw(port) is False:
             kinds.pop(port, None)
         else:
             kinds[port] = table.one_of(port, MOTOR_KINDS)
-    return tuple(MotorSpec(port, kind) for port, kind in kinds.items())
+    return {**found, "extra_motors": tuple(MotorSpec(port, kind) for port, kind in kinds.items())}
 
 
 def _single(table: Section, mount: Mount, base: RobotSpec) -> SensorSpec | None:

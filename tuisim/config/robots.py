@@ -122,8 +122,9 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
             place = f"{mount.key}.{toml_key(sensor.name)}" if mount.many else mount.key
             comments = {**COMMENTS, **_FURTHER_COMMENTS.get(mount.spec, {})}
             lines += ["", f"[{under}{place}]", *toml_lines(_values(sensor, keys_of(mount.spec)), comments)]
-    if spec.extra_motors:
-        motors: dict[str, Scalar] = {motor.port: motor.kind for motor in spec.extra_motors}
+    wheels = [motor for motor in spec.wheel_motors if motor.kind != "large"]
+    if wheels or spec.extra_motors:
+        motors: dict[str, Scalar] = {motor.port: motor.kind for motor in (*wheels, *spec.extra_motors)}
         lines += ["", f"[{under}motors]", *toml_lines(motors)]
     return [*lines, "", f"[{under}pen]", *toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tuisim.core import motors
-from tuisim.core.motors import Motor
+from tuisim.core.motors import Motor, top_speed_dps
 from tuisim.core.simulation import Simulation
 from tuisim.core.sink import TickSink
 from tuisim.core.spec import RunSpec
@@ -29,7 +29,9 @@ class FurtherMotors(Simulation):
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         super().__init__(spec, sink)
-        self.others: tuple[Motor, ...] = tuple(Motor() for _ in spec.robot.extra_motors)
+        self.others: tuple[Motor, ...] = tuple(
+            Motor(top_speed_dps(motor.kind, spec.profile)) for motor in spec.robot.extra_motors
+        )
         self.tell: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when a motor turns otherwise than was told last; until then each turns evenly on."""
         self._told: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)

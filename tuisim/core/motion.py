@@ -12,7 +12,7 @@ from struct import Struct
 
 from tuisim.core import motors
 from tuisim.core.drive import mm_per_degree
-from tuisim.core.motors import Motor, MotorState, ramped
+from tuisim.core.motors import Motor, MotorState, ramped, top_speed_dps
 from tuisim.core.noise import wheel_noise
 from tuisim.core.sink import Buffer, TickSink
 from tuisim.core.solid import Solids
@@ -67,13 +67,16 @@ class Motion:
         self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
         if self._solids is not None:
             # A wheel at full speed forwards and the other backwards.
-            farthest = spec.profile.max_speed_dps * self._tick_s * self._mm_per_deg
+            fastest = max(top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors)
+            farthest = fastest * self._tick_s * self._mm_per_deg
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
         start = spec.world.start
         self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
         self.gyro_zero_deg = float32(start.heading_deg)
-        self.left, self.right = Motor(), Motor()
+        left, right = spec.robot.wheel_motors
+        self.left = Motor(top_speed_dps(left.kind, spec.profile))
+        self.right = Motor(top_speed_dps(right.kind, spec.profile))
         self.noise = spec.world.noise
         self.pen_down = spec.robot.pen.down
         self.line = 0

@@ -22,8 +22,16 @@ ENDLESS = 1 << 60
 """More ticks than any run has."""
 
 
+MEDIUM_MAX_SPEED_DPS = 1560.0
+"""Medium motor, no load (EV3 motor driver table)."""
+
 STANDS_STILL_DEG = 1e-3
 """A wheel that turns less in a tick stands still."""
+
+
+def top_speed_dps(kind: str, profile: ProfileSpec) -> float:
+    """Return how fast a motor of a kind turns without a load."""
+    return MEDIUM_MAX_SPEED_DPS if kind == "medium" else profile.max_speed_dps
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +67,19 @@ def ramped(speed: float, target: float, step: float, whole: bool) -> float:
 
 
 class Motor:
-    """One motor with its encoder."""
+    """One motor with its encoder.
+
+    Args:
+        max_dps: Noise makes it no faster than this.
+    """
 
     __slots__ = (
-        "approach_dps2", "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "mode", "position_deg", "sign",
-        "slowest_ramp_dps2", "speed_dps", "target_dps",
+        "approach_dps2", "blocked_ticks", "counts_on_dps", "end_tick", "goal_deg", "max_dps", "mode", "position_deg",
+        "sign", "slowest_ramp_dps2", "speed_dps", "target_dps",
     )  # fmt: skip
 
-    def __init__(self) -> None:
+    def __init__(self, max_dps: float) -> None:
+        self.max_dps = max_dps
         self.mode = STOPPED
         self.position_deg = 0.0
         self.speed_dps = 0.0
@@ -270,7 +283,7 @@ class Motor:
         return turned
 
     def _disturbed(self, profile: ProfileSpec, noise_dps: float) -> float:
-        limit = profile.max_speed_dps
+        limit = self.max_dps
         if profile.forward_noise_only:
             if self.speed_dps >= 0:
                 self.speed_dps = min(limit, float(round(self.speed_dps + noise_dps)))

@@ -12,7 +12,7 @@ from tuisim.core.checks import require, require_one_of
 from tuisim.errors import ObstacleError
 
 MOTOR_KINDS = ("large", "medium")
-"""Kinds of motors, for `MotorSpec.kind`."""
+"""Kinds of motors, for `MotorSpec.kind` and the motors of the wheels."""
 
 REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
 """Buttons of the remote control, as ev3dev2 names them."""
@@ -23,7 +23,7 @@ REMOTE_CHANNELS = (1, 2, 3, 4)
 
 @dataclass(frozen=True, slots=True)
 class MotorSpec:
-    """A motor that moves something on the robot, not the robot."""
+    """A motor on a port."""
 
     port: str
     kind: str = "medium"

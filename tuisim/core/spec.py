@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Protocol
 
 from tuisim.core.checks import require, require_one_of
 from tuisim.core.geometry import Pose
-from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
+from tuisim.core.parts import MOTOR_KINDS, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import ProfileSpec
 from tuisim.errors import ObstacleError, RobotError
 
@@ -148,6 +148,7 @@ MOUNTS = (
     Mount("extra_ultrasonics", UltrasonicSpec, many=True, written="ultrasonics"),
     Mount("touch_sensors", TouchSpec, many=True),
     Mount("infrared", InfraredSpec, many=False),
+    Mount("extra_infrareds", InfraredSpec, many=True, written="infrareds"),
 )
 """Every place for sensors, in the order of the telemetry columns."""
 
@@ -195,6 +196,20 @@ class RobotSpec:
     extra_ultrasonics: tuple[UltrasonicSpec, ...] = ()
     touch_sensors: tuple[TouchSpec, ...] = ()
     infrared: InfraredSpec | None = None
+    extra_infrareds: tuple[InfraredSpec, ...] = ()
+    left_motor: str = "large"
+    """Kind of the motor that drives the left wheel, one of `MOTOR_KINDS`."""
+    right_motor: str = "large"
+
+    @property
+    def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
+        """The motors that drive the left and the right wheel."""
+        return MotorSpec(self.left_port, self.left_motor), MotorSpec(self.right_port, self.right_motor)
+
+    @property
+    def motors(self) -> tuple[MotorSpec, ...]:
+        """Every motor, those of the wheels first."""
+        return *self.wheel_motors, *self.extra_motors
 
     @property
     def sensors(self) -> tuple[SensorSpec, ...]:
@@ -221,6 +236,8 @@ class RobotSpec:
         require(self.weight, 0, 1000, "weight")
         for key in ("left_port", "right_port"):
             require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
+        for key in ("left_motor", "right_motor"):
+            require_one_of(getattr(self, key), "kind of motor", MOTOR_KINDS, key)
         if self.left_port == self.right_port:
             raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
         used = {self.left_port, self.right_port}
@@ -310,9 +327,17 @@ class RunSpec:
     seed: int = 0
 
 
+_SAID_IF_UNUSUAL: Mapping[str, Any] = {"extra_infrareds": (), "left_motor": "large", "right_motor": "large"}
+"""Fields of a robot that are left out where they have these values, so that its exports are those of any version."""
+
+
 def to_plain(spec: RunSpec) -> dict[str, Any]:
     """Return `spec` as dictionaries, lists, strings and numbers, ready for JSON."""
-    return asdict(spec)
+    plain = asdict(spec)
+    for key, usual in _SAID_IF_UNUSUAL.items():
+        if plain["robot"][key] == usual:
+            del plain["robot"][key]
+    return plain
 
 
 def from_plain(data: Mapping[str, Any]) -> RunSpec:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from tuisim.core.motors import Motor
 from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import mounted
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
@@ -38,14 +37,10 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
         The brick, and its colour sensors by device path.
     """
     brick, robot, sim = Brick(), session.sim.spec.robot, session.sim
-    motors: list[tuple[str, Motor, str]] = [
-        (robot.left_port, sim.left, "large"),
-        (robot.right_port, sim.right, "large"),
-        *((spec.port, motor, spec.kind) for spec, motor in zip(robot.extra_motors, sim.others, strict=True)),
-    ]
+    motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
     # Listed by port, so that a class asked for without an address finds the first port.
-    for at, (port, motor, kind) in enumerate(sorted(motors, key=lambda found: found[0])):
-        brick.add(MOTOR_CLASS, f"motor{at}", TachoMotor(session, motor, port, kind).device())
+    for at, (motor, simulated) in enumerate(sorted(motors, key=lambda found: found[0].port)):
+        brick.add(MOTOR_CLASS, f"motor{at}", TachoMotor(session, simulated, motor.port, motor.kind).device())
     colors: dict[str, ColorDevice] = {}
     sensors: list[LegoSensor] = []
     for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
@@ -66,9 +61,7 @@ def ports_hint(session: Session, class_name: str) -> str:
     """Return what is on which port, for a program that looked for something else; empty for other classes."""
     robot = session.sim.spec.robot
     if class_name == MOTOR_CLASS:
-        drivers = [(robot.left_port, "large"), (robot.right_port, "large")]
-        drivers += [(motor.port, motor.kind) for motor in robot.extra_motors]
-        found = [(port, KINDS[kind].driver_name) for port, kind in drivers]
+        found = [(motor.port, KINDS[motor.kind].driver_name) for motor in robot.motors]
     elif class_name == SENSOR_CLASS:
         found = [(sensor.port, kind.driver_name) for kind, sensor in mounted(robot)]
     else:

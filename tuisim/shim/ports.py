@@ -51,9 +51,7 @@ class Plugged:
 
 def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
     """Return what is on the robot's ports, by their short names such as `in1`."""
-    motors = {robot.left_port: "large", robot.right_port: "large"}
-    motors |= {motor.port: motor.kind for motor in robot.extra_motors}
-    found = {port: Plugged(KINDS[kind].driver_name, "tacho-motor") for port, kind in motors.items()}
+    found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in robot.motors}
     for kind, sensor in mounted(robot):
         found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
     return found

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from tuisim.core.motors import POSITION, STOPPED, TIMED, Motor
+from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
 from tuisim.core.profile import MS, ProfileSpec
 from tuisim.shim.devices import NumberWriter, Reader, SimDevice, refuse
 from tuisim.shim.session import Session
@@ -31,7 +31,7 @@ class MotorKind:
 
 KINDS = {
     "large": MotorKind("lego-ev3-l-motor", 1050, 80_000),
-    "medium": MotorKind("lego-ev3-m-motor", 1560, 160_000),
+    "medium": MotorKind("lego-ev3-m-motor", int(MEDIUM_MAX_SPEED_DPS), 160_000),
 }
 """By `MotorSpec.kind`."""
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.config import ROBOTS
+from tuisim.core.parts import MOTOR_KINDS
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import (
     BACKGROUND_FITS,
@@ -151,6 +152,16 @@ def _motor_edit(key: str, label: str) -> Edit:
     return _robot_edit(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
 
 
+def _kind_edit(key: str, label: str) -> Edit:
+    """The kind of a wheel's motor."""
+
+    def change(robot: RobotSpec, kind: str) -> RobotSpec:
+        kinds: dict[str, Any] = {key: kind}
+        return replace(robot, **kinds)
+
+    return _robot_edit(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
+
+
 def _robot_word(plan: Plan) -> str:
     word = Path(plan.words.get("robot", plan.robot.spec.name)).name
     return f"{word}, edited" if plan.robot_is_edited else word
@@ -167,6 +178,8 @@ def _robot_edits() -> tuple[Edit, ...]:
         _robot_edit("weight", "Weight", _weight_name, _weighed),
         _motor_edit("left_port", "Left motor"),
         _motor_edit("right_port", "Right motor"),
+        _kind_edit("left_motor", "Left kind"),
+        _kind_edit("right_motor", "Right kind"),
     )
 
 

@@ -115,10 +115,9 @@ def _button_note(names: dict[str, Any]) -> str:
 
 def _motors(session: Session) -> list[tuple[str, Motor]]:
     """Return port and motor, in the order of the device folders."""
-    robot, sim = session.sim.spec.robot, session.sim
-    found = [(robot.left_port, sim.left), (robot.right_port, sim.right)]
-    found += [(spec.port, motor) for spec, motor in zip(robot.extra_motors, sim.others, strict=True)]
-    return sorted(found, key=lambda one: one[0])
+    sim = session.sim
+    motors = zip(sim.spec.robot.motors, (sim.left, sim.right, *sim.others), strict=True)
+    return sorted(((spec.port, motor) for spec, motor in motors), key=lambda one: one[0])
 
 
 def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> str:
