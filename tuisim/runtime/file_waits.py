@@ -127,8 +127,8 @@ class FileWaits:
         timeout_s = socket.gettimeout()
         if timeout_s == 0.0:
             return
-        parts = ([], [socket], []) if writes else ([socket], [], [])
-        look = partial(self._select, *parts, 0)
+        readers, writers = ([], [socket]) if writes else ([socket], [])
+        look = partial(self._select, readers, writers, [], 0)
         if not self.until_found(lambda: any(look()), _nanoseconds(timeout_s, NS_PER_S)):
             raise TimeoutError("timed out")
 

@@ -14,6 +14,8 @@ class MissingPart:
     """
 
     __slots__ = ("_error", "_name")
+    _name: str
+    _error: Exception
 
     def __init__(self, name: str, error: Exception) -> None:
         error.add_note(f"`{name}` is a name that the program found ready: it stands for parts of Default_Robot.")

@@ -1,0 +1,5 @@
+from base import ahead
+
+
+def main():
+    ahead(30, speed=60)
