@@ -120,9 +120,9 @@ def test_no_magic_line(text: str) -> None:
 
 
 @pytest.mark.parametrize("end", ["\n", ""], ids=["newline", "end of file"])
-def test_raw_magic_line_is_blanked_so_that_lines_keep_their_numbers(end: str) -> None:
+def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_their_numbers(end: str) -> None:
     program = parse_program(f"\n%%sim_magic_preloaded -b Grey_bands -OHR{end}", "a.py")
-    assert program.text == f"\n{end}"
+    assert program.text == f"\n# %%sim_magic_preloaded -b Grey_bands -OHR{end}"
     assert program.switches["background"] == "Grey_bands"
 
 

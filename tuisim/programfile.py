@@ -47,7 +47,7 @@ class Magic:
     switches: Mapping[str, Any]
     """By field of `Settings`."""
     comment: bool
-    """Whether it stands in a comment; if not, it is not Python and must be blanked."""
+    """Whether it stands in a comment; if not, it is not Python and must become one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class ProgramSource:
     """File name."""
     path: str
     text: str
-    """The source; a magic line that is not a comment is blank, so that line numbers are the file's own."""
+    """The source; a magic line that is none has become a comment, so that line numbers are the file's own."""
     prelude: str
     """none, imports or preloaded."""
     switches: Mapping[str, Any] = field(default_factory=dict)
@@ -179,7 +179,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
         return ProgramSource(name, path, text, prelude_for(text))
     if not magic.comment:
         lines = source_lines(text)
-        lines[magic.line - 1] = ""
+        lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"
         text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
     return ProgramSource(name, path, text, str(magic.switches.get("preload", magic.prelude)), magic.switches)
 

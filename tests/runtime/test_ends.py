@@ -49,6 +49,26 @@ def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None
     assert not any("tuisim" in line for line in done.errors)
 
 
+HINTS = {
+    "say": "or make it: `def say",
+    "tank_drive": "or make it: `tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)`",
+    "SpeedPercent": "or `from ev3dev2.motor import SpeedPercent`",
+    "sensor_val": "",
+}
+
+
+@pytest.mark.parametrize(("name", "how"), HINTS.items(), ids=HINTS)
+def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(run: Run, name: str, how: str) -> None:
+    done = run(f"import ev3dev2\nprint('A: 1')\n{name}\n", prelude="none")
+    told = done.errors[-1]
+    if name == "sensor_val":
+        assert told == "NameError: name 'sensor_val' is not defined"
+        return
+    assert told.startswith(f"`{name}` is a name of the prelude")
+    assert "put `# %%sim_magic_preloaded` into its first line" in told
+    assert how in told or name == "say"
+
+
 def test_error_shows_the_programs_lines_only(run: Run) -> None:
     done = run("import time\n\ndef look():\n    return sensor_val\n\nprint('A: 1')\nlook()\n")
     assert done.errors == [

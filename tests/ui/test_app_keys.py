@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,20 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
         recording = app.bridge.timeline.recording
         assert recording is not None
         assert any("Colour" in row.text for row in recording.rows.rows(0))
+
+
+@pytest.mark.parametrize(("size", "columns"), [((80, 24), 1), ((120, 40), 2), ((200, 60), 3)], ids=str)
+async def test_help_has_as_many_columns_as_there_is_room_for(size: tuple[int, int], columns: int) -> None:
+    async with Lab(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await pilot.press("question_mark")
+        groups = {"In the code", *(action.group for action in ACTIONS.values())}
+
+        def top() -> str:
+            """The row in which each column begins with the name of a group."""
+            return next((row for row in screen_text(app).split("\n") if re.search(r"│ +Program  ", row)), "")
+
+        await until(pilot, lambda: sum(f" {group}  " in top() for group in groups) == columns)
 
 
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
@@ -172,7 +187,7 @@ async def test_pen_is_p_and_not_shift_p() -> None:
 
 
 async def test_help_lists_every_key() -> None:
-    async with Lab(settings()).run_test(size=(120, 140)) as pilot:
+    async with Lab(settings()).run_test(size=(100, 170)) as pilot:
         app = await ready(pilot)
         await pilot.press("question_mark")
         assert isinstance(app.screen, HelpScreen)

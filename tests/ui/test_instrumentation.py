@@ -36,6 +36,17 @@ def text(now: Snapshot, width: int, height: int) -> list[str]:
     return ["".join(part for part, _ in line) for line in lines(now, width, height)]
 
 
+@pytest.mark.parametrize(
+    ("heading_deg", "shown"),
+    [(-399.3, "-39.3°"), (0.0, "0.0°"), (-90.0, "-90.0°"), (270.0, "-90.0°"), (180.0, "180.0°"), (-180.0, "-180.0°"),
+     (540.0, "180.0°"), (725.5, "5.5°")],
+)  # fmt: skip
+def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -> None:
+    now = moment(Pose(1.0, 2.0, heading_deg))
+    assert text(now, 44, 11)[-3].split()[-1] == shown
+    assert now.instant.pose.heading_deg == heading_deg
+
+
 @pytest.mark.parametrize("now", [moment(), BARE, FURTHER], ids=["usual", "no sensors", "further parts"])
 @pytest.mark.parametrize("width", [18, 20, 24, 26, 32, 40, 44, 80])
 @pytest.mark.parametrize("height", [4, 6, 8, 9, 11, 13, 14, 30])

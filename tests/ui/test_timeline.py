@@ -183,6 +183,10 @@ async def test_words_find_their_instants() -> None:
                     find(text, timeline)
             else:
                 assert find(text, timeline) == tick, text
+        newest = max(row.tick for row in rows)
+        timeline.go(None)
+        # At the end there is nothing after.
+        assert find("sample Colour", timeline) == find("sample", timeline) == newest
         timeline.go(dark)
         assert find("sample Colour back", timeline) == max(r.tick for r in rows if r.tick < dark)
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)

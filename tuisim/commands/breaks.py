@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.breaks import parse_breaks, parse_watch
 from tuisim.commands.echo import echo_error
+from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.simulation import NS_PER_S
 from tuisim.errors import ConfigError
 from tuisim.host import RunHandle
@@ -100,7 +101,11 @@ class BreakTeller:
         value = f" ({held.value})" if held.value else ""
         thread = f", thread {held.thread}" if len(looked.threads) > 1 else ""
         last = self._handle.telemetry.last()
-        pose = f", x {last.x_mm:.2f} mm, y {last.y_mm:.2f} mm, heading {last.heading_deg:.2f}°" if last else ""
+        pose = (
+            f", x {last.x_mm:.2f} mm, y {last.y_mm:.2f} mm, heading {shown_heading_deg(last.heading_deg):.2f}°"
+            if last
+            else ""
+        )
         where = f"{name}:{held.line}, {held.time_ns / NS_PER_S:.3f} s, tick {held.tick}{pose}{thread}"
         lines = [f"break {held.detail}{value}: {where}"]
         if not held.file and 0 < held.line <= len(self._source):

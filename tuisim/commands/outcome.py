@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
+from tuisim.core.geometry import shown_heading_deg
 from tuisim.datalog.records import STDERR
 from tuisim.datalog.runfile import RunEnd, StoredRun
 from tuisim.datalog.samples import counts_of
@@ -68,7 +69,7 @@ def last_state(facts: dict[str, Any]) -> str:
     samples = "" if facts["samples"] is None else f"{facts['samples']} sample{'s' * (facts['samples'] != 1)} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
-        f"x {facts['x_mm']:.2f} mm, y {facts['y_mm']:.2f} mm, heading {facts['heading_deg']:.2f}° · "
+        f"x {facts['x_mm']:.2f} mm, y {facts['y_mm']:.2f} mm, heading {shown_heading_deg(facts['heading_deg']):.2f}° · "
         f"{samples}run {facts['run']}"
     )
 

@@ -16,6 +16,13 @@ class Pose:
     """Counter-clockwise from +x, not wrapped: -90 stays -90, two turns are 720."""
 
 
+def shown_heading_deg(heading_deg: float) -> float:
+    """Return a heading as people read it, from -180 to 180; what is recorded goes on counting turns."""
+    if -180.0 <= heading_deg <= 180.0:
+        return heading_deg
+    return 180.0 - (180.0 - heading_deg) % 360.0
+
+
 def world_point(pose: Pose, x_mm: float, y_mm: float) -> tuple[float, float]:
     """Return the world position of a point given in robot coordinates.
 

@@ -12,6 +12,7 @@ from typing import Any
 from IPython.core.getipython import get_ipython
 from IPython.display import DisplayHandle, display
 
+from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
@@ -105,7 +106,11 @@ def instrumentation(scene: Scene) -> list[Row]:
 
 def _positioning(scene: Scene) -> list[Row]:
     pose = scene.last.pose
-    return [("x", f"{pose.x_mm:.1f} mm"), ("y", f"{pose.y_mm:.1f} mm"), ("heading", f"{pose.heading_deg:.1f}°")]
+    return [
+        ("x", f"{pose.x_mm:.1f} mm"),
+        ("y", f"{pose.y_mm:.1f} mm"),
+        ("heading", f"{shown_heading_deg(pose.heading_deg):.1f}°"),
+    ]
 
 
 def _noise(scene: Scene) -> list[Row]:

@@ -50,3 +50,38 @@ def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
                 yield part, code
             case _:
                 yield "", code
+
+
+def point_at_prelude(error: BaseException) -> None:
+    """Add to an error that is about a name of the prelude how a program comes by that name."""
+    if not isinstance(error, NameError) or not error.name:
+        return
+    statement = _statement_of(error.name)
+    if statement is None:
+        return
+    magic = "put `# %%sim_magic_preloaded` into its first line"
+    match statement:
+        case ast.ImportFrom(module=str(module)):
+            how = f", or `from {module} import {error.name}`"
+        case ast.Assign():
+            how = f", or make it: `{ast.unparse(statement)}`"
+        case _:
+            how = ""
+    error.add_note(f"`{error.name}` is a name of the prelude, which this program has not asked for: {magic}{how}.")
+
+
+def _statement_of(name: str) -> ast.stmt | None:
+    """Return the statement of the whole prelude that makes a name, None if there is none."""
+    for statement in ast.parse(PRELUDE_TEXTS["preloaded"]).body:
+        match statement:
+            case ast.ImportFrom(names=aliases):
+                made = [alias.name for alias in aliases]
+            case ast.Assign(targets=[ast.Name(id=target)]):
+                made = [target]
+            case ast.FunctionDef(name=function):
+                made = [function]
+            case _:
+                made = []
+        if name in made:
+            return statement
+    return None

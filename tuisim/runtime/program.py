@@ -24,7 +24,7 @@ from tuisim.runtime.baton import Baton
 from tuisim.runtime.config import RunConfig
 from tuisim.runtime.frames import patch_faulthandler
 from tuisim.runtime.halt import Deadlock, StopProgram
-from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program
+from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program, point_at_prelude
 from tuisim.runtime.missing import MissingPart
 from tuisim.runtime.output import LineStream, Output
 from tuisim.runtime.report import report_error
@@ -219,6 +219,7 @@ class ProgramRunner:
 
     def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
         self.stdout.finish()
+        point_at_prelude(error)
         report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
         self._tell(report.text)
         end = "deadlock" if isinstance(error, Deadlock) else "raised"
@@ -243,6 +244,7 @@ class ProgramRunner:
     def _thread_error(self, _kind: Any, error: BaseException | None, _trace: Any) -> None:
         if error is None or isinstance(error, StopProgram):
             return
+        point_at_prelude(error)
         self._tell(report_error(error, self._session.program_file, self._config.text).text)
 
     def _ignored_error(self, ignored: Any) -> None:

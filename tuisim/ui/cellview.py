@@ -12,7 +12,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tuisim.ui.render.cells import Cells, changed_runs, to_cells
-from tuisim.ui.render.kinds import Run
+from tuisim.ui.render.kinds import Run, cut_line
 from tuisim.ui.render.mat import Pixels
 from tuisim.ui.render.palette import TRUECOLOR, ColorMode, reduce_pixels
 from tuisim.ui.strips import CellStrip, color_depth
@@ -114,8 +114,9 @@ class LinesView(RowsView):
         self._text_strips: list[Strip | None] = []
 
     def set_lines(self, lines: Sequence[Sequence[Run]]) -> None:
-        """Show lines from the top; a line may be shorter or longer than the widget is wide."""
-        old, self._lines = self._lines, list(lines)
+        """Show lines from the top; a longer one than the widget is wide ends in an ellipsis."""
+        width = self.size.width
+        old, self._lines = self._lines, [cut_line(line, width) if width else line for line in lines]
         if len(old) != len(self._lines):
             self._text_strips = [None] * len(self._lines)
             self.refresh()

@@ -105,7 +105,7 @@ class Loading:
         """Take a plan and a program together with their mat, which has been prepared already."""
         self._lab.bridge.mat = mat
         self._good = plan, mat
-        self._note_program(program, {})
+        self._note_program(program, _said_in(program))
         self._load(plan, program)
         self._lab.mat_ready(mat.pixels)
 
@@ -343,6 +343,19 @@ def _program_of(file: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
     from tuisim.host import Program
 
     return Program(name=file.name, text=file.text, prelude=file.prelude, path=file.path), file.switches
+
+
+def _said_in(program: Program | None) -> Mapping[str, Any]:
+    """What the magic line of a program says that is there already; nothing if it is wrong by now."""
+    from tuisim.programfile import program_of_text
+
+    if program is None:
+        return {}
+    try:
+        path = Path(program.path) if program.path else None
+        return program_of_text(program.text, path, program.name).switches
+    except TuisimError:
+        return {}
 
 
 def _program_path(word: str) -> str:

@@ -26,7 +26,7 @@ FORMS = (
     ("sample Colour < 90", "the next that is so: < <= > >= = !="),
     ("print REGEX", "the next printed line that matches"),
     ("start, end", "the first instant, and now"),
-    ("… back", "after line, sample or print: the last before"),
+    ("… back", "line, sample or print: the last before, as at the end"),
 )
 """What is understood, and what it means."""
 
@@ -92,7 +92,8 @@ def find(text: str, timeline: Timeline) -> int:
     if not back and word == "tick" and rest.isdecimal():
         return _within(int(rest), recording)
     at = recording.newest if timeline.at is None else timeline.at
-    search = _Search(recording, at, bool(back))
+    # After the newest instant there is nothing to be found.
+    search = _Search(recording, at, bool(back) or at >= recording.newest)
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
     if word == "sample" and (wanted := _SAMPLE.fullmatch(rest)):

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import pytest
 from textual.command import CommandPalette
 from textual.pilot import Pilot
@@ -20,6 +21,7 @@ from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import LogError
 from tuisim.host import RunOptions, start_run
+from tuisim.programfile import parse_program
 from tuisim.switches import Settings
 from tuisim.ui.analyser.actions import ACTIONS
 from tuisim.ui.analyser.app import AnalyserApp
@@ -71,13 +73,17 @@ async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
         screen, model = await opened(pilot)
         await pilot.press("b", "down")
         text = text_of(pilot)
-        assert "4 levels: 100.00 white (4x), 86.27 pale grey, 82.75 light grey, 50.20" in text
+        assert "82.75 light grey" in text
         assert model.rows.text(model.row, "value") == "86.2745"
-        await pilot.press("m", "!", "enter")
+        await pilot.press("m")
+        field = pilot.app.screen.query_one(Input)
+        assert field.value == "band 2: 86.27 pale grey"
+        # What is typed takes the place of what is proposed.
+        await pilot.press(*"white", "enter")
         await pilot.press("n")
-        assert "band 2: 86.27 pale grey!" in text_of(pilot)
+        assert "white" in text_of(pilot)
         (note,) = read_notes(run.folder / NOTES_FILE)
-        assert (note.variable, note.text) == ("Colour", "band 2: 86.27 pale grey!")
+        assert (note.variable, note.text) == ("Colour", "white")
         assert note.start_s < model.time_of(model.row) < note.stop_s
         await pilot.press("home", "delete")
         assert not read_notes(run.folder / NOTES_FILE)
@@ -93,6 +99,57 @@ async def test_the_mouse_reads_the_chart_without_a_press(run: StoredRun) -> None
         assert model.row == before
         await pilot.hover(screen.pane, offset=(5, 5))
         await until(pilot, lambda: not screen.chart.border_subtitle)
+
+
+async def test_a_long_note_goes_on_in_further_lines(run: StoredRun) -> None:
+    words = " ".join(f"word{at}" for at in range(40))
+    async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(80, 30)) as pilot:
+        _, model = await opened(pilot)
+        await typed(pilot, "m", f"={words}", "enter", "n")
+        await until(pilot, lambda: "word39" in text_of(pilot))
+        assert all(word in text_of(pilot) for word in words.split())
+        await pilot.press("delete")
+        assert not model.notes
+
+
+async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
+    target = tmp_path / "bands.csv"
+    async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
+        _, model = await opened(pilot)
+        await pilot.press("b")
+        await until(pilot, lambda: bool(model.bands()))
+        await typed(pilot, "e", f"={target}", "enter")
+        await until(pilot, target.exists)
+        frame = pd.read_csv(target)
+        assert frame["level"].tolist() == pytest.approx([band.level for band in model.bands()])
+        assert frame["variable"].unique().tolist() == ["Colour"]
+
+
+async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun) -> None:
+    handle = start_run(program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))
+    handle.wait()
+    async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        screen, _ = await opened(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: "of" in text_of(pilot) and " runs" in text_of(pilot) and "prog.py" in text_of(pilot))
+        await pilot.press("space", "space", "enter")
+        await until(pilot, lambda: pilot.app.screen is screen and len(screen.wanted.runs) == 2)
+        assert screen.wanted.runs[0] == handle.run_id
+        await typed(pilot, "R")
+        await until(pilot, lambda: " runs" in text_of(pilot) and "prog.py" in text_of(pilot))
+        await typed(pilot, "=last", "tab")
+        pilot.app.screen.query_one(Input).focus()
+        await pilot.press("enter")
+        await until(pilot, lambda: screen.wanted.runs == (handle.run_id,))
+
+
+async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
+    text = parse_program("%%sim_magic_preloaded -b Grey_bands\nprint('Colour: 7')\n", "prog.py").text
+    handle = start_run(program(text), build_run_spec(Settings()), RunOptions(speed=0.0))
+    handle.wait()
+    async with AnalyserApp(Wanted(runs=(handle.run_id,))).run_test(size=(120, 40)) as pilot:
+        await opened(pilot)
+        await until(pilot, lambda: "%%sim_magic_preloaded -b Grey" in text_of(pilot))
 
 
 async def test_one_cursor_moves_all(run: StoredRun) -> None:

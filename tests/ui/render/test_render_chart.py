@@ -93,6 +93,11 @@ def test_tick_boxes_leave_most_of_a_chart_to_the_curves(height: int) -> None:
     assert picture.top <= height / 6
 
 
+def test_a_name_that_does_not_fit_ends_in_an_ellipsis() -> None:
+    rows = text(ChartPainter().paint(traces("a_name_that_is_much_too_long"), ChartState(), 20, 8))
+    assert rows[0].rstrip() == "[x] a_name_that_i…"
+
+
 def test_telemetry_is_not_ticked_at_first() -> None:
     rows = text(ChartPainter().paint(traces("gyro °", "Colour"), ChartState(), 80, 16))
 

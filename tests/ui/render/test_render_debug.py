@@ -30,6 +30,23 @@ def test_a_module_beside_the_program_is_named() -> None:
     assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]
 
 
+def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> None:
+    looked = Looked(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
+    view = DebugView("ended", Paused(469, 4_690_000_000, 13, "instant"), looked, True, now=(120, 1.2))
+    rows = text(view, 40)
+    assert rows[0] == "1.20 s · tick 120 …"
+    assert not any("4.69" in row or "line 13" in row for row in rows)
+
+
+def test_why_a_condition_holds_is_told_whole() -> None:
+    why = "cannot be evaluated: TypeError: '>' not supported between instances of 'str' and 'int'"
+    looked = Looked(5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), (), (), ())
+    paused = Paused(5, 50_000_000, 3, "break", "3 if name > 3", value=why)
+    rows = text(DebugView("paused", paused, looked), 30)
+    assert f"break 3 if name > 3: {why}" in " ".join(rows)
+    assert max(map(len, rows)) <= 30
+
+
 @pytest.mark.parametrize(
     ("width", "past", "head"),
     [

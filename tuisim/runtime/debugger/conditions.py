@@ -45,6 +45,7 @@ class Condition:
         names: Mapping[str, Any] = frame.f_locals
         if self._plain and type(names) is dict:
             values = {name: names.get(name, frame.f_globals.get(name, self)) for name in self._names}
+            values = {name: value for name, value in values.items() if value is not self or name in frame.f_builtins}
             if all(type(value) in _SCALARS for value in values.values()):
                 return self._at_once(values)
         answer = apart(
@@ -57,5 +58,8 @@ class Condition:
     def _at_once(self, values: dict[str, Any]) -> str:
         try:
             return "is true" if eval(self._code, {"__builtins__": {}}, values) else ""
+        except NameError:
+            # What does not exist yet is not so yet.
+            return ""
         except Exception as error:  # an expression can fail in any way; that is worth holding for
             return f"cannot be evaluated: {type(error).__name__}: {error}"

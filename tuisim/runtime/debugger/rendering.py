@@ -145,11 +145,17 @@ def evaluate(renderer: Renderer, text: str, names: Mapping[str, Any], builtin: A
 
 
 def evaluate_truth(text: str, names: Mapping[str, Any], builtin: Any) -> str:
-    """Return `.` and, if an expression is true or cannot be evaluated, what is to be said of it."""
+    """Return `.` and, if an expression is true or cannot be evaluated, what is to be said of it.
+
+    One with a name that does not exist yet is not true yet.
+    """
+    code = compile(text.strip(), "<break>", "eval", dont_inherit=True)
     try:
         with time_limit(VALUE_LIMIT_S):
-            return ".is true" if eval(text.strip(), {"__builtins__": builtin, **names}) else "."
+            return ".is true" if eval(code, {"__builtins__": builtin, **names}) else "."
     except TooLong:
         return ".takes too long"
     except BaseException as error:  # any error of the condition is worth holding for
+        if isinstance(error, NameError) and error.name in code.co_names:
+            return "."
         return f".cannot be evaluated: {describe(error)}"

@@ -93,7 +93,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("copy", "y", "y", "Copy the value", LOG, tabling.copy_value, "copy"),
         Action("copy-row", "Y", "Y", "Copy the row", LOG, tabling.copy_row),
         Action("copy-pane", "ctrl+y", "ctrl+y", "Copy the table as shown, or the pane", LOG, tabling.copy_pane),
-        Action("export", "e", "e", "Export the rows and columns as shown", LOG, tabling.ask_export, "export"),
+        Action("export", "e", "e", "Export the rows of the pane as shown", LOG, tabling.ask_export, "export"),
         Action("save-chart", "S", "S", "Save the chart as shown: SVG, PNG or text", LOG, outward.ask_chart),
         Action("report", "E", "E", "Write a report: one page with everything", LOG, outward.ask_report, of_rows=False),
         Action("delete-note", "delete", "delete", "Delete the chosen note", LOG, noting.delete),

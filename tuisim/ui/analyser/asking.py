@@ -28,14 +28,13 @@ class _Line(Input):
     Args:
         value: What stands there at first.
         words: What may be offered.
-        replaced: Whether that is selected at first.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "cursor_right", "Take the offered word", show=False)]
 
-    def __init__(self, value: str, words: Sequence[str], replaced: bool) -> None:
+    def __init__(self, value: str, words: Sequence[str]) -> None:
         offering = Offering(words) if words else None
-        super().__init__(value, compact=True, select_on_focus=replaced, suggester=offering)
+        super().__init__(value, compact=True, select_on_focus=True, suggester=offering)
 
 
 class Offering(Suggester):
@@ -67,10 +66,9 @@ class Asking(Dialog[bool]):
     Args:
         title: What it is about.
         do: Does it; a TuisimError is told and the line can be mended.
-        value: What stands there at first.
+        value: What stands there at first, selected: what is typed takes its place.
         forms: What may be typed.
         words: What the word that is being typed may become; tab takes what is offered.
-        replaced: Whether what is typed takes the place of what stands there, instead of following it.
     """
 
     HINT = "Enter does it · Escape closes"
@@ -82,10 +80,9 @@ class Asking(Dialog[bool]):
         value: str = "",
         forms: Sequence[Form] = (),
         words: Sequence[str] = (),
-        replaced: bool = False,
     ) -> None:
         super().__init__()
-        self._words, self._replaced = words, replaced
+        self._words = words
         self.TITLE_TEXT = title.replace("[", "\\[")
         self._do = do
         self._value = value
@@ -93,7 +90,7 @@ class Asking(Dialog[bool]):
 
     def content(self) -> ComposeResult:
         """The field, what is wrong with what stands there, and what may stand there."""
-        yield _Line(self._value, self._words, self._replaced)
+        yield _Line(self._value, self._words)
         yield Static(id="message", classes="wrong", markup=False)
         forms = Table.grid(padding=(0, 2))
         for form, meaning in self._forms:

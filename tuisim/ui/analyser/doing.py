@@ -28,7 +28,6 @@ _AGAINST = (
     ("Ultrasonic", "the chosen variable against another one"),
     ("(nothing)", "all over time"),
 )
-_WHICH = (("last", "the newest run"), ("12", "run 12"), ("12 13 14", "three runs, laid over each other"))
 
 
 def turn_to(screen: Analyser, pane: str) -> None:
@@ -195,7 +194,7 @@ def ask_alignment(screen: Analyser) -> None:
         screen.redraw_chart()
         screen.update()
 
-    screen.app.push_screen(Asking("Lay runs over each other by", go, model.alignment, _ALIGNMENTS, replaced=True))
+    screen.app.push_screen(Asking("Lay runs over each other by", go, model.alignment, _ALIGNMENTS))
 
 
 def ask_against(screen: Analyser) -> None:
@@ -233,20 +232,14 @@ def telemetry(screen: Analyser) -> None:
 
 def ask_runs(screen: Analyser) -> None:
     """Ask which runs to open."""
-    wanted = screen.wanted
+    from tuisim.ui.analyser.subject import Wanted
+    from tuisim.ui.screens.runs import RunsChooser
 
-    def go(text: str) -> None:
-        from tuisim.datalog.store import RunStore
-        from tuisim.ui.analyser.subject import Wanted
+    def take(ids: str | None) -> None:
+        if ids:
+            screen.open(Wanted(runs=tuple(ids.split())))
 
-        words = tuple(text.split())
-        if not words:
-            raise LogError("which runs?", "their numbers, ids, or last")
-        store = RunStore()
-        ids = tuple(store.find(word).id for word in words)
-        screen.open(Wanted(runs=ids))
-
-    screen.app.push_screen(Asking("Open runs", go, " ".join(wanted.runs) and "last", _WHICH, replaced=True))
+    screen.app.push_screen(RunsChooser(), take)
 
 
 def show_help(screen: Analyser) -> None:

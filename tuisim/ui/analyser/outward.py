@@ -41,7 +41,7 @@ def ask_chart(screen: Analyser) -> None:
         screen.say(f"The chart is in {target}")
         screen.redraw_chart()
 
-    screen.app.push_screen(Asking("Save the chart as shown", go, "chart.svg", _CHARTS, replaced=True))
+    screen.app.push_screen(Asking("Save the chart as shown", go, "chart.svg", _CHARTS))
 
 
 def ask_report(screen: Analyser) -> None:
@@ -58,7 +58,7 @@ def ask_report(screen: Analyser) -> None:
         check_report(target)
         screen.run_worker(partial(_write, screen, model.subject, target, names), thread=True, group="report")
 
-    screen.app.push_screen(Asking("Write the report", go, default_name(model.subject), _REPORTS, replaced=True))
+    screen.app.push_screen(Asking("Write the report", go, default_name(model.subject), _REPORTS))
 
 
 def _file(text: str, hint: str) -> Path:

@@ -6,9 +6,9 @@ To add a pane: write its two functions and add a line to `PANES`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import isfinite, nan
-from typing import Generic, TypeVar, overload
+from typing import TYPE_CHECKING, Generic, TypeVar, overload
 
 from rich.style import Style
 
@@ -17,8 +17,11 @@ from tuisim.datalog.analysis.statistics import QUANTILES
 from tuisim.ui.analyser.events import Event
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.task import AT_ONCE
-from tuisim.ui.render.kinds import Line
+from tuisim.ui.render.kinds import Line, cut
 from tuisim.ui.verbs import end_label
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Cells = tuple[str, ...]
 
@@ -50,6 +53,8 @@ class Pane:
     below: Callable[[Model], Sequence[str]] = lambda _: ()
     """Sentences below the rows."""
     empty: str = ""
+    wraps: bool = False
+    """Whether its last column is prose, which goes on in further lines instead of being cut."""
 
 
 def _figure(value: float, digits: str = ".4g") -> str:
@@ -156,7 +161,7 @@ PANES: Mapping[str, Pane] = {
     ),
     "notes": Pane(
         "Notes", _notes, ("from s", "to s", "variable", "run", "note"),
-        empty="No notes yet: m writes one about the sample at the cursor, or about a band",
+        empty="No notes yet: m writes one about the sample at the cursor, or about a band", wraps=True,
     ),
     "runs": Pane(
         "Runs", _runs, ("", "run", "program", "mat", "end", "s", "profile", "seed"),
@@ -164,6 +169,21 @@ PANES: Mapping[str, Pane] = {
     ),
 }  # fmt: skip
 """Every pane by its name."""
+
+
+def pane_frame(name: str, model: Model) -> pd.DataFrame:
+    """Return the rows of a pane other than the table; bands with every figure that is known of them."""
+    import pandas as pd
+
+    if name == "bands":
+        return pd.DataFrame([asdict(band) for band in model.bands()])
+    pane = PANES[name]
+    frame = pd.DataFrame([list(row) for row in pane.rows(model)], columns=[head or "#" for head in pane.heads])
+    for head in frame.columns:
+        # Thousands are set off for people only.
+        numbers = pd.to_numeric(frame[head].str.replace(",", ""), errors="coerce")
+        frame[head] = numbers if numbers.notna().all() else frame[head]
+    return frame
 
 
 def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) -> list[Line]:
@@ -193,13 +213,29 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
     used = _fitting_whole([at for at in range(len(widths)) if any(row[at] for row in measured)], widths, width)
     lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], HEAD)]
+    shown: list[Line] = []
+    chosen_at = range(0)
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN
-        line = _row([row[at] for at in used], [widths[at] for at in used], style)
+        made = _rows_of([row[at] for at in used], [widths[at] for at in used], style, width if pane.wraps else 0)
         if number == chosen:
-            line.append((" " * width, HERE))
-        lines.append(line)
-    return lines + [[(text, DIM)] for text in below]
+            chosen_at = range(len(shown), len(shown) + len(made))
+            made = [[*line, (" " * width, HERE)] for line in made]
+        shown += made
+    # Where rows take several lines, the chosen one stays in sight.
+    start = max(min(chosen_at.start, chosen_at.stop - room), 0)
+    return lines + shown[start : start + room] + [[(text, DIM)] for text in below]
+
+
+def _rows_of(texts: Sequence[str], widths: Sequence[int], style: Style, width: int) -> list[Line]:
+    """A row as lines: one, or as many as the last text needs in a pane of that width, 0 for no matter how wide."""
+    from textwrap import wrap
+
+    margin = sum(widths[:-1]) + 2 * (len(widths) - 1)
+    if not width or margin + len(texts[-1]) <= width:
+        return [_row(texts, widths, style)]
+    first, *rest = wrap(texts[-1], max(width - margin, 10)) or [""]
+    return [_row([*texts[:-1], first], widths, style), *([(" " * margin + text, style)] for text in rest)]
 
 
 def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
@@ -248,7 +284,7 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
     head: Line = [(" " * (number_width + 2), HEAD)]
     for column, wide in zip(columns, widths, strict=True):
         arrow = ("↓" if rows.descending else "↑") if column == rows.sorted_by else ""
-        text = (column + arrow)[:wide].ljust(wide)
+        text = cut(column + arrow, wide).ljust(wide)
         head += [(text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD), ("  ", HEAD)]
     lines = [head]
     for row in shown:
@@ -256,8 +292,8 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
         line: Line = [(f"{row + 1:>{number_width},}  ", HERE if row == model.row else DIM)]
         for column, wide in zip(columns, widths, strict=True):
             text = rows.text(row, column).replace("\n", "↵").replace("\t", " ")
-            cut = text if len(text) <= wide else text[: wide - 1] + "…"
-            line.append(((cut.rjust(wide) if _is_number(text) else cut.ljust(wide)) + "  ", style))
+            shown_text = cut(text, wide)
+            line.append(((shown_text.rjust(wide) if _is_number(text) else shown_text.ljust(wide)) + "  ", style))
         if row == model.row:
             line.append((" " * width, HERE))
         lines.append(line)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from time import monotonic
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from rich.style import Style
@@ -24,11 +24,15 @@ from tuisim.ui.analyser.columns import ask_if_unsure
 from tuisim.ui.analyser.finding import Finder
 from tuisim.ui.analyser.model import Model
 from tuisim.ui.analyser.pane import PaneView
+from tuisim.ui.analyser.panes import pane_frame
 from tuisim.ui.analyser.subject import Wanted, opening
 from tuisim.ui.analyser.task import Task
 from tuisim.ui.cellview import LinesView
 from tuisim.ui.leaving import is_leaving
 from tuisim.ui.screens.dialog import ClosesOnce
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
 _ALWAYS = ("help", "leave")
@@ -318,8 +322,8 @@ class Analyser(ClosesOnce[None]):
         """Show a short notice."""
         self.notify(text, timeout=3, markup=False)
 
-    def export(self, path: Path) -> None:
-        """Write the rows and columns that are shown to a file.
+    def export(self, path: Path, pane: str) -> None:
+        """Write the rows of a pane to a file, those of the table with the columns that are shown.
 
         Raises:
             ExportError: the file cannot be written.
@@ -328,13 +332,19 @@ class Analyser(ClosesOnce[None]):
 
         if self.model is not None:
             target = check_target(path)
-            self.run_worker(partial(self._write, self.model, target), thread=True, group="export")
+            frame = None if pane == "table" else pane_frame(pane, self.model)
+            self.run_worker(partial(self._write, self.model, frame, target), thread=True, group="export")
 
-    def _write(self, model: Model, target: Path) -> None:
+    def _write(self, model: Model, frame: pd.DataFrame | None, target: Path) -> None:
+        """Write a frame, or the rows of the table."""
+        from tuisim.datalog.export import LOG_FORMAT, export_frame
         from tuisim.datalog.opening.exporting import export_log
 
         try:
-            export_log(model.log, model.rows.shown(), target)
+            if frame is None:
+                export_log(model.log, model.rows.shown(), target)
+            else:
+                export_frame(frame, target, {"format": LOG_FORMAT, "table": "pane", "columns": list(frame.columns)})
         except TuisimError as error:
             self.app.call_from_thread(self.complain, error)
         else:

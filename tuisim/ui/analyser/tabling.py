@@ -96,7 +96,7 @@ def ask_search(screen: Analyser) -> None:
             _find(screen, 1)
 
     if screen.model is not None:
-        screen.app.push_screen(Asking("Search", go, screen.searched, replaced=True))
+        screen.app.push_screen(Asking("Search", go, screen.searched))
 
 
 def find(screen: Analyser, step: int) -> None:
@@ -153,14 +153,19 @@ def freeze(screen: Analyser) -> None:
 
 
 def ask_export(screen: Analyser) -> None:
-    """Ask for the file that the rows and columns that are shown are written to."""
+    """Ask for the file that the rows of the pane are written to, those of the table with the columns that are shown."""
+    pane = screen.pane.name_shown
+    if screen.model is None or (pane != "table" and not PANES[pane].rows(screen.model)):
+        screen.say("There are no rows here to export: t shows the table")
+        return
+    what = "rows" if pane == "table" else pane
 
     def go(text: str) -> None:
         if not text:
-            raise LogError("which file?", "such as rows.csv")
-        screen.export(Path(text).expanduser())
+            raise LogError("which file?", f"such as {what}.csv")
+        screen.export(Path(text).expanduser(), pane)
 
-    screen.app.push_screen(Asking("Export the rows as shown", go, "rows.csv", _FILES, replaced=True))
+    screen.app.push_screen(Asking(f"Export the {what} as shown", go, f"{what}.csv", _FILES))
 
 
 def copy_value(screen: Analyser) -> None:

@@ -57,6 +57,7 @@ class Debug(Widget, can_focus=True):
         self._view = LinesView()
         self._content = DebugView()
         self._state = IDLE
+        self._now: tuple[int, float] | None = None
         self._top = 0
         self._lines: list[Line] = []
 
@@ -74,9 +75,12 @@ class Debug(Widget, can_focus=True):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show whether the program runs; where it stands comes by `show_debugging`."""
-        if snapshot.state != self._state:
-            self._state = snapshot.state
+        now = snapshot.instant.tick, snapshot.time_s
+        # While it runs it stands nowhere, and there is nothing that could be of another instant.
+        if snapshot.state != self._state or (now != self._now and self._content.paused):
+            self._state, self._now = snapshot.state, now
             self._draw()
+        self._now = now
 
     def show_debugging(self, debugging: Debugging) -> None:
         """Show where the program stands."""
@@ -96,7 +100,7 @@ class Debug(Widget, can_focus=True):
         size = self._view.size
         if not size:
             return
-        self._lines = debug_lines(replace(self._content, state=self._state), size.width)
+        self._lines = debug_lines(replace(self._content, state=self._state, now=self._now), size.width)
         self._top = max(0, min(self._top, len(self._lines) - size.height))
         below = len(self._lines) - self._top - size.height
         self.border_title = f"{self.TITLE} ↓{below}" if below > 0 else self.TITLE

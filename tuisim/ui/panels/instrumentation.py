@@ -10,10 +10,11 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
+from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors.color import ColorReading
 from tuisim.datalog.units import unit_of
 from tuisim.ui.cellview import LinesView
-from tuisim.ui.render.kinds import Line, Run
+from tuisim.ui.render.kinds import Line, Run, cut
 from tuisim.ui.snapshot import ENDED, Snapshot
 from tuisim.ui.throttle import Throttle
 from tuisim.ui.verbs import end_label
@@ -106,8 +107,8 @@ def _further(column: str, value: float, width: int) -> Line:
     label = name.capitalize()
     return _fit(
         width,
-        (_label(label[: _COLUMN - 1]), _value(shown if what == "pressed" else f"{shown:>6}"), _unit(unit)),
-        (_label(label[:8], 9), _value(shown), _unit(unit)),
+        (_label(cut(label, _COLUMN - 1)), _value(shown if what == "pressed" else f"{shown:>6}"), _unit(unit)),
+        (_label(cut(label, 8), 9), _value(shown), _unit(unit)),
     )
 
 
@@ -240,7 +241,7 @@ def _gyro(now: Snapshot, width: int) -> Line:
 
 def _pose(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
-    x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{pose.heading_deg:.1f}"
+    x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_heading_deg(pose.heading_deg):.1f}"
     return _fit(
         width,
         (
@@ -257,7 +258,7 @@ def _pose(now: Snapshot, width: int) -> Line:
             _value(f"{pose.x_mm:.0f}"),
             _unit(","),
             _value(f"{pose.y_mm:.0f}"),
-            _value(f" {pose.heading_deg:.0f}"),
+            _value(f" {shown_heading_deg(pose.heading_deg):.0f}"),
             _unit("°"),
         ),
     )
@@ -310,7 +311,7 @@ def _distance_and_angle(now: Snapshot, width: int) -> Line:
 
 def _place_and_time(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
-    x, y, heading = f"{pose.x_mm:.0f}", f"{pose.y_mm:.0f}", f"{pose.heading_deg:.0f}"
+    x, y, heading = f"{pose.x_mm:.0f}", f"{pose.y_mm:.0f}", f"{shown_heading_deg(pose.heading_deg):.0f}"
     where = (_unit("x "), _value(x), _unit(" y "), _value(y), _unit(" "), _value(heading), _unit("°"))
     return _fit(
         width,

@@ -12,7 +12,7 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
-from tuisim.core.geometry import Pose
+from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.switches import MAX_ANGLE_DEG, MAX_POSITION_MM
 from tuisim.ui.actions import ACTIONS
 from tuisim.ui.snapshot import Snapshot
@@ -80,7 +80,7 @@ class Positioning(Vertical):
     def show(self, snapshot: Snapshot) -> None:
         """Show the pose in the fields that are not being typed into."""
         pose = snapshot.instant.pose
-        values = {"x": pose.x_mm, "y": pose.y_mm, "angle": pose.heading_deg}
+        values = {"x": pose.x_mm, "y": pose.y_mm, "angle": shown_heading_deg(pose.heading_deg)}
         for field, value in values.items():
             text = f"{value:.1f}".removesuffix(".0")
             text = "0" if text == "-0" else text

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.simulation import NS_PER_S
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def _time_s(run: StoredRun) -> str:
 
 
 def _pose(x_mm: float, y_mm: float, heading_deg: float) -> str:
-    return f"x {x_mm:.2f} mm, y {y_mm:.2f} mm, heading {heading_deg:.2f}°"
+    return f"x {x_mm:.2f} mm, y {y_mm:.2f} mm, heading {shown_heading_deg(heading_deg):.2f}°"
 
 
 def _start_pose(run: StoredRun) -> str:

@@ -11,7 +11,7 @@ from rich.style import Style
 from tuisim.datalog.units import begins_at_zero
 from tuisim.ui.render import axes
 from tuisim.ui.render.axes import Limits
-from tuisim.ui.render.kinds import Run
+from tuisim.ui.render.kinds import Run, cut
 from tuisim.ui.render.plot import BRAILLE, Curve, TextRun, canvas
 from tuisim.ui.render.traces import Trace, Traces
 
@@ -212,7 +212,7 @@ def _tick_boxes(
     lines: list[list[tuple[str, Trace]]] = [[]]
     used = 0
     for trace in traces:
-        text = f"[{'x' if trace.on else ' '}] {trace.name}"[: max(width - 2, 1)]
+        text = cut(f"[{'x' if trace.on else ' '}] {trace.name}", max(width - 2, 1))
         if used and used + 2 + len(text) > width - 2:
             lines.append([])
             used = 0

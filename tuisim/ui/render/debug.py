@@ -12,7 +12,7 @@ from rich.style import Style
 
 from tuisim.held import FrameState, Variable
 from tuisim.protocol import Looked, Paused
-from tuisim.ui.render.kinds import Line
+from tuisim.ui.render.kinds import Line, cut
 
 _PLAIN = Style(color="#d8dee6")
 _NAME = Style(color="#9fd3ff")
@@ -66,6 +66,13 @@ class DebugView:
     """Whether a former instant is still being worked out."""
     source: str = ""
     """The line itself, of a module beside the program: the code panel does not show that."""
+    now: tuple[int, float] | None = None
+    """Tick and simulated time of the instant that the other panels show."""
+
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether another instant than the one that is known here is looked at."""
+        return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
 
 
 def debug_lines(view: DebugView, width: int) -> list[Line]:
@@ -76,22 +83,34 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
         if view.state in DOES:
             return _told(view.state, DOES[view.state], width)
         return _told("", OVER if view.state == "ended" else EMPTY, width)
-    paused, looked = view.paused, view.looked
+    lines = _known(view, view.paused, view.looked, width)
+    if view.is_elsewhere and view.now:
+        # What is known belongs to another instant: it is pale until that of this one is there.
+        tick, time_s = view.now
+        head: Line = [(cut(f"{time_s:.2f} s · tick {tick} …", width), _HEAD)]
+        return [head, *([(text, _PALE) for text, _ in line] for line in lines[1:])]
+    return lines
+
+
+def _known(view: DebugView, paused: Paused, looked: Looked, width: int) -> list[Line]:
+    """What is known of the instant at which the program stands."""
     lines = [_where(view, paused, width)]
     if view.source:
-        lines.append([(_cut(f"  {view.source.strip()}", width), _VALUE)])
+        lines.append([(cut(f"  {view.source.strip()}", width), _VALUE)])
     why = REASONS.get(paused.reason, paused.reason) + (f" {paused.detail}" if paused.detail else "")
     if paused.value:
         why += f": {paused.value}"
     if not view.past and paused.reason not in ("asked", "instant"):
-        lines.append([(_cut(why, width), _CHANGED)])
+        lines += [[(text, _CHANGED)] for text in textwrap.wrap(why, width)]
     if looked.waiting:
-        lines.append([(_cut(f" {looked.waiting} ", width), _WAITS)])
+        lines += [[(f" {text} ", _WAITS)] for text in textwrap.wrap(looked.waiting, max(width - 2, 1))]
     if looked.watches:
         lines.append([("Watches", _HEAD)])
         for watch in looked.watches:
-            shown, style = (watch.error, _ERROR) if watch.error else (watch.value, _VALUE)
-            lines.append(_pair(watch.text, shown, _NAME, style, width))
+            if watch.error:
+                lines += [[(f"  {text}", _ERROR)] for text in textwrap.wrap(f"{watch.text}: {watch.error}", width - 2)]
+            else:
+                lines.append(_pair(watch.text, watch.value, _NAME, _VALUE, width))
     frame = looked.stack[looked.frame] if looked.frame < len(looked.stack) else None
     lines += _variables(_title(frame), looked.variables, width)
     if looked.globals:
@@ -102,9 +121,9 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
         for thread in looked.threads:
             chosen = thread.name == looked.thread
             text = f"{'▸' if chosen else ' '} {thread.name} line {thread.line}" if thread.line else f"  {thread.name}"
-            lines.append([(_cut(f"{text} {thread.waiting}", width), _CHOSEN if chosen else _PLAIN)])
+            lines.append([(cut(f"{text} {thread.waiting}", width), _CHOSEN if chosen else _PLAIN)])
     if looked.note:
-        lines.append([(_cut(looked.note, width), _PALE)])
+        lines += [[(text, _PALE)] for text in textwrap.wrap(looked.note, width)]
     return lines
 
 
@@ -125,7 +144,7 @@ def _where(view: DebugView, paused: Paused, width: int) -> Line:
     # The time says as much as the tick, which is left out rather than cut in two.
     if len(whole := f"{text} · tick {paused.tick}") <= width - len(tail):
         text = whole
-    return [(_cut(text, width - len(tail)), _HEAD), (tail, _CHANGED)]
+    return [(cut(text, width - len(tail)), _HEAD), (tail, _CHANGED)]
 
 
 def _title(frame: FrameState | None) -> str:
@@ -135,7 +154,7 @@ def _title(frame: FrameState | None) -> str:
 
 
 def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Line]:
-    lines: list[Line] = [[(_cut(title, width), _HEAD)]]
+    lines: list[Line] = [[(cut(title, width), _HEAD)]]
     if not variables:
         lines.append([("  none", _PALE)])
     # What has changed is what one looks for.
@@ -154,17 +173,13 @@ def _stack(looked: Looked, width: int) -> list[Line]:
         module = "module" if frame.file else "program"
         name = module if frame.function == "<module>" else f"{frame.function}()"
         style = _CHOSEN if at == looked.frame else _PLAIN
-        lines.append([(_cut(f"{'▸' if at == looked.frame else ' '} {name} line {where}", width), style)])
+        lines.append([(cut(f"{'▸' if at == looked.frame else ' '} {name} line {where}", width), style)])
     return lines
 
 
 def _pair(name: str, value: str, name_style: Style, style: Style, width: int, mark: str = " ") -> Line:
     column = min(_NAME_COLUMN, max(6, width // 2 - 2), max(6, len(name)))
-    shown = _cut(name, column).ljust(column)
+    shown = cut(name, column).ljust(column)
     room = width - column - 3
     text = " ".join(value.split("\n"))
-    return [(f"{mark} ", _CHANGED), (shown, name_style), (" ", _PLAIN), (_cut(text, room), style)]
-
-
-def _cut(text: str, width: int) -> str:
-    return text if len(text) <= width else text[: max(0, width - 1)] + "…"
+    return [(f"{mark} ", _CHANGED), (shown, name_style), (" ", _PLAIN), (cut(text, room), style)]

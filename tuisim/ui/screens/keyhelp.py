@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from rich.table import Table
 from rich.text import Text
+from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
@@ -18,18 +19,67 @@ Keys = Iterable[tuple[str, str]]
 """Each key as people write it, and what it does."""
 
 
-def key_table(groups: Mapping[str, Keys]) -> Table:
-    """Return every key by group, two columns; a group without a name has no heading."""
+COLUMN_CELLS = 50
+"""A column of keys is not made narrower than this to set another beside it."""
+
+
+def key_table(groups: Mapping[str, Keys], width: int) -> Table:
+    """Return every key by group, in as many columns as there is room for; a group without a name has no heading."""
+    rows = [(group, list(keys)) for group, keys in groups.items()]
+    count = max(1, min(width // COLUMN_CELLS, len(rows)))
+    columns = Table.grid(padding=(0, 2), expand=True)
+    for _ in range(count):
+        columns.add_column(ratio=1)
+    columns.add_row(*map(_column, _in_columns(rows, count)))
+    return columns
+
+
+_Group = tuple[str, list[tuple[str, str]]]
+
+
+def _in_columns(groups: list[_Group], count: int) -> list[list[_Group]]:
+    """Share groups among columns, in their order, so that the highest column is as low as it can be."""
+
+    def filled(most: int) -> list[list[_Group]]:
+        columns: list[list[_Group]] = [[]]
+        left = most
+        for name, keys in groups:
+            rows = len(keys) + 2
+            if rows > left and columns[-1]:
+                columns.append([])
+                left = most
+            columns[-1].append((name, keys))
+            left -= rows
+        return columns
+
+    lowest = next(most for most in range(1, 10_000) if len(filled(most)) <= count)
+    columns = filled(lowest)
+    return columns + [[] for _ in range(count - len(columns))]
+
+
+def _column(groups: list[_Group]) -> Table:
     table = Table.grid(padding=(0, 2))
     table.add_column(justify="right", style="bold")
     table.add_column()
-    for group, keys in groups.items():
+    for group, keys in groups:
         if group:
             table.add_row("", Text(group, "bold #5fafff"))
         for key, title in keys:
             table.add_row(Text(key), Text(title))
         table.add_row()
     return table
+
+
+class _KeyTable(Static):
+    """The keys, laid out for the width that there is."""
+
+    def __init__(self, groups: Mapping[str, Keys]) -> None:
+        super().__init__()
+        self._groups = {group: list(keys) for group, keys in groups.items()}
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out for the new width."""
+        self.update(key_table(self._groups, event.size.width))
 
 
 class KeyHelp(Dialog[None]):
@@ -47,4 +97,4 @@ class KeyHelp(Dialog[None]):
         """The text, scrolled if need be."""
         with VerticalScroll():
             yield Static(self.START, classes="start", markup=False)
-            yield Static(key_table(self.groups()))
+            yield _KeyTable(self.groups())

@@ -10,7 +10,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.core.geometry import Pose
+from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.errors import TuisimError
 from tuisim.ui.poses import MAX_NAME, delete_pose, load_poses, save_pose
 from tuisim.ui.screens.dialog import Dialog, name_and_title
@@ -18,7 +18,7 @@ from tuisim.ui.screens.dialog import Dialog, name_and_title
 
 def pose_label(pose: Pose) -> str:
     """Return a pose in words."""
-    return f"x {pose.x_mm:g}, y {pose.y_mm:g}, {pose.heading_deg:g}°"
+    return f"x {pose.x_mm:g}, y {pose.y_mm:g}, {shown_heading_deg(pose.heading_deg):g}°"
 
 
 class SavedPoses(Dialog[Pose]):

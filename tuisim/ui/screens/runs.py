@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.datalog.catalogue import RunInfo
 from tuisim.errors import TuisimError
 from tuisim.ui.branching import BRANCH_TAG
+from tuisim.ui.render.kinds import cut
 from tuisim.ui.screens.choosing import ListDialog
 from tuisim.ui.snapshot import GOOD_ENDS
 from tuisim.ui.verbs import end_label
@@ -50,14 +52,14 @@ def _when(run: RunInfo) -> str:
 _HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}"
 
 
-def run_line(run: RunInfo) -> Text:
+def run_line(run: RunInfo, marked: bool = False) -> Text:
     """Return one line of the list, below `_HEADS`."""
     line = Text(no_wrap=True, overflow="ellipsis")
-    line.append(f"{run.number:>4} ", "bold")
+    line.append(f"{run.number:>4}{'●' if marked else ' '}", "bold")
     line.append(f"{_when(run)[5:]:<11} ", "#9fb0c3")
-    line.append(f"{run.program:<12.12} ", "bold")
-    line.append(f"{Path(run.background).name:<10.10} ")
-    line.append(f"{end_label(run.end):<9.9} ", "" if run.end in GOOD_ENDS else "#ff6e6e")
+    line.append(f"{cut(run.program, 12):<12} ", "bold")
+    line.append(f"{cut(Path(run.background).name, 10):<10} ")
+    line.append(f"{cut(end_label(run.end), 9):<9} ", "" if run.end in GOOD_ENDS else "#ff6e6e")
     line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
     if run.tags or run.summary:
         line.append(f"  {run.tags or run.summary}", "#9fb0c3")
@@ -126,6 +128,10 @@ class RunChooser(ListDialog):
             numbers = [run.number for run in matching(self._runs, "")[:MOST_LISTED]]
             options.highlighted = numbers.index(root) if root in numbers else 0
 
+    def line(self, run: RunInfo) -> Text:
+        """Return one line of the list."""
+        return run_line(run)
+
     def _say(self, text: str) -> None:
         self.query_one("#message", Static).update(text)
 
@@ -133,7 +139,7 @@ class RunChooser(ListDialog):
         found = matching(self._runs, search)
         options = self.query_one(OptionList)
         options.clear_options()
-        options.add_options(Option(run_line(run), id=run.id) for run in found[:MOST_LISTED])
+        options.add_options(Option(self.line(run), id=run.id) for run in found[:MOST_LISTED])
         options.highlighted = 0 if found else None
         if not self._runs:
             self._say("No runs yet: R runs a program, and every run is kept")
@@ -154,3 +160,53 @@ class RunChooser(ListDialog):
         options = self.query_one(OptionList)
         if options.highlighted is not None:
             self.dismiss(options.get_option_at_index(options.highlighted).id)
+
+
+class RunsChooser(RunChooser):
+    """Gives the ids of one or several runs, apart by blanks."""
+
+    TITLE_TEXT: str = "Open runs"
+    HINT: str = "Enter opens · space marks several · type to search · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("space", "mark", "Mark", show=False)]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._marked: list[str] = []
+        """Ids, in the order in which they were marked."""
+
+    def line(self, run: RunInfo) -> Text:
+        """Return one line of the list."""
+        return run_line(run, run.id in self._marked)
+
+    def action_mark(self) -> None:
+        """Mark the run at hand, or not, and go on to the next one."""
+        options = self.query_one(OptionList)
+        at = options.highlighted
+        run = self._run_of(options.get_option_at_index(at).id) if at is not None else None
+        if at is None or run is None:
+            return
+        self._marked.remove(run.id) if run.id in self._marked else self._marked.append(run.id)
+        options.replace_option_prompt_at_index(at, self.line(run))
+        options.action_cursor_down()
+
+    def _run_of(self, run_id: str | None) -> RunInfo | None:
+        return next((run for run in self._runs if run.id == run_id), None)
+
+    @on(OptionList.OptionSelected)
+    def _opened(self, event: OptionList.OptionSelected) -> None:
+        event.stop()
+        event.prevent_default()
+        self.dismiss(" ".join(self._marked or [event.option.id or ""]))
+
+    @on(Input.Submitted)
+    def _named(self, event: Input.Submitted) -> None:
+        """Runs that are named, such as `12 13` or `last`, are those; else it is a search."""
+        numbers = {str(run.number): run.id for run in self._runs}
+        if self._runs:
+            numbers["last"] = self._runs[-1].id
+        named = [numbers.get(word) for word in event.value.split()]
+        wanted = self._marked or [run_id for run_id in named if run_id is not None]
+        if wanted and (self._marked or None not in named):
+            event.stop()
+            event.prevent_default()
+            self.dismiss(" ".join(wanted))
