@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -132,7 +132,12 @@ def _source(program: str | Path) -> ProgramSource:
 
 
 def simulate(
-    program: str | Path, *, answers: tuple[str, ...] = (), timeout_s: float = 600.0, **choices: Any
+    program: str | Path,
+    *,
+    arguments: Sequence[str] = (),
+    answers: tuple[str, ...] = (),
+    timeout_s: float = 600.0,
+    **choices: Any,
 ) -> SimulatedRun:
     """Run a program to its end, as fast as possible, and return what it did.
 
@@ -140,6 +145,7 @@ def simulate(
 
     Args:
         program: A file, the name of an example, or a text of several lines.
+        arguments: What the program finds in `sys.argv`, after its path.
         answers: What `input()` returns, one after another.
         timeout_s: Simulated seconds allowed.
         choices: Switches by their long names: `background="Grey_bands", x=100, seed=7`.
@@ -152,7 +158,7 @@ def simulate(
         raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
     source = _source(program)
     settings = settings_of(source.switches, choices_of(choices))
-    started = Program(source.name, source.text, settings.preload or source.prelude, source.path)
+    started = Program(source.name, source.text, settings.preload or source.prelude, source.path, tuple(arguments))
     store = RunStore()
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
     handle = start_run(started, build_run_spec(settings), options, store)

@@ -23,8 +23,12 @@ MOST_SHOWN = 500
 """Of a longer file name no more is in a written stack."""
 
 
-def start_child(folder: Path) -> tuple[subprocess.Popen[bytes], int, int, int]:
+def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[bytes], int, int, int]:
     """Start the process that carries out the run of a folder.
+
+    Args:
+        folder: Of the run.
+        working_directory: Where it starts, if that is still there: then it finds what it opens there.
 
     Returns:
         The process; write end of its commands, read end of its events, both without blocking; and its lifeline, at
@@ -43,6 +47,7 @@ def start_child(folder: Path) -> tuple[subprocess.Popen[bytes], int, int, int]:
                 stdout=subprocess.DEVNULL,
                 stderr=log,
                 env=_environment(),
+                cwd=working_directory if os.path.isdir(working_directory) else None,
                 start_new_session=True,
             )
     finally:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from tuisim import __version__
 from tuisim.errors import ConfigError, TuisimError, printable
-from tuisim.switches import SwitchParser
+from tuisim.switches import ARGUMENTS_FOLLOW, SwitchParser
 
 COMMANDS: Mapping[str, str] = {
     "open": "open the app (also without this word)",
@@ -33,6 +33,9 @@ COMMANDS: Mapping[str, str] = {
     "kernel": "add the Jupyter kernel in which a course's notebooks run as they are",
 }
 """Every command and what it does."""
+
+_FOR_PROGRAMS = ("open", "run")
+"""Commands that start a program, which may be given arguments."""
 
 EXIT_OUR_MISTAKE = 70
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
@@ -52,7 +55,7 @@ def _parser(command: str) -> SwitchParser:
         listing = "\n".join(f"  tuisim {name:<12} {what}" for name, what in COMMANDS.items())
         parser = SwitchParser(
             prog="tuisim",
-            usage="tuisim [WORLD.toml] [PROGRAM] [switches]\n       tuisim COMMAND …",
+            usage="tuisim [WORLD.toml] [PROGRAM] [switches] [-- ARGUMENTS]\n       tuisim COMMAND …",
             description="A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.",
             epilog=f"commands (each has its own --help):\n{listing}\n\n"
             "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, holds switches too.\n"
@@ -169,7 +172,16 @@ def _dispatch(words: Sequence[str]) -> int:
     if words and command != words[0]:
         _check_command(words[0])
     # Intermixed, because switches may stand between two programs.
-    arguments = _parser(command).parse_intermixed_args(rest)
+    given, ours = None, list(rest)
+    if command in _FOR_PROGRAMS and ARGUMENTS_FOLLOW in ours:
+        at = ours.index(ARGUMENTS_FOLLOW)
+        given, ours = tuple(ours[at + 1 :]), ours[:at]
+    arguments = _parser(command).parse_intermixed_args(ours)
+    if given is not None:
+        from tuisim.commands.prepare import check_arguments
+
+        arguments.arguments = given
+        check_arguments(arguments.words if command == "open" else arguments.programs, arguments)
     if command == "open":
         return _open(arguments)
     if command == "analyse":

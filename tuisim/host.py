@@ -13,12 +13,14 @@ import subprocess
 import time
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from tuisim import assets
 from tuisim.breaks import parse_breaks
 from tuisim.child import await_stack, start_child, stuck_line, what_ended, write_command
 from tuisim.core.spec import RunSpec
+from tuisim.datalog.own_modules import copy_modules
 from tuisim.datalog.runfile import RunEnd, StoredRun, end_document
 from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView
@@ -60,6 +62,15 @@ class Program:
     """none, imports or preloaded."""
     path: str = ""
     """Where it came from; empty if it is in no file."""
+    arguments: tuple[str, ...] = ()
+    """What it finds in `sys.argv`, after its path."""
+    python_path: tuple[str, ...] = ()
+    """Folders besides its own in which it finds modules."""
+    working_directory: str = ""
+    """Where it starts, and where relative paths of it begin; empty is here, with the PYTHONPATH of this process."""
+    modules_from: Path | None = None
+    """Folder of a run from which it takes the modules of its own that were imported there; None takes all as they are
+    now."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +108,14 @@ class RunOptions:
         return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
 
+def program_again(run: StoredRun | RunHandle) -> Program:
+    """Return the program of a run as it was, to be run again: with its arguments, its folder and its own modules."""
+    was = run.program
+    return Program(
+        was.name, was.text, was.prelude, was.path, was.arguments, was.python_path, was.working_directory, run.folder
+    )
+
+
 class RunHandle:
     """One run: its child process, pipes and recording. Made by `start_run`."""
 
@@ -107,6 +126,8 @@ class RunHandle:
         self._options, self._store = options, store
         run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
+        if program.modules_from is not None:
+            copy_modules(program.modules_from, run.folder)
         self.ended: Ended | None = None
         self.started = False
         """Whether the child has come to the program's first line."""
@@ -127,7 +148,9 @@ class RunHandle:
         self.unstored = ""
         """Why the end of the run is not on record, empty if it is."""
         try:
-            self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(run.folder)
+            self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
+                run.folder, program.working_directory
+            )
         except OSError as error:
             self._store.forget(run.id)
             what = error.strerror or str(error)
@@ -364,6 +387,20 @@ def field_files(spec: RunSpec) -> FieldFiles:
     return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
 
 
+def _here() -> str:
+    try:
+        return os.getcwd()
+    except FileNotFoundError:
+        # Somebody has removed it.
+        return ""
+
+
+def _python_path() -> tuple[str, ...]:
+    """The folders of the user's PYTHONPATH; an empty one is here, as for Python."""
+    said = os.environ.get("PYTHONPATH")
+    return tuple(os.path.abspath(folder) for folder in said.split(os.pathsep)) if said else ()
+
+
 def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:
     """Start a program.
 
@@ -378,4 +415,6 @@ def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunSt
         LogError: the run cannot be stored.
     """
     parse_breaks(options.breaks, spec.robot)
+    if not program.working_directory:
+        program = replace(program, python_path=_python_path(), working_directory=_here())
     return RunHandle(program, spec, field_files(spec), options, store or RunStore())

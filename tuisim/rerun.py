@@ -1,6 +1,7 @@
 """A stored run once more: the same program, world, seed and user actions, headless, with the same bits.
 
-What a run folder does not hold is taken from where it was: the image of the mat, and modules beside the program.
+What a run folder does not hold is taken from where it was: the image of the mat, files that the program opens, and
+modules that are installed or compiled.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.datalog.diff import RunDiff, diff_runs
 from tuisim.datalog.records import STOP_FILE
 from tuisim.errors import LogError
-from tuisim.host import Program, RunHandle, RunOptions, start_run
+from tuisim.host import RunHandle, RunOptions, program_again, start_run
 from tuisim.protocol import ScriptedAction, Stop
 
 if TYPE_CHECKING:
@@ -35,9 +36,7 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
         BackgroundError: the mat is no longer there.
         LogError: the run has no recording, or options that cannot be read.
     """
-    stored = run.program
-    program = Program(stored.name, stored.text, stored.prelude, stored.path)
-    return start_run(program, run.spec, replace(_options(run), **options), store)
+    return start_run(program_again(run), run.spec, replace(_options(run), **options), store)
 
 
 def same(run: StoredRun, again: StoredRun) -> RunDiff:

@@ -17,6 +17,8 @@ from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, Obstacle, RobotSpec
 from tuisim.errors import ConfigError
 
+ARGUMENTS_FOLLOW = "--"
+"""All after this word of the command line is the program's."""
 PRELOADS = ("none", "imports", "preloaded")
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
 MAX_POSITION_MM = 10_000
@@ -67,6 +69,8 @@ class Settings:
     profile: str | ProfileSpec = "robolab"
     """Its name or file, or itself."""
     seed: int = 0
+    arguments: tuple[str, ...] = ()
+    """What the program finds in `sys.argv`, after its path: what stands after `--`."""
     preload: str | None = None
     speed: float | None = None
     """1.0 real time, 0 as fast as possible; None: real time in the app, as fast as possible headless."""
@@ -280,11 +284,11 @@ def _converter(switch: Switch) -> Callable[[str], Any]:
     return lambda text: convert(text, flag)
 
 
-_FIELDS = frozenset(switch.field for switch in SWITCHES)
+_FIELDS = frozenset(switch.field for switch in SWITCHES) | {"arguments"}
 
 
 def given(namespace: argparse.Namespace) -> dict[str, Any]:
-    """Return the shared switches that were given, by field of `Settings`."""
+    """Return the shared switches and the program's arguments that were given, by field of `Settings`."""
     found = {field: value for field, value in vars(namespace).items() if field in _FIELDS}
     return {field: tuple(value) if isinstance(value, list) else value for field, value in found.items()}
 

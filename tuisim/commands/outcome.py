@@ -43,6 +43,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "created": run.created,
         "program": run.program.name,
         "path": run.program.path,
+        "arguments": list(run.program.arguments),
         "background": run.spec.world.background,
         "robot": run.spec.robot.name,
         "profile": run.spec.profile.name,

@@ -20,7 +20,7 @@ from tuisim.errors import ConfigError
 from tuisim.host import Program
 from tuisim.notebook.reading import is_notebook
 from tuisim.programfile import ProgramSource, read_program
-from tuisim.switches import Settings, given, settings_of
+from tuisim.switches import ARGUMENTS_FOLLOW, Settings, given, settings_of
 
 _OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors"})
 """Fields of `Settings` that have nothing to do with what is run."""
@@ -34,6 +34,27 @@ class Prepared:
     settings: Settings
     spec: RunSpec
     world: WorldFile | None = None
+
+
+def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
+    """Complain if the program's arguments belong to nobody.
+
+    Args:
+        words: Programs and worlds, as the user named them.
+        arguments: The parsed command line.
+
+    Raises:
+        ConfigError: there is no program, more than one, or a notebook.
+    """
+    programs = [word for word in words if not means_world(word)]
+    if getattr(arguments, "run", None) is not None:
+        raise ConfigError("a stored run has arguments of its own", "leave them out", key=ARGUMENTS_FOLLOW)
+    if len(programs) > 1:
+        raise ConfigError("arguments go to one program", f"got {len(programs)}", key=ARGUMENTS_FOLLOW)
+    if not programs and not any(map(means_world, words)) and not arguments.world:
+        raise ConfigError("arguments need a program", "tuisim PROGRAM -- ARGUMENTS", key=ARGUMENTS_FOLLOW)
+    if programs and is_notebook(programs[0]):
+        raise ConfigError(f"{programs[0]} is a notebook, whose cells take no arguments", key=ARGUMENTS_FOLLOW)
 
 
 def find_program(word: str) -> Path:
@@ -68,6 +89,9 @@ def _world(words: Sequence[str], switch: str | None) -> WorldFile | None:
 def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -> Prepared:
     in_world = world.settings if world else {}
     if word is None:
+        if "arguments" in arguments:
+            named = world.path if world else arguments.world
+            raise ConfigError(f"{named} names no program that could take arguments", key=ARGUMENTS_FOLLOW)
         settings = settings_of(in_world, given(arguments))
         return Prepared(None, settings, build_run_spec(settings), world)
     return _of_source(read_program(find_program(word)), world, arguments)
@@ -87,7 +111,13 @@ def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace)
 
 
 def _program(file: ProgramSource, settings: Settings) -> Program:
-    return Program(name=file.name, text=file.text, prelude=settings.preload or file.prelude, path=file.path)
+    return Program(
+        name=file.name,
+        text=file.text,
+        prelude=settings.preload or file.prelude,
+        path=file.path,
+        arguments=settings.arguments,
+    )
 
 
 def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
@@ -128,7 +158,7 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tupl
         raise ConfigError(f"a stored run has a program and a world of its own, not {what}", "name one", key="--run")
     stored = RunStore().load_run(Path(run) if "/" in run else run)
     program = stored.program
-    opened = Program(name=program.name, text=program.text, prelude=program.prelude, path=program.path)
+    opened = Program(program.name, program.text, program.prelude, program.path, program.arguments)
     return stored, Prepared(opened, settings_of(chosen), stored.spec)
 
 

@@ -33,7 +33,7 @@ def add_arguments(parser: SwitchParser) -> None:
         "Run programs without the app. What a program prints goes to stdout, the rest to stderr. "
         "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or a break; the worst counts."
     )
-    parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--telemetry FILE] [--json] …"
+    parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--json] … [-- ARGUMENTS]"
     parser.add_programs("programs")
     add = parser.add_argument_group("data and limits").add_argument
     add("--export", action="append", default=[], metavar="FILE",

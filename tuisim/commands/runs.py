@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -142,6 +143,8 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     echo(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
           f"seed {facts['seed']}")  # fmt: skip
     echo(last_state(facts))
+    if facts["arguments"]:
+        echo(f"arguments: {shlex.join(facts['arguments'])}")
     for note in facts["notes"]:
         echo(f"note: {note}")
     for row in rows:

@@ -55,6 +55,7 @@ SOURCES: Mapping[str, str] = {
     "solid": "on a real field things are solid; in the old simulator nothing is",
     "plain_state": _OLD,
     "mend_library": f"{_NEW}: README tells what; ev3: the library as it is",
+    "starts_in_own_folder": "ev3dev starts a program in its folder; in a course it starts where the notebook is",
 }
 """Where the numbers of a key come from."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from tuisim.switches import RobotChoice, settings_of
 _HEAD = "# A world for tuisim. Lengths in mm, angles in degrees counter-clockwise from +x; y up from the bottom edge."
 _COMMENTS = {
     "program": "beside this file",
+    "arguments": "what the program finds in sys.argv",
     "background": "a mat's name, or an image beside this file",
     "background_fit": "for an image: stretch, fit or centre",
     "walls": "on the four edges of the field",
@@ -79,37 +80,40 @@ def _robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
     return RobotChoice(robot)
 
 
-def save_world(spec: RunSpec, path: Path | str, program: str | None = None) -> None:
+def save_world(spec: RunSpec, path: Path | str, program: str | None = None, arguments: Sequence[str] = ()) -> None:
     """Write a run as a world file from which the same run is built; whole or not at all.
 
     Args:
         spec: The run.
         path: The file; an image and a program are written relative to its folder.
         program: The program to run in it, as a path or as the name of an example.
+        arguments: What it is given.
 
     Raises:
         ConfigError: the file cannot be written, or the run has what no file can say.
     """
     path = Path(path)
-    lines = world_lines(spec, path.parent, program)
+    lines = world_lines(spec, path.parent, program, arguments)
     table = Section(parse_toml("\n".join(lines), str(path), ConfigError), str(path), ConfigError)
     if build_run_spec(settings_of(world_from_table(table, path).settings)) != spec:
         raise ConfigError("the world has something that no file can say", file=str(path))
     write_toml(path, lines, ConfigError)
 
 
-def world_lines(spec: RunSpec, folder: Path, program: str | None = None) -> list[str]:
+def world_lines(spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()) -> list[str]:
     """Return a run as lines of TOML.
 
     Args:
         spec: The run.
         folder: Where the file will be; paths are relative to it.
-        program: As for `save_world`.
+        program, arguments: As for `save_world`.
     """
     settings = settings_from(spec)
     top: dict[str, Scalar] = {}
     if program is not None:
         top["program"] = _relative(program, folder) if Path(program).exists() else program
+    if arguments:
+        top["arguments"] = list(arguments)
     mat = settings["background"]
     top["background"] = mat if mat in backgrounds() else _relative(mat, folder)
     settings["solid"] = spec.world.solid

@@ -12,7 +12,7 @@ from typing import Any
 from tuisim.assets import background, programs_folder
 from tuisim.config.obstacles import load_obstacles, obstacles_from_table
 from tuisim.config.profiles import load_profile, profile_from_table
-from tuisim.config.reading import Section, means_file, name_of, read_file
+from tuisim.config.reading import Section, means_file, name_of, read_file, shown
 from tuisim.config.robot_table import robot_from_table
 from tuisim.config.robots import load_robot
 from tuisim.config.world_infrared import infrared_from_table
@@ -35,7 +35,7 @@ NOISE_LIMITS = {"light": MAX_LIGHT_NOISE, "motor": MAX_MOTOR_NOISE}
 PANEL_KEYS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 PEN_KEYS = ("down", "color", "width_mm")
 TOP_KEYS = (
-    "program", "background", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed", *FLAGS,
+    "program", "arguments", "background", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed", *FLAGS,
     *PANEL_KEYS, "start", "noise", "pen", "beacon", "remote",
 )  # fmt: skip
 
@@ -99,8 +99,18 @@ def world_from_table(table: Section, path: Path) -> WorldFile:
     if "seed" in table:
         found["seed"] = table.whole("seed", 0, MAX_SEED)
     found |= _noise(table) | _pen(table) | _panels(table) | infrared_from_table(table)
+    if "arguments" in table:
+        found["arguments"] = tuple(_argument(table, at, word) for at, word in enumerate(table.items("arguments"), 1))
     program = _program(table.text("program"), path.parent, near) if "program" in table else None
     return WorldFile(path, found, program, (path, *referred))
+
+
+def _argument(table: Section, at: int, word: object) -> str:
+    if not isinstance(word, str):
+        raise table.wrong(f"arguments[{at}]", f"must be text, got {shown(word)}", 'in quotes, such as "5"')
+    if "\0" in word:
+        raise table.wrong(f"arguments[{at}]", "must be text without null characters")
+    return word
 
 
 def _program(word: str, folder: Path, near: Near) -> str:

@@ -67,6 +67,8 @@ class ProfileSpec:
     """A motor's `state` is a string, '' or 'running', and `time_sp` is in seconds."""
     mend_library: bool = True
     """What the library does wrong and course programs need is put right."""
+    starts_in_own_folder: bool = False
+    """A program starts in the folder that it is in, not where the user is."""
 
 
 ROBOLAB = ProfileSpec(
@@ -107,6 +109,7 @@ EV3 = ProfileSpec(
     halfway_heading=True,
     solid=True,
     mend_library=False,
+    starts_in_own_folder=True,
 )
 
 PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3)}

@@ -337,6 +337,9 @@ def to_plain(spec: RunSpec) -> dict[str, Any]:
     for key, usual in _SAID_IF_UNUSUAL.items():
         if plain["robot"][key] == usual:
             del plain["robot"][key]
+    if not spec.profile.starts_in_own_folder:
+        # As of runs before there was a choice, so that their exports stay the same.
+        del plain["profile"]["starts_in_own_folder"]
     return plain
 
 

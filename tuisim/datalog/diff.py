@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import shlex
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import takewhile, zip_longest
@@ -228,6 +229,8 @@ def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]
         left, right = getattr(first.program, name), getattr(second.program, name)
         if left != right:
             yield f"program {name}", left, right
+    if first.program.arguments != second.program.arguments:
+        yield "program arguments", shlex.join(first.program.arguments), shlex.join(second.program.arguments)
     if first.actions != second.actions:
         yield "user actions", str(len(first.actions)), str(len(second.actions))
 

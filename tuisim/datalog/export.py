@@ -152,6 +152,7 @@ def log_metadata(table: str, frame: pd.DataFrame, runs: Sequence[StoredRun]) -> 
                     "name": run.program.name,
                     "sha256": run.program.sha256,
                     "prelude": run.program.prelude,
+                    **({"arguments": list(run.program.arguments)} if run.program.arguments else {}),
                 },
                 **to_plain(run.spec),
             }

@@ -43,6 +43,12 @@ class ProgramLike(Protocol):
     def text(self) -> str: ...
     @property
     def prelude(self) -> str: ...
+    @property
+    def arguments(self) -> tuple[str, ...]: ...
+    @property
+    def python_path(self) -> tuple[str, ...]: ...
+    @property
+    def working_directory(self) -> str: ...
 
 
 class EndLike(Protocol):
@@ -75,6 +81,12 @@ class StoredProgram:
     """Where it came from, empty if from nowhere."""
     text: str
     prelude: str
+    arguments: tuple[str, ...] = ()
+    """What it was given in `sys.argv`, after its path."""
+    python_path: tuple[str, ...] = ()
+    """Folders besides its own in which it found modules: the user's PYTHONPATH."""
+    working_directory: str = ""
+    """Where the user was; empty if that is not known."""
 
     @property
     def sha256(self) -> str:
@@ -271,6 +283,9 @@ def read_run(folder: Path) -> StoredRun:
     actions, torn = read_actions(folder)
     try:
         program = {key: data["program"][key] for key in ("name", "path", "text", "prelude")}
+        # Runs that were stored before say nothing of these.
+        program |= {key: tuple(data["program"].get(key, ())) for key in ("arguments", "python_path")}
+        program["working_directory"] = data["program"].get("working_directory", "")
         return StoredRun(
             folder=folder,
             id=data["id"],

@@ -116,7 +116,15 @@ class RunStore:
         now = datetime.now(UTC)
         created = now.isoformat(timespec="milliseconds")
         run_id, folder = self._new_folder(now)
-        stored = StoredProgram(program.name, program.path, program.text, program.prelude)
+        stored = StoredProgram(
+            program.name,
+            program.path,
+            program.text,
+            program.prelude,
+            program.arguments,
+            program.python_path,
+            program.working_directory,
+        )
         info = _info_of(run_id, created, stored, spec)
         try:
             number = self._catalogue.add(info)
@@ -134,6 +142,9 @@ class RunStore:
                         "text": stored.text,
                         "sha256": stored.sha256,
                         "prelude": stored.prelude,
+                        "arguments": list(stored.arguments),
+                        "python_path": list(stored.python_path),
+                        "working_directory": stored.working_directory,
                     },
                     "spec": to_plain(spec),
                     "field": None if field is None else dict(field),

@@ -14,6 +14,7 @@ from typing import Any
 
 from tuisim.core.simulation import NS_PER_S
 from tuisim.runtime import real
+from tuisim.runtime.modules import OWN_FILES
 from tuisim.runtime.session import Session
 from tuisim.runtime.standin import replace
 
@@ -78,7 +79,7 @@ def _patch_calendar(wall: Callable[[], float]) -> None:
 
 
 def patch_datetime(session: Session, program_file: str) -> None:
-    """Give the program, the modules beside it and the library a `datetime` that tells simulated time.
+    """Give the program, its own modules and the library a `datetime` that tells simulated time.
 
     Everybody else keeps the real module: compiled ones, such as those of pandas, build on
     the real classes and crash on others.
@@ -91,7 +92,8 @@ def patch_datetime(session: Session, program_file: str) -> None:
         name = str(importer.get("__name__", ""))
         if name == "__main__" or name.partition(".")[0] == "ev3dev2":
             return True
-        return os.path.dirname(real.absolute(str(importer.get("__file__") or "/"))) == folder
+        file = str(importer.get("__file__") or "/")
+        return file in OWN_FILES or os.path.dirname(real.absolute(file)) == folder
 
     def import_module(
         name: str,

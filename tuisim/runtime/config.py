@@ -15,12 +15,16 @@ from tuisim.protocol import ScriptedAction
 class RunConfig:
     """The part of `run.json` that the child needs."""
 
+    folder: Path
+    """Of the run."""
     spec: RunSpec
     field: FieldFiles
     name: str
     path: str
     text: str
     prelude: str
+    arguments: tuple[str, ...]
+    python_path: tuple[str, ...]
     live: bool
     speed: float
     start_paused: bool
@@ -50,12 +54,15 @@ def read_config(folder: Path) -> RunConfig:
     data = json.loads((folder / "run.json").read_text("utf-8"))
     program, options = data["program"], data["options"]
     return RunConfig(
+        folder=folder,
         spec=from_plain(data["spec"]),
         field=FieldFiles.from_plain(data["field"]),
         name=program["name"],
         path=program["path"],
         text=program["text"],
         prelude=program["prelude"],
+        arguments=tuple(program["arguments"]),
+        python_path=tuple(program["python_path"]),
         live=options["live"],
         speed=options["speed"],
         start_paused=options["start_paused"],

@@ -12,6 +12,7 @@ import re
 import sys
 import types
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -26,6 +27,7 @@ from tuisim.runtime.frames import patch_faulthandler
 from tuisim.runtime.halt import Deadlock, StopProgram
 from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program, point_at_prelude
 from tuisim.runtime.missing import MissingPart
+from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, Output
 from tuisim.runtime.report import report_error
 from tuisim.runtime.session import Session
@@ -88,6 +90,9 @@ class ProgramRunner:
     ) -> None:
         self._config, self._session, self._output, self._baton = config, session, output, baton
         self._leave = leave
+        self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and bool(config.path)
+        # A relative path would mean another file from there.
+        self._file = real.absolute(config.path) if self._starts_in_own_folder else session.program_file
         self._answers = list(config.answers)
         self.stdout, self.stderr = LineStream(output), LineStream(output, STDERR)
         self._module = types.ModuleType("__main__")
@@ -162,11 +167,10 @@ class ProgramRunner:
                 continue
 
     def _prepare(self) -> None:
-        file = self._session.program_file
         sys.stdout, sys.stderr = self.stdout, self.stderr
         # Also for whatever puts another stream in place of one and goes back to it.
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
-        sys.argv = [file]
+        sys.argv = [self._file, *self._config.arguments]
         replace(sys, "excepthook", self._thread_error, (3, 3))
         replace(sys, "unraisablehook", self._ignored_error, (1, 1))
         vars(sys).update(__excepthook__=sys.excepthook, __unraisablehook__=sys.unraisablehook)
@@ -180,7 +184,7 @@ class ProgramRunner:
     def _execute(self) -> None:
         self.code = program = compile_program(self._config.text, self._session.program_file)
         module = self._module
-        module.__dict__.update(__file__=self._session.program_file, __builtins__=builtins)
+        module.__dict__.update(__file__=self._file, __builtins__=builtins)
         sys.modules["__main__"] = module
         # What is prepared for the program costs it nothing.
         self._session.free += 1
@@ -193,7 +197,13 @@ class ProgramRunner:
                 module.__dict__[part] = MissingPart(part, error)
         self._session.free -= 1
         # Not before: a program called logging.py is not what the library means by `import logging`.
-        sys.path.insert(0, os.path.dirname(real.absolute(self._session.program_file)))
+        folder = os.path.dirname(real.absolute(self._session.program_file))
+        sys.path[:0] = [folder, *self._config.python_path]
+        find_modules_for(self._config.folder)
+        if self._starts_in_own_folder:
+            # Of a run that is repeated after the folder was removed, only what it opens there is missing.
+            with suppress(OSError):
+                os.chdir(folder)
         self.prepared |= {name: id(value) for name, value in module.__dict__.items()}
         # What is there now stays; the program's own garbage is looked for from here on.
         gc.freeze()

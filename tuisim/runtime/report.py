@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tuisim.runtime import real
-from tuisim.runtime.interrupts import PACKAGE_FOLDER
+from tuisim.runtime.modules import OWN_FILES, is_own
 from tuisim.source import source_lines
 
 _OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.halt.")
@@ -82,14 +82,14 @@ def _summary(told: traceback.TracebackException) -> str:
 
 
 def own_files(file: str) -> Callable[[str], bool]:
-    """Return a function that says which files are the program's: itself, and modules that lie beside it."""
-    folder = os.path.dirname(real.absolute(file)) + os.sep
-    foreign = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
+    """Return a function that says which files are the program's: itself, what is beside it, what it has imported."""
+    beside = os.path.dirname(real.absolute(file)) + os.sep
 
     def own(name: str) -> bool:
+        if name == file or name in OWN_FILES:
+            return True
         path = real.absolute(name)
-        beside = path.startswith(folder) and "site-packages" not in path and not path.startswith(foreign)
-        return name == file or (beside and not name.startswith("<"))
+        return path.startswith(beside) and is_own(path) and not name.startswith("<")
 
     return own
 

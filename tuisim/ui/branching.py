@@ -6,7 +6,7 @@ world is the same to the last bit when the branch leaves it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
@@ -92,7 +92,9 @@ class Branch:
             live=True, speed=speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True, answers=self.of.answers,
             actions=self.script(), hold_at=(self.tick, BEFORE_NEXT_TICK),
         )  # fmt: skip
-        run = start_run(self.program, self.of.spec, options)
+        # Edited or not, it is given what it was given then.
+        program = replace(self.of.program, name=self.program.name, text=self.program.text, prelude=self.program.prelude)
+        run = start_run(program, self.of.spec, options)
         RunStore().tag(run.run_id, self.tags)
         return run
 

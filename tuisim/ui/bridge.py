@@ -65,7 +65,8 @@ class Bridge(Shown):
             live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True,
             breaks=breaks, hold_at=FIRST_LINE if held else None,
         )  # fmt: skip
-        run = start_run(self.program, self.plan.spec, options)
+        program = replace(self.program, arguments=self.plan.settings.arguments)
+        run = start_run(program, self.plan.spec, options)
         self.close()
         self.run, self._end = run, ""
         self._look_at(Recording(self.run))

@@ -5,6 +5,7 @@ To add a field: add a line in the function of its section.
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -28,10 +29,10 @@ from tuisim.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
-from tuisim.errors import RobotError
+from tuisim.errors import ConfigError, RobotError
 from tuisim.switches import MAX_PEN_MM, MIN_PEN_MM, number, pen_color
 from tuisim.ui.form import reason, typed_number
-from tuisim.ui.plan import Plan, with_profile, with_robot, with_robot_edited, with_values
+from tuisim.ui.plan import Plan, with_arguments, with_profile, with_robot, with_robot_edited, with_values
 
 ON, OFF = "on", "off"
 SWITCHED = (OFF, ON)
@@ -73,6 +74,7 @@ def sections(plan: Plan) -> list[Section]:
         *(Section(part.name.capitalize(), _further_edits(part)) for part in plan.robot_choice.spec.further_sensors),
         Section("Pen", _pen_edits()),
         Section("World", _world_edits()),
+        Section("Program", (Edit("arguments", "Arguments", _arguments, _with_arguments),)),
     ]
 
 
@@ -380,6 +382,17 @@ def _world_edits() -> tuple[Edit, ...]:
         Edit("background_fit", "Image fit", lambda plan: plan.spec.world.background_fit,
              lambda plan, word: with_values(plan, background_fit=word), BACKGROUND_FITS),
     )  # fmt: skip
+
+
+def _arguments(plan: Plan) -> str:
+    return shlex.join(plan.settings.arguments)
+
+
+def _with_arguments(plan: Plan, text: str) -> Plan:
+    try:
+        return with_arguments(plan, tuple(shlex.split(text)))
+    except ValueError:
+        raise ConfigError("a quote is not closed", "'…' and \"…\" keep blanks in one argument") from None
 
 
 def find(plan: Plan, edit_id: str) -> Edit | None:

@@ -160,7 +160,9 @@ class Loading:
 
     def _open_program(self, path: str) -> None:
         program, said = _read_program(path)
-        plan = plans.with_choices(self._lab.bridge.plan, said)
+        plan, before = plans.with_choices(self._lab.bridge.plan, said), self._lab.bridge.program
+        if before is not None and before.path != program.path:
+            plan = plans.with_arguments(plan, ())
         self._note_program(program, said)
         self._load(plan, program)
         self._show_as_said({}, said)

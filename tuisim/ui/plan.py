@@ -19,6 +19,7 @@ POSE_FIELDS = ("x_mm", "y_mm", "heading_deg")
 WORLD_FIELDS = (
     "background", "background_fit", "robot", "obstacles", "walls", "solid", *POSE_FIELDS, "light_noise",
     "motor_noise", "pen_down", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
+    "arguments",
 )  # fmt: skip
 """Fields of `Settings` that a run is made of."""
 
@@ -214,6 +215,11 @@ def with_noise(plan: Plan, noise: NoiseSpec) -> Plan:
     motor = plan.settings.motor_noise if kept else noise.motor
     settings = replace(plan.settings, light_noise=noise.light, motor_noise=motor)
     return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, noise=noise)))
+
+
+def with_arguments(plan: Plan, arguments: tuple[str, ...]) -> Plan:
+    """Return the plan with other arguments of the program."""
+    return replace(plan, settings=replace(plan.settings, arguments=arguments))
 
 
 def with_seed(plan: Plan, seed: int) -> Plan:

@@ -11,7 +11,7 @@ from tuisim.core.marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.datalog.runfile import Action, noise_at, read_actions
-from tuisim.host import Program
+from tuisim.host import program_again
 from tuisim.ui.rows import RowIndex
 
 if TYPE_CHECKING:
@@ -41,8 +41,7 @@ class Recording:
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
         self.rows = RowIndex(source.output)
-        stored = source.program
-        self.program = Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path)
+        self.program = program_again(source)
         self._actions: tuple[Action, ...] = ()
         self._marks: _TimedMarks | None = None
         self.answers = answers

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.errors import LogError, TuisimError
-from tuisim.host import Program
+from tuisim.host import Program, program_again
 from tuisim.ui.loading import NOT_NOW
-from tuisim.ui.plan import plan_of_run
+from tuisim.ui.plan import plan_of_run, with_arguments
 from tuisim.ui.verbs import end_label
 
 if TYPE_CHECKING:
@@ -27,7 +28,9 @@ def program_of(run: StoredRun) -> Program:
         same = bool(stored.path) and read_program(Path(stored.path)).text == stored.text
     except TuisimError:
         same = False
-    return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path if same else "")
+    if same:
+        return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path)
+    return replace(program_again(run), path="")
 
 
 def open_run(lab: Lab, run: str | StoredRun) -> None:
@@ -64,7 +67,8 @@ def _show(lab: Lab, run: StoredRun, mat: Mat) -> None:
     if lab.bridge.in_run:
         lab.say(NOT_NOW)
         return
-    lab.loading.lay_out(plan_of_run(run.spec), program_of(run), mat)
+    plan = with_arguments(plan_of_run(run.spec), run.program.arguments)
+    lab.loading.lay_out(plan, program_of(run), mat)
     lab.bridge.replay(run)
     end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
     words = f"— {end_label(run.state)} at {end_s:.2f} s · {_title(run)}"

@@ -24,6 +24,13 @@ if TYPE_CHECKING:
     from tuisim.ui.session import AppSettings
 
 
+def _first_plan(settings: AppSettings) -> Plan:
+    if settings.settings is not None:
+        return plans.plan_of(settings.settings)
+    arguments = settings.program.arguments if settings.program else ()
+    return plans.with_arguments(plans.plan_of_run(settings.spec), arguments)
+
+
 class Shown:
     """The reading side of the bridge: nothing here changes a run.
 
@@ -33,7 +40,7 @@ class Shown:
 
     def __init__(self, settings: AppSettings) -> None:
         self.program: Program | None = settings.program
-        self.plan: Plan = plans.plan_of(settings.settings) if settings.settings else plans.plan_of_run(settings.spec)
+        self.plan: Plan = _first_plan(settings)
         """What the next run will be."""
         self.home: Pose = self.plan.spec.world.start
         """Where `back to start` puts the robot."""

@@ -246,7 +246,8 @@ def save_world(lab: Lab) -> None:
 
     def save(path: Path) -> None:
         program = lab.bridge.program
-        write(lab.bridge.plan.spec, path, program.path if program and program.path else None)
+        plan = lab.bridge.plan
+        write(plan.spec, path, program.path if program and program.path else None, plan.settings.arguments)
         lab.loading.saved_world(path)
 
     lab.push_screen(SaveDialog("world", str(lab.loading.world_file or "lab.toml"), save))

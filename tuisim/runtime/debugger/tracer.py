@@ -17,6 +17,7 @@ from tuisim.held import MetLine
 from tuisim.protocol import UNKNOWN_ORDINAL
 from tuisim.runtime import real
 from tuisim.runtime.baton import Baton, Task
+from tuisim.runtime.modules import OWN_FILES
 from tuisim.runtime.report import own_files
 from tuisim.runtime.session import Session
 
@@ -94,7 +95,8 @@ class Tracer:
         own = self._own_by_file.get(file)
         if own is None:
             # Code that a program makes itself may be of any file; lines that nobody can see are not shown.
-            own = file == self._session.program_file or (self._own(file) and os.path.isfile(file))
+            seen = file == self._session.program_file or file in OWN_FILES
+            own = seen or (self._own(file) and os.path.isfile(file))
             self._own_by_file[file] = own
         return own
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -96,6 +97,7 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "run": lambda run: f"{run.number or ''} {run.id}".strip(),
     "made": lambda run: run.created[:19].replace("T", " ") + " UTC",
     "program": lambda run: run.program.name,
+    "arguments": lambda run: shlex.join(run.program.arguments),
     "SHA-256": lambda run: run.program.sha256,
     "prelude": lambda run: run.program.prelude,
     "mat": lambda run: run.spec.world.background,

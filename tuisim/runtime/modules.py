@@ -1,0 +1,125 @@
+"""The program's own modules: found as Python finds them, and kept with the run, so that it can be repeated."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+import types
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from pathlib import Path
+from typing import Any, NoReturn
+
+from tuisim.datalog.own_modules import OwnModule, note_module, read_modules
+from tuisim.runtime.interrupts import PACKAGE_FOLDER
+
+_FOREIGN = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
+_INSTALLED = ("site-packages", "dist-packages")
+
+OWN_FILES: set[str] = set()
+"""Files of all modules of the program's own that were imported, wherever they are."""
+
+
+def is_own(path: str) -> bool:
+    """Return whether a file may be the user's: neither Python's, nor an installed package's, nor ours."""
+    return not path.startswith(_FOREIGN) and not any(name in path for name in _INSTALLED)
+
+
+class OwnLoader(SourceFileLoader):
+    """Loads a module from its text as it was when it was first read.
+
+    Args:
+        module: The module.
+    """
+
+    def __init__(self, module: OwnModule) -> None:
+        super().__init__(module.name, module.file)
+        self._data = module.text.encode("utf-8", "surrogateescape")
+
+    def get_data(self, path: str) -> bytes:
+        """Return the text, or what is in another file."""
+        return self._data if path == self.path else super().get_data(path)
+
+    def path_stats(self, path: str) -> NoReturn:
+        """Tell nothing of the file: compiled code beside it may be of another text."""
+        raise OSError
+
+
+class OwnModules(PathFinder):
+    """Finds every module that is in a file, and keeps a copy of those that are the user's.
+
+    Args:
+        run_folder: Where they are kept.
+        known: What the imports of another run gave, which these are to give again.
+    """
+
+    def __init__(self, run_folder: Path, known: Sequence[OwnModule]) -> None:
+        self._run_folder = run_folder
+        self._missed: dict[str, int] = {}
+        """How often a name was not there, after the first time, which is kept at once."""
+        self._known: dict[str, list[OwnModule]] = {}
+        for module in known:
+            self._known.setdefault(module.name, []).append(module)
+
+    def find_spec(  # type: ignore[override]
+        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return how to load a module, None if there is none of that name."""
+        if known := self._known.get(fullname):
+            # One that was loaded anew had another text each time.
+            return _spec_of(known.pop(0) if len(known) > 1 else known[0])
+        spec = PathFinder.find_spec(fullname, path, target)
+        module = OwnModule(fullname) if spec is None else _own_module(fullname, spec)
+        if module is None:
+            return spec
+        if module.missing and fullname in self._missed:
+            self._missed[fullname] += 1
+            return None
+        for _ in range(0 if module.missing else self._missed.pop(fullname, 0)):
+            note_module(self._run_folder, OwnModule(fullname))
+        note_module(self._run_folder, module)
+        if module.missing:
+            self._missed[fullname] = 0
+        return spec if spec is None or not module.file else _spec_of(module)
+
+
+def find_modules_for(run_folder: Path) -> None:
+    """Let what the program imports be kept with its run; what is there already, from another run, is given again."""
+    finders: list[Any] = sys.meta_path
+    finders[finders.index(PathFinder)] = OwnModules(run_folder, read_modules(run_folder))
+
+
+def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
+    """What is to be kept of a module, None if it is not the user's, or compiled: such a one is taken where it is."""
+    folders = None if spec.submodule_search_locations is None else tuple(spec.submodule_search_locations)
+    if spec.origin is None:
+        return OwnModule(name, folders=folders) if folders and all(map(is_own, folders)) else None
+    if not spec.origin.endswith(".py") or not is_own(spec.origin):
+        return None
+    loader: Any = spec.loader
+    try:
+        data = loader.get_data(spec.origin)
+    except (OSError, AttributeError):
+        # Python says what is wrong with it.
+        return None
+    return OwnModule(name, spec.origin, folders, data.decode("utf-8", "surrogateescape"))
+
+
+def _spec_of(module: OwnModule) -> ModuleSpec | None:
+    if module.missing:
+        return None
+    if not module.file:
+        spec = ModuleSpec(module.name, None, is_package=True)
+        spec.submodule_search_locations = list(module.folders or ())
+        return spec
+    from importlib.util import spec_from_file_location
+
+    from tuisim.runtime.report import remember_source
+
+    OWN_FILES.add(module.file)
+    remember_source(module.file, module.text)
+    folders = None if module.folders is None else list(module.folders)
+    return spec_from_file_location(
+        module.name, module.file, loader=OwnLoader(module), submodule_search_locations=folders
+    )
