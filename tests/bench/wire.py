@@ -69,7 +69,12 @@ class Remote:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        pid = self.pid()
         self._rest.close()
+        # What it still has to write goes to a folder that is about to be removed.
+        give_up_s = time.monotonic() + _PATIENCE_S
+        while Path(f"/proc/{pid}").exists() and time.monotonic() < give_up_s:
+            time.sleep(0.02)
 
     def until(self, text: str) -> float:
         """Wait until a text, a regular expression, is on the screen; returns the seconds that took."""
@@ -112,9 +117,13 @@ class Remote:
     def _since(self, before: int, took_s: float) -> tuple[float, float]:
         return (len(self.terminal.seen) - before) / 1e3, took_s
 
+    def pid(self) -> int:
+        """Return the number of the process at the other end."""
+        return int(bytes(self.terminal.seen).split(b"PID ", 1)[1].split(None, 1)[0])
+
     def at_rest(self, seconds: float) -> tuple[float, float, float]:
         """Watch it; returns B/s on the line down and up, and the share of a core in per cent."""
-        pid = int(bytes(self.terminal.seen).split(b"PID ", 1)[1].split(None, 1)[0])
+        pid = self.pid()
         before = self.link.down_bytes, self.link.up_bytes, cpu_s(pid), time.monotonic()
         self.terminal.read_for(seconds)
         wall_s = time.monotonic() - before[3]

@@ -13,9 +13,11 @@ from textual.pilot import Pilot
 
 from tests.ui.app_help import ENDLESS, LOGS, ready, settings, until
 from tests.ui.wires import on_wire, until_quiet, wire_of
+from tuisim.protocol import Resumed
 from tuisim.ui.analyser.app import AnalyserApp
 from tuisim.ui.analyser.subject import Wanted
 from tuisim.ui.app import Lab
+from tuisim.ui.news import News
 from tuisim.ui.pacer import Pacer
 
 LOG = "index,variable,value,time\n0,Colour,1.0,0.1\n1,Colour,2.0,0.2\n"
@@ -113,3 +115,16 @@ async def test_the_app_rests_when_nothing_happens_and_wakes_at_a_key() -> None:
         await pilot.press("p")
 
         await until(pilot, lambda: is_active(app._beats))
+
+
+async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with on_wire(Lab(settings())) as pilot:
+        app = await ready(pilot)
+        app.pacer = Pacer(app.settings.fps, clock=partial(next, count(0.0, 1.0)))
+        monkeypatch.setattr(app.bridge, "poll", lambda: News([], held=(Resumed(),)))
+        drawn: list[bool] = []
+        monkeypatch.setattr(app, "draw", lambda: drawn.append(True))
+
+        app._beat()
+
+        assert drawn

@@ -125,7 +125,7 @@ class Lab(Wishes):
         # Breaks hold, and are kept, whether or not a panel shows the program.
         self.debugging.program_changed(self.bridge.program)
         self._beats = self.set_interval(1 / self.settings.fps, self._beat)
-        self.set_interval(_REST_GAP_S, self._beat)
+        self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.loading.look)
 
     def on_unmount(self) -> None:
@@ -198,7 +198,8 @@ class Lab(Wishes):
             travel.beat(self)
             self.debugging.beat()
             # A frame that has to wait is as good as drawn.
-            if news or self.debugging.busy or not self.pacer.ready() or self.draw():
+            drew = not self.pacer.ready() or self.draw()
+            if drew or news or self.debugging.busy:
                 self._wake()
         except TuisimError as error:
             # What cannot be read now cannot be read at the next beat either.
@@ -206,8 +207,17 @@ class Lab(Wishes):
             self.complain(error)
             self.situation_changed()
 
-        if self._beats is not None and time.monotonic() > self._awake_until_s:
+        if self._beats is not None and not self._is_awake:
             self._beats.pause()
+
+    def _seldom(self) -> None:
+        # A beat between two others would leave the next one no time for a frame.
+        if not self._is_awake:
+            self._beat()
+
+    @property
+    def _is_awake(self) -> bool:
+        return time.monotonic() < self._awake_until_s
 
     def _wake(self) -> None:
         """Look often at what the run has written: something has happened."""
