@@ -11,31 +11,36 @@ import sys
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from tuisim.commands.progress import aside
 from tuisim.errors import printable
 
 
 def echo(line: str = "") -> None:
     """Write one line to stdout."""
-    print(printable(line))
+    with aside(sys.stdout):
+        print(printable(line))
 
 
 def echo_lines(text: str) -> None:
     """Write a text of any number of lines to stdout."""
-    for line in text.split("\n"):
-        print(printable(line))
+    with aside(sys.stdout):
+        for line in text.split("\n"):
+            print(printable(line))
 
 
 def echo_json(data: Any, *, flush: bool = False) -> None:
     """Write data to stdout as one line of JSON, which escapes what a terminal would obey."""
-    print(_json(data), flush=flush)
+    with aside(sys.stdout):
+        print(_json(data), flush=flush)
 
 
 def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> None:
     """Write one JSON object to stdout: a list under a key, item by item as they come, then what else it holds."""
-    sys.stdout.write(f'{{"{key}": [')
-    for number, item in enumerate(items):
-        sys.stdout.write((", " if number else "") + _json(item))
-    sys.stdout.write("], " + _json(rest).removeprefix("{") + "\n")
+    with aside(sys.stdout):
+        sys.stdout.write(f'{{"{key}": [')
+        for number, item in enumerate(items):
+            sys.stdout.write((", " if number else "") + _json(item))
+        sys.stdout.write("], " + _json(rest).removeprefix("{") + "\n")
 
 
 def _json(data: Any) -> str:
@@ -44,18 +49,21 @@ def _json(data: Any) -> str:
 
 def echo_error(line: str) -> None:
     """Write one line to stderr."""
-    print(printable(line), file=sys.stderr, flush=True)
+    with aside(sys.stderr):
+        print(printable(line), file=sys.stderr, flush=True)
 
 
 def echo_error_lines(text: str) -> None:
     """Write a text of any number of lines to stderr."""
-    for line in text.split("\n"):
-        print(printable(line), file=sys.stderr, flush=True)
+    with aside(sys.stderr):
+        for line in text.split("\n"):
+            print(printable(line), file=sys.stderr, flush=True)
 
 
 def echo_chart(text: str) -> None:
     """Write a chart to stdout, whose colours are commands to the terminal; it holds no text that was not looked at."""
-    sys.stdout.write(text)
+    with aside(sys.stdout):
+        sys.stdout.write(text)
 
 
 class CsvOut:
@@ -63,4 +71,5 @@ class CsvOut:
 
     def write(self, text: str) -> None:
         """Write lines."""
-        sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)
+        with aside(sys.stdout):
+            sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)

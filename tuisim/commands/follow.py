@@ -11,6 +11,7 @@ from typing import Self, TextIO
 
 from tuisim.commands.echo import echo_error
 from tuisim.commands.outcome import EXIT_BROKEN_PIPE
+from tuisim.commands.progress import aside
 from tuisim.datalog.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
 from tuisim.host import RunHandle
 from tuisim.protocol import Ended, Message
@@ -62,9 +63,17 @@ class Follower:
         handle: The run.
         out: Where its printed lines go; error text and speech go to stderr.
         listen: Called with each event of the run, after what was printed before it.
+        tell: Called now and then, to say how far the run is.
     """
 
-    def __init__(self, handle: RunHandle, out: TextIO, listen: Callable[[Message], None] | None = None) -> None:
+    def __init__(
+        self,
+        handle: RunHandle,
+        out: TextIO,
+        listen: Callable[[Message], None] | None = None,
+        tell: Callable[[RunHandle], None] = lambda _: None,
+    ) -> None:
+        self._tell = tell
         self._listen = listen
         self._handle = handle
         self._out = out
@@ -84,6 +93,7 @@ class Follower:
                 events = self._handle.pump()
                 ended = self._handle.ended
             self._pass_on(self._handle.output.new_rows())
+            self._tell(self._handle)
             for event in events:
                 if self._listen is not None:
                     self._listen(event)
@@ -94,12 +104,14 @@ class Follower:
         """Write rows in the order in which they came, also where some go to stdout and some to stderr."""
         for to_stdout, group in groupby(rows, key=lambda row: row.stream == STDOUT):
             if to_stdout:
-                self._write("".join(row.text + "\n" for row in group))
+                with aside(self._out):
+                    self._write("".join(row.text + "\n" for row in group))
                 continue
             for row in group:
                 # What it prints is the program's affair, as in a shell; what it says stands in a line of ours.
                 if row.stream == STDERR:
-                    sys.stderr.write(row.text + "\n")
+                    with aside(sys.stderr):
+                        sys.stderr.write(row.text + "\n")
                 elif row.stream == SPEECH:
                     echo_error(line_of(row))
 

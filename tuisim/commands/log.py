@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import Any, cast
 
 from tuisim.commands.logs.columns import add_columns
+from tuisim.commands.progress import Progress
 from tuisim.datalog.formats import LISTED
 from tuisim.errors import ConfigError
 from tuisim.switches import SwitchParser, nearest
@@ -123,4 +124,5 @@ def execute(arguments: Namespace) -> int:
         if option not in entry.options and getattr(arguments, option) != declared.get("default"):
             takes = " ".join(f"--{name}" for name in (*entry.options, *COMMON))
             raise ConfigError(f"does not take --{option}", f"it takes {takes}", key=arguments.action)
-    return entry.load()(arguments)
+    with Progress(" ".join(("log", arguments.action, *arguments.words))):
+        return entry.load()(arguments)

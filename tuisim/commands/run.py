@@ -14,6 +14,7 @@ from tuisim.commands.follow import Follower, Interrupts
 from tuisim.commands.notebooks import print_list, print_results, to_list
 from tuisim.commands.prepare import Prepared, prepare_runs
 from tuisim.commands.press import parse_press, press_actions
+from tuisim.commands.progress import Progress, is_watched, tell
 from tuisim.commands.targets import check_targets
 from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.datalog.runfile import StoredRun
@@ -74,7 +75,7 @@ def execute(arguments: Namespace) -> int:
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
     store = RunStore()
-    with Interrupts() as interrupts:
+    with Interrupts() as interrupts, Progress(""):
         code, done = _run_all(prepared, arguments, store, interrupts)
         if done:
             _export(done, arguments)
@@ -92,6 +93,7 @@ def _export(done: Sequence[StoredRun], arguments: Namespace) -> None:
         writers.append((arguments.telemetry, lambda target: export_telemetry(done[0], target)))
     errors: list[TuisimError] = []
     for target, write in writers:
+        tell(f"writing {target}")
         try:
             write(target)
         except (ExportError, LogError) as error:
@@ -115,8 +117,9 @@ def _run_all(
     """Run one after another until all are done or the user interrupts; return exit code and runs."""
     done: list[StoredRun] = []
     code = 0
-    for one in prepared:
-        exit_code, handle = _run_one(one, arguments, store, interrupts)
+    for at, one in enumerate(prepared):
+        how_far = _how_far(at, len(prepared))
+        exit_code, handle = _run_one(one, arguments, store, interrupts, how_far)
         if handle.folder.is_dir():
             done.append(handle.stored())
             outcome.report(done[-1], exit_code, as_json=arguments.json)
@@ -128,7 +131,21 @@ def _run_all(
     return code, done
 
 
-def _run_one(one: Prepared, arguments: Namespace, store: RunStore, interrupts: Interrupts) -> tuple[int, RunHandle]:
+def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
+    """Return what tells how far one of several runs is."""
+
+    def tell_run(handle: RunHandle) -> None:
+        ticks = handle.telemetry.count
+        what = f"{handle.program.name}: {ticks / handle.spec.profile.tick_hz:.1f} s simulated"
+        # When a program ends nobody knows; how many there are is known.
+        tell(f"{number + 1} of {count}, {what}" if count > 1 else what, number, count if count > 1 else None)
+
+    return tell_run if is_watched() else lambda _: None
+
+
+def _run_one(
+    one: Prepared, arguments: Namespace, store: RunStore, interrupts: Interrupts, how_far: Callable[[RunHandle], None]
+) -> tuple[int, RunHandle]:
     """Run one program to its end and return exit code and run."""
     assert one.program is not None
     speed = one.settings.speed or 0.0
@@ -146,7 +163,7 @@ def _run_one(one: Prepared, arguments: Namespace, store: RunStore, interrupts: I
     teller = BreakTeller(handle, BreakOptions(options.breaks, tuple(arguments.watches), stops))
     try:
         out = sys.stderr if arguments.json else sys.stdout
-        follower = Follower(handle, out, teller.take if options.breaks else None)
+        follower = Follower(handle, out, teller.take if options.breaks else None, how_far)
         ended = follower.to_the_end()
     finally:
         handle.close()

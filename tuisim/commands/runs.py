@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_json_head, echo_lines
 from tuisim.commands.logs.comparing import diff_text
 from tuisim.commands.outcome import describe, last_state
+from tuisim.commands.progress import Progress, tell
 from tuisim.commands.tables import table
 from tuisim.commands.targets import check_targets
 from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
@@ -22,6 +23,7 @@ from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, lin
 from tuisim.datalog.runfile import RUNNING, StoredRun
 from tuisim.datalog.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 from tuisim.errors import ConfigError, LogError
+from tuisim.host import ASK_AGAIN_S
 from tuisim.rerun import rerun, same
 from tuisim.switches import SwitchParser, nearest
 
@@ -77,13 +79,17 @@ def execute(arguments: Namespace) -> int:
             for run in _load(store, words):
                 _show(run, as_json=arguments.json)
         case "rm" if words or arguments.older_than is not None:
-            _remove(store, words, arguments.older_than)
+            with Progress("rm"):
+                _remove(store, words, arguments.older_than)
         case "rerun" if words:
-            return max(_rerun(run, as_json=arguments.json) for run in _load(store, words))
+            with Progress("rerun"):
+                return max(_rerun(run, as_json=arguments.json) for run in _load(store, words))
         case "compact" if words or arguments.all:
-            return _compact(store, words, as_json=arguments.json)
+            with Progress("compact"):
+                return _compact(store, words, as_json=arguments.json)
         case "export":
-            _export(store, words, arguments.telemetry)
+            with Progress("export"):
+                _export(store, words, arguments.telemetry)
         case _ if action not in ACTIONS:
             raise ConfigError(f"no such action {action!r}", nearest(action, ACTIONS), key="runs")
         case _:
@@ -178,7 +184,8 @@ def _remove(store: RunStore, words: Sequence[str], age: str | None) -> None:
     # All are looked up before the first is gone; one may be named twice.
     found = [store.find(word).id for word in words] if age is None else _older(store, words, age)
     freed = 0
-    for run_id in dict.fromkeys(found):
+    for number, run_id in enumerate(dict.fromkeys(found)):
+        tell("removing runs", number, len(found))
         folder = store.folder(run_id)
         target = os.path.realpath(folder) if folder.is_symlink() else ""
         freed += 0 if target else bytes_in(folder)
@@ -194,10 +201,13 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
     with TemporaryDirectory(prefix="tuisim-") as home:
         scratch = RunStore(Path(home))
         handle = rerun(run, scratch)
+        ticks = run.telemetry.count
         try:
-            handle.wait()
+            while handle.wait(ASK_AGAIN_S) is None:
+                tell(f"run {run.number} again: {run.program.name}", handle.telemetry.count, ticks)
         finally:
             handle.close()
+        tell(f"comparing run {run.number}")
         found = same(run, scratch.load_run(handle.run_id))
     if as_json:
         echo_json({"run": run.number, **found.to_plain()})
@@ -210,7 +220,8 @@ def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
     """Compact the named runs, or every one that is over; return the exit code."""
     names = words or [info.id for info in store.runs() if info.end != RUNNING]
     code, before, after, ticks = 0, 0, 0, 0
-    for name in names:
+    for number, name in enumerate(names):
+        tell(f"compacting run {name}", number, len(names))
         try:
             (run,) = _load(store, [name])
             sizes = compact_run(run)
@@ -241,6 +252,8 @@ def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> Non
     for note in (note for run in runs for note in run.notes):
         echo_error(f"note: {note}")
     for file in files:
+        tell(f"writing {file}")
         export_samples(runs, file)
     if telemetry is not None:
+        tell(f"writing {telemetry}")
         export_telemetry(runs[0], telemetry)

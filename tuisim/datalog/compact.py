@@ -95,6 +95,8 @@ def find_packed(path: Path) -> Packed | None:
             head = handle.read(_HEADER.size + _CHECK.size)
     except FileNotFoundError:
         return None
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(packed)) from error
     try:
         magic, version, checksum, length, size, *numbers, last = _HEADER.unpack_from(head)
         (check,) = _CHECK.unpack_from(head, _HEADER.size)

@@ -261,13 +261,15 @@ def read_actions(folder: Path) -> tuple[tuple[Action, ...], str]:
         data = path.read_bytes()
     except FileNotFoundError:
         return (), ""
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
     *lines, rest = data.split(b"\n")
     actions = []
     for row, line in enumerate(lines, 1):
         try:
             fields = json.loads(line)
             actions.append(Action(int(fields.pop("tick")), str(fields.pop("kind")), fields))
-        except (ValueError, TypeError, KeyError, AttributeError) as error:
+        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError) as error:
             raise LogError("not a user action", file=str(path), row=row) from error
     return tuple(actions), f"{ACTIONS_FILE}: the last line was torn and is left out" if rest else ""
 

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 from tuisim.commands.echo import echo_error
+from tuisim.commands.progress import tell
 from tuisim.datalog.opening import Log, loading
 from tuisim.datalog.opening.layout import chosen, time_in_words
 from tuisim.datalog.opening.loading import STDIN
 from tuisim.datalog.opening.runs import log_of_runs, telemetry_log
 from tuisim.datalog.store import RunStore
-from tuisim.errors import ConfigError, LogError, listed, printable
+from tuisim.errors import ConfigError, LogError, listed
 
 
 def is_file(word: str) -> bool:
@@ -76,20 +76,17 @@ def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
 
 
 def _open_file(word: str, arguments: Namespace) -> Log:
-    shows = sys.stderr.isatty()
     log = None
     for loaded in loading(word, arguments.time, arguments.value, arguments.unit):
         log = loaded.log or log
-        if shows and not loaded.done:
-            part = f"{loaded.part:4.0%}" if loaded.part == loaded.part else ""
-            print(f"\rreading {printable(word)} {part}", end="", file=sys.stderr, flush=True)
-    if shows:
-        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+        if loaded.part == loaded.part:
+            tell(f"reading {word}", loaded.part, 1.0)
+    tell(f"{arguments.action} {word}")
     assert log is not None
     # Our own exports say what their columns are.
     if arguments.time is None and not log.metadata:
         hint = "--time COLUMN takes another, --time '' counts the rows"
-        print(printable(f"note: {log.title}: {time_in_words(log.layout)} ({hint})"), file=sys.stderr)
+        echo_error(f"note: {log.title}: {time_in_words(log.layout)} ({hint})")
     return _with_notes(log)
 
 

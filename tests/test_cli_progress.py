@@ -1,0 +1,158 @@
+"""Bars of commands that take long: on a terminal only, and never in the way of what is printed."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.conftest import Command
+from tuisim.commands import progress
+from tuisim.commands.echo import echo, echo_error
+from tuisim.commands.progress import Progress, aside, tell
+
+PATIENCE_S = 20.0
+
+
+class Terminal(io.StringIO):
+    """A terminal that tells when a text has come."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._changed = threading.Condition()
+
+    def isatty(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        with self._changed:
+            self._changed.notify_all()
+            return super().write(text)
+
+    def until(self, text: str) -> str:
+        with self._changed:
+            assert self._changed.wait_for(lambda: text in self.getvalue(), PATIENCE_S), self.getvalue()
+        return self.getvalue()
+
+
+Show = Callable[[], Terminal]
+
+
+@pytest.fixture
+def show(monkeypatch: pytest.MonkeyPatch) -> Show:
+    """`show()`: a terminal for stdout and stderr from now on, and bars that are shown at once."""
+
+    def take() -> Terminal:
+        made = Terminal()
+        monkeypatch.setattr(sys, "stderr", made)
+        monkeypatch.setattr(sys, "stdout", made)
+        return made
+
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(progress, "SHOWN_AFTER_S", 0.0)
+    monkeypatch.setattr(progress, "_QUIET_S", 0.0)
+    return take
+
+
+def test_work_is_told_with_its_part(show: Show) -> None:
+    terminal = show()
+    with Progress("packing\x1b]0;evil\x07"):
+        seen = terminal.until("packing")
+        tell("exporting", 30, 120)
+        seen = terminal.until(" 25%")
+    assert "evil" not in seen.partition("packing")[0]
+    assert "\x1b]0;" not in seen
+
+
+@pytest.mark.parametrize("write", [echo, echo_error], ids=["stdout", "stderr"])
+def test_bar_makes_room_for_lines(show: Show, write: Callable[[str], None]) -> None:
+    terminal = show()
+    with Progress("working"):
+        terminal.until("working")
+        write("a line")
+        before, _, after = terminal.getvalue().partition("a line\n")
+        # Taken away before the line, drawn anew after it.
+        assert before.endswith("\x1b[2K")
+        terminal.seek(0)
+        terminal.truncate()
+        terminal.until("working")
+    assert after == ""
+    assert terminal.getvalue().endswith("\x1b[2K")
+
+
+def test_stdout_that_goes_elsewhere_does_not_hide_the_bar(show: Show) -> None:
+    terminal = show()
+    with Progress("working"):
+        terminal.until("working")
+        shown = terminal.getvalue().count("\x1b[?25l")
+        with aside(io.StringIO()):
+            pass
+        assert terminal.getvalue().count("\x1b[?25l") == shown
+
+
+NOBODY: dict[str, Callable[[pytest.MonkeyPatch, Terminal], Any]] = {
+    "a pipe": lambda patch, screen: patch.setattr(screen, "isatty", lambda: False),
+    "a dumb terminal": lambda patch, _: patch.setenv("TERM", "dumb"),
+    "quick work": lambda patch, _: patch.setattr(progress, "SHOWN_AFTER_S", 60.0),
+}
+
+
+@pytest.mark.parametrize("change", NOBODY.values(), ids=NOBODY)
+def test_nothing_is_drawn_for(
+    show: Show, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch, Terminal], Any]
+) -> None:
+    terminal = show()
+    change(monkeypatch, terminal)
+    with Progress("working"):
+        tell("more")
+    assert terminal.getvalue() == ""
+
+
+COMMANDS = {
+    "run": (("run", "p.py", "--export", "a.csv"), ("p.py: ", "writing a.csv")),
+    "run, several": (("run", "p.py", "p.py"), ("1 of 2, p.py", "2 of 2, p.py")),
+    "rerun": (("runs", "rerun", "last"), ("run 1 again: p.py", "comparing run 1")),
+    "compact": (("runs", "compact", "--all"), ("compacting run",)),
+    "export": (("runs", "export", "1", "a.csv", "--telemetry", "b.csv"), ("writing a.csv", "writing b.csv")),
+    "bands": (("log", "bands", "1"), ("log bands 1",)),
+    "report": (("log", "report", "1"), ("log report 1",)),
+    "a file": (("log", "summary", "log.csv"), ("reading log.csv", "summary log.csv")),
+    "rm": (("runs", "rm", "1"), ("removing runs",)),
+}
+
+
+@pytest.mark.parametrize(("words", "told"), COMMANDS.values(), ids=COMMANDS)
+def test_commands_tell_how_far_they_are(
+    home: object, here: Command, tmp_path: Any, monkeypatch: pytest.MonkeyPatch, words: Any, told: tuple[str, ...]
+) -> None:
+    (tmp_path / "p.py").write_text("tank_drive.on_for_seconds(20, 30, 0.3)\nfor n in range(9): print('a:', n)\n")
+    (tmp_path / "log.csv").write_text("time,red\n0,1\n1,2\n")
+    here("run", "p.py")
+    heard: list[str] = []
+
+    class Spy(Progress):
+        def __init__(self, what: str, total: float | None = None) -> None:
+            super().__init__(what, total)
+            heard.append(what)
+
+        def tell(self, what: str, done: float, total: float | None = None) -> None:
+            heard.append(what)
+
+    for module in ("run", "runs", "log"):
+        monkeypatch.setattr(f"tuisim.commands.{module}.Progress", Spy)
+    monkeypatch.setattr("tuisim.commands.run.is_watched", lambda: True)
+    monkeypatch.setattr(progress, "is_watched", lambda: True)
+    assert here(*words).returncode == 0
+    missing = [one for one in told if not any(line.startswith(one) for line in heard)]
+    assert not missing, heard
+
+
+def test_rich_is_not_loaded_for_what_is_quick() -> None:
+    check = "import sys, tuisim.commands.run, tuisim.commands.runs, tuisim.commands.log; print('rich' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
