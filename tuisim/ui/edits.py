@@ -67,6 +67,7 @@ def sections(plan: Plan) -> list[Section]:
     """Return every field for a plan: which there are depends on the sensors of its robot."""
     eyes = {eye.name: eye for eye in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)}
     return [
+        Section("Program", (Edit("arguments", "Arguments", _arguments, _with_arguments),)),
         Section("Robot", _robot_edits()),
         *(Section(f"Sensor {name}", _eye_edits(name, eye, plan)) for name, eye in eyes.items()),
         Section("Ultrasonic", _sonar_edits(plan)),
@@ -74,7 +75,6 @@ def sections(plan: Plan) -> list[Section]:
         *(Section(part.name.capitalize(), _further_edits(part)) for part in plan.robot_choice.spec.further_sensors),
         Section("Pen", _pen_edits()),
         Section("World", _world_edits()),
-        Section("Program", (Edit("arguments", "Arguments", _arguments, _with_arguments),)),
     ]
 
 
