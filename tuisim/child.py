@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import resource
+import secrets
 import select
 import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from tuisim.atomic import private
@@ -15,6 +18,9 @@ from tuisim.source import source_lines
 
 PATIENCE_S = 0.2
 """How long a full command pipe is waited for: a child that listens empties it at once."""
+
+FILE_LOCKS = 10
+"""The number of a limit that Linux hands down to every process, and has not looked at since 2.4.25."""
 
 STACK_WRITTEN_WITHIN_S, LOOK_AGAIN_S = 0.1, 0.003
 """How long a stuck child may take to write its stack on a busy machine, and how often it is looked for."""
@@ -56,6 +62,65 @@ def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[
     os.set_blocking(event_fd, False)
     os.set_blocking(command_fd, False)
     return process, command_fd, event_fd, lifeline_fd
+
+
+def mark(pid: int) -> int:
+    """Mark a child, and with it whatever it will start: no new session, program or environment takes the mark off.
+
+    Returns:
+        The mark, 0 where there is no such thing.
+    """
+    wanted = 1 << 62 | secrets.randbits(56)
+    try:
+        resource.prlimit(pid, FILE_LOCKS, (wanted, wanted))
+    # Not Linux, gone already, or a limit is set.
+    except (AttributeError, OSError, ValueError):
+        return 0
+    return wanted
+
+
+def end_group(pid: int) -> None:
+    """End a child and what it has started, except what has gone into a session of its own."""
+    try:
+        os.killpg(pid, signal.SIGKILL)
+    except (ProcessLookupError, PermissionError):
+        return
+
+
+def end_left_over(pid: int, marked: int) -> None:
+    """End whatever a child that is gone has started and left.
+
+    Args:
+        pid: Of the child.
+        marked: Its mark; without one, what it has put into sessions of their own stays.
+    """
+    ended = {pid}
+    try:
+        while marked and (found := {one for one in _younger_than(pid) - ended if _has_mark(one, marked)}):
+            ended |= found
+            for one in found:
+                with suppress(ProcessLookupError, PermissionError):
+                    os.kill(one, signal.SIGKILL)
+    except OSError:
+        # No such file system, or no file to read it by.
+        marked = 0
+    if not marked:
+        end_group(pid)
+
+
+def _younger_than(pid: int) -> set[int]:
+    """Return the processes that may have been started since one was."""
+    last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
+    there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
+    # Numbers rise, and begin anew when they are used up.
+    return {one for one in there if one > pid} if last >= pid else there
+
+
+def _has_mark(pid: int, marked: int) -> bool:
+    try:
+        return f" {marked} " in Path(f"/proc/{pid}/limits").read_text("ascii")
+    except OSError:
+        return False
 
 
 def _environment() -> dict[str, str]:

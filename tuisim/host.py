@@ -18,7 +18,7 @@ from typing import Any
 
 from tuisim import assets
 from tuisim.breaks import parse_breaks
-from tuisim.child import await_stack, start_child, stuck_line, what_ended, write_command
+from tuisim.child import await_stack, end_group, end_left_over, mark, start_child, stuck_line, what_ended, write_command
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.own_modules import copy_modules
 from tuisim.datalog.runfile import RunEnd, StoredRun, end_document
@@ -155,6 +155,7 @@ class RunHandle:
             self._store.forget(run.id)
             what = error.strerror or str(error)
             raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
+        self._mark = mark(self._process.pid)
 
     # Events
 
@@ -222,7 +223,7 @@ class RunHandle:
     def _final_event(self, gone: bool) -> Ended | None:
         if self._announced is not None:
             if not gone and time.monotonic() - self._announced_at > ENDED_CHILD_S:
-                self._kill_group()
+                end_group(self._process.pid)
             return self._announced if gone else None
         if not gone:
             return None
@@ -245,6 +246,7 @@ class RunHandle:
         self.paused, self.waiting_for_input, self.waiting_for_reply = False, None, False
         for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
             os.close(fd)
+        end_left_over(self._process.pid, self._mark)
         for name in ("child.log", "stack.txt"):
             path = self.folder / name
             # Somebody may be deleting the folder.
@@ -327,7 +329,7 @@ class RunHandle:
         """End the child at once; what it has written stays."""
         if self._stop_at is None:
             self._stop_at = time.monotonic()
-        self._kill_group()
+        end_group(self._process.pid)
 
     def close(self) -> None:
         """Make sure that the child is gone and the run is recorded as ended."""
@@ -364,17 +366,11 @@ class RunHandle:
             self._stack_asked = self._stop_at is None
             self._signal(signal.SIGUSR2)
             await_stack(self.folder)
-        self._kill_group()
+        end_group(self._process.pid)
 
     def _signal(self, number: int) -> None:
         if self._process.poll() is None:
             self._process.send_signal(number)
-
-    def _kill_group(self) -> None:
-        try:
-            os.killpg(self._process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            return
 
 
 def field_files(spec: RunSpec) -> FieldFiles:

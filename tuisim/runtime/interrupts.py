@@ -24,13 +24,13 @@ STACK_FILE = "stack.txt"
 
 
 def die_with_host(lifeline_fd: int) -> None:
-    """Let the end of the host end this process at once, even inside a long C call.
+    """Let the end of the host end this process and its group at once, even inside a long C call.
 
     Args:
         lifeline_fd: Read end of a pipe that nothing is ever written to. When the host is
             gone the pipe ends, and the kernel sends SIGIO, whose default is to kill.
     """
-    fcntl.fcntl(lifeline_fd, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(lifeline_fd, fcntl.F_SETOWN, -os.getpgrp())
     fcntl.fcntl(lifeline_fd, fcntl.F_SETFL, fcntl.fcntl(lifeline_fd, fcntl.F_GETFL) | os.O_ASYNC)
     if real.select_files([lifeline_fd], [], [], 0)[0]:
         # The host went before the signal was asked for.

@@ -19,7 +19,7 @@ start_new_thread = _thread.start_new_thread
 stack_size = _thread.stack_size
 select_files = select.select
 exit_process = os._exit
-fork = os.fork
+fork, getpid = os.fork, os.getpid
 settrace, gettrace = sys.settrace, sys.gettrace
 
 
