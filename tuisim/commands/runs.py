@@ -19,6 +19,7 @@ from tuisim.commands.progress import Progress, tell
 from tuisim.commands.tables import table
 from tuisim.commands.targets import check_targets
 from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
+from tuisim.datalog.frames import damage_note
 from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
 from tuisim.datalog.runfile import RUNNING, StoredRun
 from tuisim.datalog.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
@@ -256,4 +257,6 @@ def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> Non
         export_samples(runs, file)
     if telemetry is not None:
         tell(f"writing {telemetry}")
+        if note := damage_note(runs[0]):
+            echo_error(f"note: {note}")
         export_telemetry(runs[0], telemetry)

@@ -195,7 +195,11 @@ def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
 
 def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
     for row in _written(run, until):
-        yield row, line_of(row) if row.stream in TEXT_STREAMS else _SEEN[row.stream], row.time_ns / 1e9
+        yield (
+            row,
+            line_of(row) if row.stream in TEXT_STREAMS else _SEEN.get(row.stream, f"[stream {row.stream}]"),
+            row.time_ns / 1e9,
+        )
 
 
 def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:

@@ -9,6 +9,7 @@ from tuisim.core.field import Field
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.mats import open_mat
+from tuisim.datalog.records import TELEMETRY_FILE
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.samples import samples_of
 from tuisim.datalog.sensor_columns import sensor_columns
@@ -30,6 +31,9 @@ MOTION_COLUMNS = (
     "right_speed_dps",
 )
 """Columns of the telemetry frame that are recorded as they are."""
+
+_MOST = 1e15
+"""No motion brings a robot so far, in mm or degrees."""
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
 
@@ -82,7 +86,7 @@ def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
 
 
 def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
-    """Return one row a tick, tick 0 (the start) included.
+    """Return one row a tick, tick 0 (the start) included; records that are damaged are left out, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
     `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; `line`, the source line
@@ -97,13 +101,35 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
     """
     import pandas as pd
 
-    records = run.telemetry.array()
+    records = _sound(run.telemetry.array())
     columns: dict[str, Any] = {"time": tick_times_s(records, run.spec)}
     for name in MOTION_COLUMNS:
         columns[name] = records[name].astype("f8")
     columns.update(sensor_columns(records, run.spec, run.actions, open_mat(run) if field is None else field))
     columns["line"] = records["line"].astype("i8")
     return pd.DataFrame(columns)
+
+
+def damage_note(run: StoredRun) -> str:
+    """Return how many records of a run hold something that no motion makes, empty if none does.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    records = run.telemetry.array()
+    lost = len(records) - len(_sound(records))
+    return f"{TELEMETRY_FILE}: {lost} of {len(records)} records are damaged and left out" if lost else ""
+
+
+def _sound(records: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return the records whose numbers are numbers."""
+    import numpy as np
+
+    whole = np.ones(len(records), np.bool_)
+    for name in (*MOTION_COLUMNS, "gyro_zero_deg"):
+        # Also false for what is no number.
+        whole &= np.abs(records[name]) < _MOST
+    return records if whole.all() else records[whole]
 
 
 def tick_times_s(records: np.ndarray[Any, Any], spec: RunSpec) -> np.ndarray[Any, Any]:

@@ -7,9 +7,9 @@ import json
 import time
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from tuisim.atomic import replacing
 from tuisim.core.simulation import NS_PER_S
@@ -22,6 +22,8 @@ from tuisim.errors import LogError, TuisimError
 RUN_FILE = "run.json"
 RUN_FORMAT = 1
 
+_SET_NOISE = "set_noise"
+
 RUNNING, INTERRUPTED = "running", "interrupted"
 """States of a run without an end: its process lives, or is gone without a word."""
 
@@ -30,6 +32,9 @@ _START_GRACE_S = 10.0
 
 _ACTION_COUNTS = 1 << 16
 """The telemetry counts user actions in 16 bits."""
+
+
+_Kind = TypeVar("_Kind")
 
 
 class ProgramLike(Protocol):
@@ -109,6 +114,9 @@ class RunEnd:
     """The program's own traceback."""
     error_line: int = 0
     deterministic: bool = True
+
+
+_ANY_END = RunEnd("", 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,9 +199,13 @@ def noise_at(spec: RunSpec, actions: Sequence[Action], record: TickRecord) -> No
     due = bisect_right(actions, record.tick, key=lambda action: action.tick)
     offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2
     for action in reversed(actions[: max(0, due + offset)]):
-        if action.kind == "set_noise":
-            return NoiseSpec(int(action.fields["light"]), int(action.fields["motor"]))
+        if action.kind == _SET_NOISE:
+            return _noise_of(action)
     return spec.world.noise
+
+
+def _noise_of(action: Action) -> NoiseSpec:
+    return NoiseSpec(int(action.fields["light"]), int(action.fields["motor"]))
 
 
 def run_document(data: Mapping[str, Any]) -> bytes:
@@ -225,7 +237,7 @@ def read_run_file(folder: Path) -> dict[str, Any]:
         data = json.loads(path.read_bytes())
     except FileNotFoundError as error:
         raise LogError(f"no run here: {RUN_FILE} is missing", file=str(folder)) from error
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise LogError(f"cannot be read: {error}", file=str(path)) from error
     if not isinstance(data, dict) or "format" not in data:
         raise LogError("not a run", file=str(path))
@@ -267,11 +279,25 @@ def read_actions(folder: Path) -> tuple[tuple[Action, ...], str]:
     actions = []
     for row, line in enumerate(lines, 1):
         try:
-            fields = json.loads(line)
-            actions.append(Action(int(fields.pop("tick")), str(fields.pop("kind")), fields))
-        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError) as error:
+            found = json.loads(line)
+            action = Action(int(found.pop("tick")), str(found.pop("kind")), found)
+            if action.kind == _SET_NOISE:
+                _noise_of(action)
+            actions.append(action)
+        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError, TuisimError) as error:
             raise LogError("not a user action", file=str(path), row=row) from error
     return tuple(actions), f"{ACTIONS_FILE}: the last line was torn and is left out" if rest else ""
+
+
+def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} is {value!r}")
+    return value
+
+
+def _end_of(data: Mapping[str, Any]) -> RunEnd:
+    kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(RunEnd)}
+    return RunEnd(**{name: _typed(value, kinds.get(name, object), name) for name, value in data.items()})
 
 
 def read_run(folder: Path) -> StoredRun:
@@ -284,22 +310,27 @@ def read_run(folder: Path) -> StoredRun:
     telemetry, output = TelemetryView(folder), OutputView(folder)
     actions, torn = read_actions(folder)
     try:
-        program = {key: data["program"][key] for key in ("name", "path", "text", "prelude")}
+        program: dict[str, Any] = {
+            key: _typed(data["program"][key], str, key) for key in ("name", "path", "text", "prelude")
+        }
         # Runs that were stored before say nothing of these.
         program |= {key: tuple(data["program"].get(key, ())) for key in ("arguments", "python_path")}
         program["working_directory"] = data["program"].get("working_directory", "")
+        spec = from_plain(data["spec"])
+        if spec.profile.tick_hz < 1:
+            raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
         return StoredRun(
             folder=folder,
-            id=data["id"],
+            id=_typed(data["id"], str, "id"),
             number=int(data.get("number", 0)),
-            created=data["created"],
+            created=_typed(data["created"], str, "created"),
             live=bool(data["live"]),
             program=StoredProgram(**program),
-            spec=from_plain(data["spec"]),
+            spec=spec,
             field=data["field"],
-            options=data["options"],
-            tags=tuple(data.get("tags", ())),
-            end=None if data["end"] is None else RunEnd(**data["end"]),
+            options=_typed(data["options"], dict, "options"),
+            tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
+            end=None if data["end"] is None else _end_of(data["end"]),
             actions=actions,
             notes=tuple(filter(None, (telemetry.note, output.note, torn))),
             telemetry=telemetry,
@@ -307,6 +338,6 @@ def read_run(folder: Path) -> StoredRun:
         )
     except LogError:
         raise
-    except (KeyError, TypeError, ValueError, TuisimError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise LogError(f"damaged: {what}", file=str(folder / RUN_FILE)) from error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from tuisim.datalog.export import log_metadata
-from tuisim.datalog.frames import samples_frame, telemetry_frame
+from tuisim.datalog.frames import damage_note, samples_frame, telemetry_frame
 from tuisim.datalog.opening.layout import guessed
 from tuisim.datalog.opening.log import Log
 from tuisim.datalog.runfile import StoredRun
@@ -38,5 +38,7 @@ def telemetry_log(run: StoredRun) -> Log:
 def _log(kind: str, runs: Sequence[StoredRun], frame: pd.DataFrame) -> Log:
     table = pa.Table.from_pandas(frame, preserve_index=False).replace_schema_metadata()
     title = ", ".join(f"run {run.number or run.id}: {run.program.name}" for run in runs)
-    notes = tuple(note for run in runs for note in run.notes)
-    return Log(title, table, guessed(table), notes, 0, log_metadata(kind, frame, runs))
+    found = [note for run in runs for note in run.notes]
+    if kind == "telemetry":
+        found += filter(None, map(damage_note, runs))
+    return Log(title, table, guessed(table), tuple(found), 0, log_metadata(kind, frame, runs))
