@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,7 +79,9 @@ def world_at_end(run: StoredRun) -> Image:
     from tuisim.figures import pen_trace, world_picture
 
     last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
-    return world_picture(run.spec, mat_pixels(mat_files(run)), last.pose if last else None, (trace,))
+    # A robot that a damaged record has nowhere is left out.
+    pose = last.pose if last and math.isfinite(last.x_mm + last.y_mm + last.heading_deg) else None
+    return world_picture(run.spec, mat_pixels(mat_files(run)), pose, (trace,))
 
 
 def _by_name() -> dict[str, Switch]:
