@@ -17,6 +17,7 @@ from textual.keys import key_to_character
 from textual.pilot import Pilot
 
 from tests.running import PATIENCE_S
+from tuisim.ui.analyser.screen import Analyser
 
 NAMED = (
     *("enter", "escape", "tab", "shift+tab", "backspace", "delete", "home", "end", "pageup", "pagedown", "insert"),
@@ -89,7 +90,7 @@ def _one(pilot: Pilot[Any], rng: Random) -> str:
         size = Size(*rng.choice(SIZES))
         driver = pilot.app._driver
         assert driver is not None
-        driver._size = size  # type: ignore[attr-defined]
+        driver._size = size
         pilot.app.post_message(events.Resize(size, size))
         return f"resize {size}"
     if what < 0.10:
@@ -104,6 +105,9 @@ def _one(pilot: Pilot[Any], rng: Random) -> str:
         keys = [rng.choice(NAMED)] * rng.choice((1, 1, 1, 2))
     else:
         keys = [key for key in rng.choices(PRINTED, k=rng.choice((1, 1, 1, 4))) if key != "q"]
+    if "escape" in keys and isinstance(pilot.app.screen, Analyser) and rng.random() < 0.95:
+        # It would leave the analyser before much has happened.
+        keys = ["enter"]
     at_once(pilot, keys)
     return " ".join(keys)
 

@@ -41,6 +41,9 @@ class Terminal:
         for key in keys:
             self._run("send-keys", key)
 
+    def resize(self, columns: int, rows: int) -> None:
+        self._run("resize-window", "-x", str(columns), "-y", str(rows))
+
     def screen(self) -> str:
         return self._run("capture-pane", "-p")
 

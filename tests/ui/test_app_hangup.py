@@ -18,6 +18,7 @@ from threading import Thread
 from typing import TextIO, cast
 
 import pytest
+from textual.app import App
 from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
 
 from tests.running import PATIENCE_S
@@ -25,10 +26,30 @@ from tests.ui.app_help import ready, settings
 from tuisim.core.geometry import Pose
 from tuisim.ui.app import Lab
 from tuisim.ui.driver import Outlasting
+from tuisim.ui.leaving import TerminalApp
 from tuisim.ui.screens.poses import SavedPoses
 
 ENTER = "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.executable, sys.argv[1:])"
 """Makes the standard input the terminal that can hang up, and becomes the app."""
+
+SHELL = """\
+import fcntl, os, signal, sys, termios
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+signal.signal(signal.SIGTTOU, signal.SIG_IGN)
+job = os.fork()
+if not job:
+    os.setpgid(0, 0)
+    os.tcsetpgrp(0, os.getpid())
+    signal.signal(signal.SIGTTOU, signal.SIG_DFL)
+    os.execv(sys.executable, sys.argv[1:])
+stopped = os.WIFSTOPPED(os.waitpid(job, os.WUNTRACED)[1])
+os.tcsetpgrp(0, os.getpgrp())
+input("STOPPED" if stopped else "ENDED")
+os.tcsetpgrp(0, job)
+os.killpg(job, signal.SIGCONT)
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(job, 0)[1]))
+"""
+"""The least of a shell: runs the app as a job, says when it stops, and lets it go on at Enter."""
 
 pytestmark = [pytest.mark.usefixtures("home")]
 
@@ -73,14 +94,14 @@ def test_more_than_the_queue_holds_is_written_to_a_terminal_that_is_gone() -> No
 
 
 @contextmanager
-def lab(folder: Path, root: Path, *words: str) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
-    """Run the app in a terminal of its own; yield it and the terminal's other end."""
+def lab(folder: Path, root: Path, *words: str, by: str = ENTER) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
+    """Run the app in a terminal of its own; yield it, or what started it, and the terminal's other end."""
     outer, inner = pty.openpty()
     environment = {**os.environ, "TERM": "xterm-256color", "PYTHONPATH": str(root), "COLUMNS": "120", "LINES": "40"}
     # What is written is held back in a buffer for most users.
     environment.pop("PYTHONUNBUFFERED", None)
     app = subprocess.Popen(
-        [sys.executable, "-c", ENTER, sys.executable, "-m", "tuisim", *words],
+        [sys.executable, "-c", by, sys.executable, "-m", "tuisim", *words],
         stdin=inner, stdout=inner, stderr=inner, cwd=folder, env=environment, start_new_session=True,
     )  # fmt: skip
     os.close(inner)
@@ -144,6 +165,58 @@ def test_an_app_that_was_stopped_from_outside_is_drawn_again_and_hears_every_key
         screen.wait(b"\x1b[?1049l")
         assert app.wait(PATIENCE_S) == 0
         os.close(outer)
+
+
+def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(tmp_path: Path, root: Path) -> None:
+    (tmp_path / "spin.py").write_text("tank_drive.on(20, 30)\nwhile True:\n    pass\n")
+    with lab(tmp_path, root, "spin.py", "-R", by=SHELL) as (shell, outer):
+        screen = Screen(outer)
+        screen.wait(b"running")
+        os.write(outer, b"\x1a")
+        screen.wait(b"\x1b[?1049l")
+        screen.wait(b"STOPPED")
+        os.write(outer, b"\n")
+        screen.wait(b"\x1b[?1049h")
+        screen.wait(b"paused")
+        os.write(outer, b"q")
+        screen.wait(b"Quit?")
+        os.write(outer, b"y")
+        screen.wait(b"\x1b[?1049l")
+        assert shell.wait(PATIENCE_S) == 0
+        os.close(outer)
+
+
+def test_ctrl_z_where_no_shell_could_go_on_does_not_stop_the_app(tmp_path: Path, root: Path) -> None:
+    with lab(tmp_path, root) as (app, outer):
+        screen = Screen(outer)
+        screen.wait(b"quit")
+        os.write(outer, b"\x1a")
+        screen.wait(b"No shell is there")
+        os.write(outer, b"q")
+        screen.wait(b"\x1b[?1049l")
+        assert app.wait(PATIENCE_S) == 0
+        os.close(outer)
+
+
+PLACES = {
+    "the world": ((), True),
+    "a dialog": (("b",), True),
+    "the palette": (("ctrl+p",), True),
+    "the program while nothing is typed": (("d", "escape"), True),
+    "the program while it is edited": (("d", "x"), False),
+}
+
+
+@pytest.mark.parametrize(("keys", "suspends"), PLACES.values(), ids=list(PLACES))
+async def test_where_ctrl_z_suspends(keys: tuple[str, ...], suspends: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    suspended: list[App[None]] = []
+    monkeypatch.setattr(TerminalApp, "action_suspend_process", lambda app: suspended.append(app))
+    async with Lab(settings("print('A: 1')\n")).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press(*keys, "ctrl+z")
+        await pilot.pause()
+        assert suspended == [app] * suspends
+        assert not app.work.dirty
 
 
 async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm() -> None:

@@ -7,7 +7,7 @@ footer, help and command palette follow from the line.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -61,7 +61,7 @@ class Action:
 
     id: str
     key: str
-    """As Textual names it."""
+    """As Textual names it, or several with commas between them."""
     title: str
     group: str
     do: Callable[[Lab], None]
@@ -147,13 +147,20 @@ def _nudge(key: str, words: str, forward: tuple[float, float], turn_deg: float =
     return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, shown_key=label)
 
 
+def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> Action:
+    # Some terminals send an arrow with ctrl as the arrow alone.
+    action = _nudge(arrow, words, (0.0, 0.0), turn_deg)
+    shown = f"{letter}, {action.key_label}"
+    return replace(action, key=f"{letter},{arrow}", title=f"Turn the robot {words}", shown_key=shown)
+
+
 def _nudges() -> list[Action]:
     ways = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
     coarse = [_nudge(key, f"10 mm {key}", (10 * x, 10 * y)) for key, (x, y) in ways.items()]
     fine = [_nudge(f"shift+{key}", f"1 mm {key}", (x, y)) for key, (x, y) in ways.items()]
     turns = [
-        _nudge("ctrl+left", "5° counter-clockwise", (0.0, 0.0), 5.0),
-        _nudge("ctrl+right", "5° clockwise", (0.0, 0.0), -5.0),
+        _turn("a", "ctrl+left", "5° counter-clockwise", 5.0),
+        _turn("f", "ctrl+right", "5° clockwise", -5.0),
     ]
     return coarse + fine + turns
 
@@ -243,6 +250,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("rays", "U", "Ultrasonic rays on or off", PANEL, verbs.rays, footer="rays"),
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, verbs.show_help, footer="help"),
+        Action("suspend", "ctrl+z", "Suspend: fg in the shell comes back", APP, verbs.suspend),
         Action("quit", "q", "Quit", APP, verbs.leave, footer="quit"),
     )
 }

@@ -128,6 +128,10 @@ class Lab(Wishes):
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.loading.look)
 
+    def suspending(self) -> None:
+        """Let nothing move while the app is stopped, and nothing go on by itself after that."""
+        travel.stand_still(self)
+
     def on_unmount(self) -> None:
         """Leave no child behind, and no unsaved work."""
         self.work.keep()

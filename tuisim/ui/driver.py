@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from contextlib import suppress
 from io import TextIOWrapper
 from pathlib import Path
@@ -64,6 +65,26 @@ class TerminalDriver(LinuxDriver):
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self._file = cast(TextIOWrapper, Outlasting(cast(TextIO, self._file)))
+
+    def stop_as_job(self) -> bool:
+        """Give the terminal back and stop, with all that was started together; go on when the shell says so.
+
+        Textual stops with a signal that cannot be refused, also where no shell is there to go on from it. The one for
+        a job's stop is dropped there.
+
+        Returns:
+            Whether the app was stopped, and goes on now.
+        """
+        self.suspend_application_mode()
+        self._must_signal_resume = True
+        handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        os.kill(0, signal.SIGTSTP)
+        signal.signal(signal.SIGTSTP, handler)
+        # Whoever lets the app go on has had the terminal prepared by then.
+        stopped = not self._must_signal_resume
+        if not stopped:
+            self.resume_application_mode()
+        return stopped
 
     def _sigcont_application(self, *_: object) -> None:
         # The signal also comes with the news that the terminal is gone, where there is nothing to go on with, and after

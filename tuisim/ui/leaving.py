@@ -15,11 +15,13 @@ from textual.app import App
 from textual.css.query import NoMatches
 from textual.driver import Driver
 from textual.filter import LineFilter
+from textual.geometry import Size
 from textual.screen import Screen
 
 from tuisim.ui.driver import TerminalDriver
 from tuisim.ui.framebuffer import FrameBuffer
 from tuisim.ui.harmless import Harmless
+from tuisim.ui.minimum import TooSmall, is_too_small, laid_out
 
 _HARMLESS = Harmless()
 
@@ -36,12 +38,30 @@ class TerminalApp(App[None]):
     def __init__(self) -> None:
         super().__init__(driver_class=TerminalDriver)
         self.frame_buffer = FrameBuffer()
+        self.too_small: Size | None = None
+        """Size of a terminal that is too small, None for one that is not."""
+
+    async def on_event(self, event: events.Event) -> None:
+        """Lay out for no smaller size than can be read; what cannot be seen cannot be clicked on."""
+        if isinstance(event, events.Resize):
+            was, self.too_small = self.too_small, event.size if is_too_small(event.size) else None
+            if self.too_small:
+                event = events.Resize(laid_out(event.size), laid_out(event.size))
+            if was != self.too_small:
+                # The layout may stay the same, and would not be drawn then.
+                self.call_later(self.draw_again)
+        elif self.too_small and isinstance(event, events.MouseEvent):
+            return
+        await super().on_event(event)
 
     def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
         # Textual writes what it is given; where it would write nothing, the terminal does not come to show it either.
         update: object = renderable
         codes: str | None = None
-        if isinstance(update, CompositorUpdate) and self._writes:
+        if self.too_small and renderable is not None:
+            renderable = cast(ConsoleRenderable, TooSmall(self.too_small))
+            self.frame_buffer.forget()
+        elif isinstance(update, CompositorUpdate) and self._writes:
             codes = self.frame_buffer.codes(update, self.console)
             if codes is not None:
                 renderable = cast(ConsoleRenderable, _Codes(codes)) if codes else None
@@ -78,6 +98,7 @@ class TerminalApp(App[None]):
         for number in (signal.SIGTERM, signal.SIGHUP):
             # As a shell shows a program that the signal has ended.
             loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
+        loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     @on(Driver.SignalResume)
     def draw_again(self) -> None:
@@ -85,11 +106,21 @@ class TerminalApp(App[None]):
         self.frame_buffer.forget()
         self.refresh(layout=True)
 
+    def action_suspend_process(self) -> None:
+        """Stop as a job of the shell that the app was started from, until the shell lets it go on."""
+        if isinstance(self._driver, TerminalDriver):
+            self.suspending()
+            if not self._driver.stop_as_job():
+                self.notify("No shell is there that could let tuisim go on, so it does not stop", markup=False)
+
+    def suspending(self) -> None:
+        """Be told that the app is about to stop."""
+
     def action_command_palette(self) -> None:
         """Open the command palette, unless it is open."""
         from tuisim.ui.palette import Palette
 
-        if self.use_command_palette and not Palette.is_open(self) and not is_leaving(self):
+        if self.use_command_palette and not Palette.is_open(cast(App[object], self)) and not is_leaving(self):
             self.push_screen(Palette())
 
     def _handle_exception(self, error: Exception) -> None:

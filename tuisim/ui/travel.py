@@ -104,6 +104,13 @@ def pause(lab: Lab) -> None:
         lab.bridge.pause()
 
 
+def stand_still(lab: Lab) -> None:
+    """Stop what plays, and pause what runs."""
+    lab.bridge.timeline.stand()
+    if lab.bridge.in_run and lab.bridge.state != PAUSED:
+        lab.bridge.pause()
+
+
 def beat(lab: Lab) -> None:
     """Play on; a paused run that has been played to its newest instant goes on by itself."""
     if lab.bridge.timeline.beat(time.monotonic(), lab.bridge.speed):

@@ -270,6 +270,11 @@ def show_help(lab: Lab) -> None:
     lab.push_screen(HelpScreen())
 
 
+def suspend(lab: Lab) -> None:
+    """Stop as a job of the shell, a run paused."""
+    lab.action_suspend_process()
+
+
 def leave(lab: Lab) -> None:
     """Quit, after a question if there are unsaved changes or a program runs."""
     lab.work.when_safe(lambda: _leave(lab))

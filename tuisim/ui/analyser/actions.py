@@ -105,6 +105,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("differences", "D", "D", "Where two runs part, and go there", LOG, differing.show, of_rows=False),
         Action("beside", "w", "w", "World beside the log, or not", PANE, doing.beside, of_rows=False),
         Action("help", "question_mark", "?", "Help", LOG, doing.show_help, "help", of_rows=False),
+        Action("suspend", "ctrl+z", "ctrl+z", "Suspend: fg in the shell comes back", LOG, doing.suspend, of_rows=False),
         Action("leave", "q,escape", "q", "Leave the analyser", LOG, doing.leave, "leave", of_rows=False),
     )
 }  # fmt: skip

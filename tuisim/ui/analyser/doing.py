@@ -249,6 +249,11 @@ def show_help(screen: Analyser) -> None:
     screen.app.push_screen(AnalyserHelp())
 
 
+def suspend(screen: Analyser) -> None:
+    """Stop as a job of the shell."""
+    screen.app.action_suspend_process()
+
+
 def leave(screen: Analyser) -> None:
     """Leave the analyser."""
     screen.leave()

@@ -229,6 +229,10 @@ class CodeArea(TextArea):
         """Whether letters go into the text."""
         return not self.read_only
 
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave the keys of undo and redo to the app while nothing is typed."""
+        return self.typing if action in ("undo", "redo") else super().check_action(action, parameters)
+
     def action_want(self, what: str) -> None:
         """Ask for something that is more than a change of the text."""
         self.post_message(self.Wanted(what))

@@ -33,6 +33,9 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
     is pressed twice would give two results, and take away the screen below as well.
     """
 
+    # The keys of the app do not reach through a screen.
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+z", "app.suspend_process", "Suspend", show=False)]
+
     @property
     def is_closed(self) -> bool:
         """Whether it has given its result, or has never been opened."""
@@ -41,14 +44,14 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
     def dismiss(self, result: Result | None = None) -> AwaitComplete:
         """Give the result and close, with every screen above; do nothing if that has been done."""
         if self.is_closed:
-            return AwaitComplete.nothing()
+            return AwaitComplete()
         stack = self.app.screen_stack
         opened = stack[stack.index(self) :]
         for screen in opened:
             if not screen.is_mounted:
                 # Textual cannot take away what it is still building.
                 screen.call_later(self.dismiss, result)
-                return AwaitComplete.nothing()
+                return AwaitComplete()
         for above in reversed(opened[1:]):
             above.dismiss(None)
         return super().dismiss(result)

@@ -11,7 +11,7 @@ from tuisim.ui.screens.keyhelp import KeyHelp, Keys
 _NUDGES = (
     ("← ↑ → ↓", "Move the robot 10 mm"),
     ("shift + arrow", "Move the robot 1 mm"),
-    ("ctrl + ← →", "Turn the robot 5°"),
+    ("a f", "Turn the robot 5° to the left, to the right; also ctrl + ← →"),
 )
 """The ten nudging keys in three rows."""
 
