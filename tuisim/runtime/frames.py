@@ -10,6 +10,7 @@ import os
 import sys
 import types
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from typing import Any
 
@@ -18,6 +19,20 @@ from tuisim.runtime.standin import replace
 
 _BOTTOM = os.path.join(PACKAGE_FOLDER, "runtime", "__main__.py")
 """Calls everything else of the process."""
+
+
+_every_frame = False
+
+
+@contextmanager
+def every_frame() -> Iterator[None]:
+    """Let `traceback` walk over all frames in the body, also over those that a program does not see."""
+    global _every_frame
+    _every_frame = True
+    try:
+        yield
+    finally:
+        _every_frame = False
 
 
 def _seen(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
@@ -63,7 +78,7 @@ def finish_inspect(module: types.ModuleType) -> None:
 def _filtered(walk: Callable[..., Iterable[Any]], file_of: Callable[[Any], str]) -> Callable[..., Iterator[Any]]:
     @wraps(walk)
     def filtered(*args: Any, **kwargs: Any) -> Iterator[Any]:
-        return _seen(walk(*args, **kwargs), file_of)
+        return iter(walk(*args, **kwargs)) if _every_frame else _seen(walk(*args, **kwargs), file_of)
 
     return filtered
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tuisim.runtime import real
+from tuisim.runtime.frames import every_frame
 from tuisim.runtime.modules import OWN_FILES, is_own
 from tuisim.source import source_lines
 
@@ -40,7 +41,9 @@ def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
     """
     remember_source(file, source)
     try:
-        told = traceback.TracebackException.from_exception(error, compact=True)
+        # All frames: an error without any was made but never raised.
+        with every_frame():
+            told = traceback.TracebackException.from_exception(error, compact=True)
         chain = _keep_program_frames(told, own_files(file))
         text, stack, summary = _text_of(chain), told.stack, _summary(told)
     except Exception as problem:  # an error may be anything, and nested too deeply: it is told all the same
