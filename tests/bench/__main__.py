@@ -13,6 +13,7 @@ from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
 from tests.bench.frames import chart, frames
+from tests.bench.listing import listing
 from tests.bench.logs import logs
 from tests.bench.recording import recording
 from tests.bench.running import EMPTY, begin
@@ -38,6 +39,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "recording": recording,
     "variables": variables,
     "logs": logs,
+    "listing": listing,
     "wire": wire,
 }
 """Every bench by name."""

@@ -12,7 +12,7 @@ import secrets
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -260,8 +260,9 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     free = not connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
     number = info.number if info.number > 0 and free else None
     # A seed may be larger than the integers of SQLite.
-    row = {**asdict(info), "number": number, "seed": str(info.seed)}
-    return int(connection.execute(_INSERT, tuple(row.values())).lastrowid or 0)
+    changed = {"number": number, "seed": str(info.seed)}
+    row = [changed.get(name, getattr(info, name)) for name in _NAMES]
+    return int(connection.execute(_INSERT, row).lastrowid or 0)
 
 
 def _all_rows(connection: sqlite3.Connection) -> list[RunInfo]:
