@@ -13,4 +13,7 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    # With `-m`, Python looks in the current folder first: a file there may be called as one of Python's own.
+    if not sys.flags.safe_path:
+        sys.path.append(sys.path.pop(0))
     sys.exit(main())

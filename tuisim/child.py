@@ -19,6 +19,12 @@ from tuisim.source import source_lines
 PATIENCE_S = 0.2
 """How long a full command pipe is waited for: a child that listens empties it at once."""
 
+BOOT = (
+    "import runpy, sys; sys.path.append(sys.argv.pop(1)); "
+    "runpy.run_module('tuisim.runtime', run_name='__main__', alter_sys=True)"
+)
+"""What the child begins with: the package is found last, so that nothing beside it takes the place of Python's own."""
+
 FILE_LOCKS = 10
 """The number of a limit that Linux hands down to every process, and has not looked at since 2.4.25."""
 
@@ -43,11 +49,12 @@ def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[
     command_read, command_fd = os.pipe()
     event_fd, event_write = os.pipe()
     lifeline_read, lifeline_fd = os.pipe()
+    package_folder = str(Path(__file__).parent.parent)
     inherited = (command_read, event_write, lifeline_read)
     try:
         with open(folder / "child.log", "wb", opener=private) as log:
             process = subprocess.Popen(
-                [sys.executable, "-s", "-P", "-m", "tuisim.runtime", str(folder), *map(str, inherited)],
+                [sys.executable, "-s", "-P", "-c", BOOT, package_folder, str(folder), *map(str, inherited)],
                 pass_fds=inherited,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
@@ -126,10 +133,8 @@ def _has_mark(pid: int, marked: int) -> bool:
 def _environment() -> dict[str, str]:
     """The child's environment: no surprises from the user's, the same hashes every time."""
     kept = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR") if name in os.environ}
-    package_folder = str(Path(__file__).parent.parent)
     return {
         **kept,
-        "PYTHONPATH": package_folder,
         "PYTHONHASHSEED": "0",
         "PYTHONUTF8": "1",
         # One thread runs at a time: a further heap would only take address space.

@@ -16,7 +16,7 @@ from importlib import import_module
 from pathlib import Path
 
 from tuisim import __version__
-from tuisim.errors import ConfigError, TuisimError, printable
+from tuisim.errors import ConfigError, HostError, TuisimError, printable
 from tuisim.switches import ARGUMENTS_FOLLOW, SwitchParser
 
 COMMANDS: Mapping[str, str] = {
@@ -36,6 +36,9 @@ COMMANDS: Mapping[str, str] = {
 
 _FOR_PROGRAMS = ("open", "run")
 """Commands that start a program, which may be given arguments."""
+
+LEAST_OPEN_FILES = 64
+"""What the app, a run and its libraries have open at once, with some room."""
 
 EXIT_OUR_MISTAKE = 70
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
@@ -167,7 +170,22 @@ def _check_command(word: str) -> None:
         raise ConfigError(f"{word}: there is no such command or program", f"did you mean `tuisim {close[0]}`?")
 
 
+def _check_open_files() -> None:
+    """Complain where the shell allows so few open files that something would fail half way."""
+    import resource
+
+    allowed, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if not 0 <= allowed < LEAST_OPEN_FILES:
+        return
+    try:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (LEAST_OPEN_FILES, most))
+    except (OSError, ValueError):
+        hint = f"tuisim needs {LEAST_OPEN_FILES}: ulimit -n {LEAST_OPEN_FILES}"
+        raise HostError(f"this shell allows no more than {allowed} open files", hint) from None
+
+
 def _dispatch(words: Sequence[str]) -> int:
+    _check_open_files()
     command, rest = (words[0], words[1:]) if words and words[0] in COMMANDS else ("open", words)
     if words and command != words[0]:
         _check_command(words[0])

@@ -34,7 +34,7 @@ from tuisim.runtime.guard import STACK_BYTES, limit_memory, refuse_processes
 from tuisim.runtime.halt import DISK_FULL
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.output import Output
-from tuisim.runtime.report import remember_source
+from tuisim.runtime.report import own_files, remember_source
 from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
 from tuisim.runtime.standin import replace
 from tuisim.runtime.steering import Steering
@@ -145,6 +145,7 @@ class Child:
                 "uuid": lambda module: finish_uuid(self._config.spec.seed, module),
             },
             replace,
+            own_files(session.program_file),
         )
 
         def leave(outcome: Outcome) -> NoReturn:

@@ -29,7 +29,7 @@ from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program, p
 from tuisim.runtime.missing import MissingPart
 from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, Output
-from tuisim.runtime.report import report_error
+from tuisim.runtime.report import point_at_namesake, report_error
 from tuisim.runtime.session import Session
 from tuisim.runtime.standin import replace
 
@@ -230,6 +230,7 @@ class ProgramRunner:
     def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
         self.stdout.finish()
         point_at_prelude(error)
+        point_at_namesake(error, self._session.program_file)
         report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
         self._tell(report.text)
         end = "deadlock" if isinstance(error, Deadlock) else "raised"
@@ -255,6 +256,7 @@ class ProgramRunner:
         if error is None or isinstance(error, StopProgram):
             return
         point_at_prelude(error)
+        point_at_namesake(error, self._session.program_file)
         self._tell(report_error(error, self._session.program_file, self._config.text).text)
 
     def _ignored_error(self, ignored: Any) -> None:

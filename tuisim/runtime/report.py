@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -98,6 +99,21 @@ def own_files(file: str) -> Callable[[str], bool]:
 
 
 Told = traceback.TracebackException
+
+
+def point_at_namesake(error: BaseException, file: str) -> None:
+    """Say with an error of an import or a name if a module beside the program has taken the place of one of Python's.
+
+    Args:
+        error: What the program raised.
+        file: File name of the program.
+    """
+    if not isinstance(error, ImportError | AttributeError):
+        return
+    own = own_files(file)
+    for name, module in list(sys.modules.items()):
+        if name in sys.stdlib_module_names and own(str(getattr(module, "__file__", None) or "<builtin>")):
+            error.add_note(f"{name}.py beside the program stands in the place of Python's own {name}: rename it.")
 
 
 def _keep_program_frames(told: Told, own: Callable[[str], bool]) -> list[Told]:

@@ -30,10 +30,11 @@ class FinishingFinder:
 
     Args:
         finishers: By module name.
+        is_own: Says of a file whether it is the program's: a module beside it may have any name.
     """
 
-    def __init__(self, finishers: Mapping[str, Finish]) -> None:
-        self._finishers = finishers
+    def __init__(self, finishers: Mapping[str, Finish], is_own: Callable[[str], bool]) -> None:
+        self._finishers, self._is_own = finishers, is_own
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
@@ -43,7 +44,7 @@ class FinishingFinder:
         if finish is None:
             return None
         spec = importlib.machinery.PathFinder.find_spec(fullname, path, target)
-        if spec is None or spec.loader is None:
+        if spec is None or spec.loader is None or self._is_own(spec.origin or "<unknown>"):
             return None
         load = spec.loader.exec_module
 
@@ -55,21 +56,24 @@ class FinishingFinder:
         return spec
 
 
-def finish_imports(finishers: Mapping[str, Finish]) -> None:
+def finish_imports(finishers: Mapping[str, Finish], is_own: Callable[[str], bool]) -> None:
     """Let functions finish modules, by name, right after their import; now, if they have been imported already."""
     for name, finish in finishers.items():
         if (there := sys.modules.get(name)) is not None:
             finish(there)
-    sys.meta_path.insert(0, FinishingFinder(finishers))
+    sys.meta_path.insert(0, FinishingFinder(finishers, is_own))
 
 
-def install(session: Session, more_finishers: Mapping[str, Finish], replace: Replace) -> None:
+def install(
+    session: Session, more_finishers: Mapping[str, Finish], replace: Replace, is_own: Callable[[str], bool]
+) -> None:
     """Prepare `import ev3dev2` for the program.
 
     Args:
         session: Clock and simulation.
         more_finishers: Finishers of other modules, by name.
         replace: Lets a function of a module do something else.
+        is_own: Says of a file whether it is the program's.
     """
     brick, colors = build_brick(session)
     screen = Screen(session)
@@ -92,7 +96,7 @@ def install(session: Session, more_finishers: Mapping[str, Finish], replace: Rep
         **PROCESSES,
         **more_finishers,
     }
-    finish_imports(finishers)
+    finish_imports(finishers, is_own)
     connect(session, brick)
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules["evdev"] = evdev_module(session)
