@@ -67,7 +67,8 @@ def test_an_interrupt_stops_the_program(
 def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell("import signal, time\nwent_on = False\ndef strike(text):\n    global went_on\n"
-         "    signal.raise_signal(signal.SIGINT)\n    time.sleep(60)\n    went_on = True\nroboSim.responder = strike")  # fmt: skip
+         "    signal.raise_signal(signal.SIGINT)\n    time.sleep(60)\n    went_on = True\n"
+         "roboSim.responder = strike")  # fmt: skip
     shown = cell(ENDLESS.replace("-RW", "-RWL").replace("while", "print('PY::now')\nwhile"))
     assert cell("went_on").result is False
     assert "stopped" in shown.plain
