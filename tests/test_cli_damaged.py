@@ -15,9 +15,10 @@ import pytest
 from tests.conftest import Command
 from tests.datalog.run_recorder import PROGRAM, Recorder
 from tuisim.cli import EXIT_OUR_MISTAKE
+from tuisim.core.parts import MotorSpec
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
-from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.datalog.catalogue import CATALOGUE_FILE
 from tuisim.datalog.records import (
     ACTIONS_FILE,
