@@ -25,6 +25,7 @@ from tuisim.datalog.records import (
     OutputWriter,
     TelemetryWriter,
 )
+from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView, TickRecord, instant_of
 from tuisim.errors import LogError
 
@@ -110,6 +111,7 @@ def test_last_record_written_anew_is_read_anew(tmp_path: Path) -> None:
 SHRUNK = """
 import os, sys
 from pathlib import Path
+from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView, TelemetryView
 folder = Path(sys.argv[1])
 telemetry, output = TelemetryView(folder), OutputView(folder)
@@ -238,3 +240,18 @@ def test_runs_that_are_over_keep_no_files_open(record: Callable[..., Recorder], 
     views = [(TelemetryView(recorder.run.folder), OutputView(recorder.run.folder)) for _ in range(5)]
     assert {(ticks.array().size, len(output.all_rows())) for ticks, output in views} == {(4, 1)}
     assert len(os.listdir("/proc/self/fd")) == before
+
+
+@pytest.mark.parametrize(("name", "rows", "ticks"), [(TELEMETRY_FILE, 1, 0), (OUTPUT_FILE, 0, 11)])
+def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
+    name: str, rows: int, ticks: int, store: RunStore, spec: RunSpec, record: Callable[[RunSpec], Recorder]
+) -> None:
+    recorder = record(spec)
+    recorder.print("A: 1")
+    recorder.drive(100.0, 100.0, 10)
+    file = recorder.end().folder / name
+    with file.open("r+b") as handle:
+        handle.write(b"XXXXXXXX")
+    run = store.load_run(file.parent.name)
+    assert run.notes == (f"{file}: not a tuisim recording: nothing of it can be read",)
+    assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)

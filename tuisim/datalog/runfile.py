@@ -307,7 +307,8 @@ def read_run(folder: Path) -> StoredRun:
         LogError: the folder holds no run, or one that is damaged.
     """
     data = read_run_file(folder)
-    telemetry, output = TelemetryView(folder), OutputView(folder)
+    # What is left of a damaged run is readable: its program, its world, and the other recording.
+    telemetry, output = TelemetryView(folder, may_be_damaged=True), OutputView(folder, may_be_damaged=True)
     actions, torn = read_actions(folder)
     try:
         program: dict[str, Any] = {

@@ -92,8 +92,11 @@ class _Recording:
         record_bytes: Of one record; 1 if they differ.
     """
 
-    def __init__(self, path: Path, magic: bytes, record_bytes: int) -> None:
+    def __init__(self, path: Path, magic: bytes, record_bytes: int, may_be_damaged: bool) -> None:
         self._path = path
+        self._may_be_damaged = may_be_damaged
+        self.damage = ""
+        """Why nothing of the file can be read, empty if it can."""
         self._magic = magic
         self._record_bytes = record_bytes
         self._copy = bytearray()
@@ -139,7 +142,13 @@ class _Recording:
         # The writer sizes a new file before it writes the header. One that has been emptied since has nothing to add.
         if not head.strip(b"\0") or (self._there and len(head) < HEADER_BYTES):
             return
-        published = published_length(head, self._magic, str(self._path))
+        try:
+            published = published_length(head, self._magic, str(self._path))
+        except LogError as error:
+            if not self._may_be_damaged:
+                raise
+            self.damage = f"{error.message}: nothing of it can be read"
+            return
         room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
         # The last record may have been written anew.
         kept = max(0, self._there - 1) if self._record_bytes > 1 else self._there
@@ -179,13 +188,14 @@ class TelemetryView:
 
     Args:
         folder: The run folder.
+        may_be_damaged: Whether a file that is no recording is taken for an empty one, which `note` tells.
 
     Raises:
-        LogError: by every method, if the file is no recording or of another version.
+        LogError: by every method, if the file is no recording or of another version and may not be damaged.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._file = _Recording(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size)
+    def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
+        self._file = _Recording(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, may_be_damaged)
 
     @property
     def count(self) -> int:
@@ -196,6 +206,8 @@ class TelemetryView:
     def note(self) -> str:
         """What is missing from a file that was cut off, or empty."""
         published, there = self._file.extent()
+        if self._file.damage:
+            return self._file.damage
         lost = published - there
         return f"{TELEMETRY_FILE} was cut off: the last {lost} of {published} records are lost" if lost else ""
 
@@ -240,13 +252,14 @@ class OutputView:
 
     Args:
         folder: The run folder.
+        may_be_damaged: Whether a file that is no recording is taken for an empty one, which `note` tells.
 
     Raises:
-        LogError: by every method, if the file is no recording or of another version.
+        LogError: by every method, if the file is no recording or of another version and may not be damaged.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._file = _Recording(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1)
+    def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
+        self._file = _Recording(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1, may_be_damaged)
         self._seen = 0
 
     @property
@@ -258,6 +271,8 @@ class OutputView:
     def note(self) -> str:
         """What is missing from a file that was cut off, or empty."""
         published, there = self._file.extent()
+        if self._file.damage:
+            return self._file.damage
         lost = published - there
         return f"{OUTPUT_FILE} was cut off: its last {lost} bytes are lost" if lost else ""
 
