@@ -57,7 +57,7 @@ def branch_with_noise(terminal: Terminal) -> None:
     terminal.keys("y")
     terminal.until(lambda text: "paused" in text.splitlines()[-1] and "Branch from" not in text)
     terminal.until(lambda text: held_at(text)[1] == "0.67" and "past" not in text)
-    terminal.keys("Tab", "T")
+    terminal.keys("T")
     terminal.until(lambda text: "Breakpoints" in text)
     terminal.keys("Home", "Delete")
     terminal.until(lambda text: "None yet" in text)

@@ -14,6 +14,7 @@ from textual.widgets import Input, Label, Static
 from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec
 from tuisim.errors import ConfigError
 from tuisim.switches import MAX_SEED, whole
+from tuisim.ui.number_input import NumberInput
 from tuisim.ui.slider import Slider
 from tuisim.ui.snapshot import Snapshot
 
@@ -51,10 +52,10 @@ class Noise(Vertical):
             with Horizontal(classes="field"):
                 yield Label(f"{name}", markup=False)
                 yield Slider(maximum, id=kind)
-                yield Input("0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3)
+                yield NumberInput("0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3)
         with Horizontal(classes="field"):
             yield Label("Seed", markup=False)
-            yield Input("0", id="seed", compact=True, select_on_focus=True)
+            yield NumberInput("0", id="seed", compact=True, select_on_focus=True)
         yield Static(_USE, id="message", markup=False)
 
     def begin(self) -> None:

@@ -7,14 +7,13 @@ from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.switches import MAX_ANGLE_DEG, MAX_POSITION_MM
-from tuisim.ui.actions import ACTIONS
+from tuisim.ui.number_input import NumberInput
 from tuisim.ui.snapshot import Snapshot
 
 _FIELDS = {"x": ("X", "mm", MAX_POSITION_MM), "y": ("Y", "mm", MAX_POSITION_MM), "angle": ("Angle", "°", MAX_ANGLE_DEG)}
@@ -36,16 +35,6 @@ def parse_field(field: str, text: str) -> float:
     if not -limit <= value <= limit:
         raise ValueError(f"{name}: a number from -{limit} to {limit}, not {text.strip()[:12] or 'nothing'!r}")
     return value
-
-
-class NumberInput(Input):
-    """A field for a number, in which letters are still keys of the app."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(action.key, f"app.act('{action.id}')", action.title, show=False, priority=True)
-        for action in ACTIONS.values()
-        if len(action.key) == 1
-    ]
 
 
 class Positioning(Vertical):
