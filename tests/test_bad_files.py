@@ -203,7 +203,7 @@ def check(switch: str, path: Path, content: Content, said: str) -> None:
     error = caught.value
     assert str(error).startswith(f"{path}: {said}")
     assert "\n" not in str(error)
-    assert len(str(error)) < 500 + len(str(path))
+    assert len(str(error)) < 600 + len(str(path))
     assert (error.exit_code, error.file) == (2, str(path))
     assert state(path.parent) == before
 

@@ -42,7 +42,8 @@ def test_a_magic_line_is_found_on_its_own_line() -> None:
 
 
 def test_a_magic_line_leaves_the_others_alone() -> None:
-    assert parse_program(f"# {NO_ENDS}\n%%sim_magic -R\nx = 1\n", "odd.py").text == f"# {NO_ENDS}\n\nx = 1\n"
+    expected = f"# {NO_ENDS}\n# %%sim_magic -R\nx = 1\n"
+    assert parse_program(f"# {NO_ENDS}\n%%sim_magic -R\nx = 1\n", "odd.py").text == expected
 
 
 @pytest.mark.parametrize("encoding", ["rot13", "hex", "zip", "undefined", "idna", "no-such"])
