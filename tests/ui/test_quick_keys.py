@@ -8,26 +8,33 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from textual import events
 from textual.screen import Screen
+from textual.widgets import Input
 
 import tuisim.ui
-from tests.ui.app_help import LOGS, ready, settings, until
-from tests.ui.monkey import at_once
+from tests.ui.app_help import LOGS, ready, screen_text, settings, until
+from tests.ui.monkey import at_once, key_event
 from tuisim.ui.analyser.app import AnalyserApp
 from tuisim.ui.analyser.help import AnalyserHelp
 from tuisim.ui.analyser.screen import Analyser
 from tuisim.ui.analyser.subject import Wanted
 from tuisim.ui.app import Lab
 from tuisim.ui.palette import Palette
+from tuisim.ui.screens.choosing import Chooser
 from tuisim.ui.screens.dialog import ClosesOnce
 from tuisim.ui.screens.help import HelpScreen
 from tuisim.ui.screens.question import Question
 
 IN_THE_LAB = {
-    "mat": "b enter enter escape",
-    "program": "o enter enter escape",
+    "mat": "b enter enter",
+    "program": "o enter enter",
+    "robot": "r pagedown enter enter",
+    "panel": "Z",
+    "panel, and no longer": "Z Z z",
     "stored run": "h enter enter escape",
     "palette": "ctrl+p enter enter escape",
+    "palette before its list is there": "ctrl+p pagedown escape",
     "palette asked for twice": "ctrl+p escape ctrl+p ctrl+p escape escape",
     "two dialogs after each other": "b escape T escape escape",
 }
@@ -67,6 +74,41 @@ async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
         await until(pilot, lambda: app.screen is analyser)
         at_once(pilot, ["question_mark"])
         await until(pilot, lambda: isinstance(app.screen, AnalyserHelp))
+
+
+async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        at_once(pilot, "o/tmp")
+        await until(pilot, lambda: isinstance(app.screen, Chooser))
+        await until(pilot, lambda: [field.value for field in app.screen.query(Input)] == ["/tmp"])
+
+
+async def test_keys_that_come_when_the_app_has_ended_do_no_harm() -> None:
+    app = Lab(settings())
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        app.exit()
+    # They are taken out of the queue when there is no screen any more.
+    await app.on_event(key_event("question_mark"))
+    await app.on_event(events.Paste("x"))
+
+
+NO_NAMES = {"too long": "x" * 300 + ".toml", "of nobody's home": "~no-such-user/lab.toml", "with a zero": "a\0b.toml"}
+
+
+@pytest.mark.parametrize("name", NO_NAMES.values(), ids=list(NO_NAMES))
+@pytest.mark.parametrize("key", ["ctrl+s", "o"])
+async def test_what_cannot_be_the_name_of_a_file_is_refused(key: str, name: str) -> None:
+    async with Lab(settings()).run_test(size=(80, 24), notifications=True) as pilot:
+        app = await ready(pilot)
+        await pilot.press(key)
+        dialog, field = app.screen, app.screen.query_one(Input)
+        field.focus()
+        field.value = name
+        await pilot.press("enter")
+        await until(pilot, lambda: "cannot be the name of a file" in screen_text(app))
+        assert app.screen is dialog
 
 
 async def test_a_dialog_gives_its_result_once() -> None:

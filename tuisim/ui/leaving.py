@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
+from collections import deque
 from collections.abc import Sequence
 from functools import partial
 from typing import Any, cast
@@ -22,6 +23,7 @@ from tuisim.ui.driver import TerminalDriver
 from tuisim.ui.framebuffer import FrameBuffer
 from tuisim.ui.harmless import Harmless
 from tuisim.ui.minimum import TooSmall, is_too_small, laid_out
+from tuisim.ui.screens.dialog import ClosesOnce
 
 _HARMLESS = Harmless()
 
@@ -40,6 +42,8 @@ class TerminalApp(App[None]):
         self.frame_buffer = FrameBuffer()
         self.too_small: Size | None = None
         """Size of a terminal that is too small, None for one that is not."""
+        self._waiting_keys: deque[events.Key] = deque()
+        """Keys for a screen that is being opened."""
 
     async def on_event(self, event: events.Event) -> None:
         """Lay out for no smaller size than can be read; what cannot be seen cannot be clicked on."""
@@ -50,9 +54,28 @@ class TerminalApp(App[None]):
             if was != self.too_small:
                 # The layout may stay the same, and would not be drawn then.
                 self.call_later(self.draw_again)
-        elif self.too_small and isinstance(event, events.MouseEvent):
+        elif isinstance(event, (events.InputEvent, events.Paste)) and self._is_deaf_to(event):
+            return
+        if isinstance(event, events.Key) and (self._waiting_keys or self._is_opening):
+            # A screen that is not built yet would lose it.
+            self._waiting_keys.append(events.Key(event.key, event.character))
             return
         await super().on_event(event)
+
+    def _is_deaf_to(self, event: events.Event) -> bool:
+        """Whether nobody is there to hear the user, or the user cannot see what is pointed at."""
+        return is_leaving(self) or (self.too_small is not None and isinstance(event, events.MouseEvent))
+
+    @on(ClosesOnce.Changed)
+    async def give_waiting_keys(self) -> None:
+        """Let the uppermost screen have the keys that were pressed while it was being opened."""
+        while self._waiting_keys and not self._is_opening:
+            await super().on_event(self._waiting_keys.popleft())
+
+    @property
+    def _is_opening(self) -> bool:
+        top = self.screen_stack[-1] if self.screen_stack else None
+        return isinstance(top, ClosesOnce) and not top.is_ready
 
     def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
         # Textual writes what it is given; where it would write nothing, the terminal does not come to show it either.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
-from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
 from tuisim.ui.actions import ACTIONS
 from tuisim.ui.screens.dialog import ClosesOnce
@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 
 class Palette(CommandPalette, ClosesOnce[None]):
     """Textual's command palette as a screen of ours."""
+
+    def _action_command_list(self, action: str) -> None:
+        # A list that has never been shown has no pages and no lines yet.
+        if self.query_one(CommandList).size:
+            super()._action_command_list(action)
 
 
 @dataclass(frozen=True, slots=True)

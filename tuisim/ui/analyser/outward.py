@@ -10,6 +10,7 @@ from textual.worker import get_current_worker
 
 from tuisim.errors import LogError, TuisimError
 from tuisim.ui.analyser.asking import Asking
+from tuisim.ui.screens.typed import typed_path
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,7 +65,7 @@ def ask_report(screen: Analyser) -> None:
 def _file(text: str, hint: str) -> Path:
     if not text:
         raise LogError("which file?", hint)
-    return Path(text).expanduser()
+    return typed_path(text)
 
 
 def _write(screen: Analyser, subject: Subject, target: Path, names: Sequence[str]) -> None:

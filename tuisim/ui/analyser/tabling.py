@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.errors import LogError
@@ -12,6 +11,7 @@ from tuisim.ui.analyser.panes import PANES
 from tuisim.ui.analyser.rows import Arrangement, conditions_of
 from tuisim.ui.analyser.task import Task
 from tuisim.ui.analyser.working import work
+from tuisim.ui.screens.typed import typed_path
 
 if TYPE_CHECKING:
     from tuisim.ui.analyser.model import Model
@@ -163,7 +163,7 @@ def ask_export(screen: Analyser) -> None:
     def go(text: str) -> None:
         if not text:
             raise LogError("which file?", f"such as {what}.csv")
-        screen.export(Path(text).expanduser(), pane)
+        screen.export(typed_path(text), pane)
 
     screen.app.push_screen(Asking(f"Export the {what} as shown", go, f"{what}.csv", _FILES))
 

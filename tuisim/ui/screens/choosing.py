@@ -14,6 +14,7 @@ from textual.widgets.option_list import Option
 
 from tuisim.errors import TuisimError
 from tuisim.ui.screens.dialog import Dialog, name_and_title
+from tuisim.ui.screens.typed import typed_path
 
 MAX_FILES = 200
 MAX_TRIED = 50
@@ -73,8 +74,13 @@ class ListDialog(Dialog[str]):
 
     @on(Input.Submitted)
     def _typed(self, event: Input.Submitted) -> None:
-        if event.value.strip():
-            self.dismiss(event.value.strip())
+        if typed := event.value.strip():
+            try:
+                typed_path(typed)
+            except TuisimError as error:
+                self.app.notify(str(error), severity="error", markup=False)
+            else:
+                self.dismiss(typed)
 
 
 class Chooser(ListDialog):

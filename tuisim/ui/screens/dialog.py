@@ -36,6 +36,20 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
     # The keys of the app do not reach through a screen.
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+z", "app.suspend_process", "Suspend", show=False)]
 
+    class Changed(Message):
+        """A screen can be given keys, or has closed."""
+
+    is_ready = False
+    """Whether it is built, and has given the focus to the one of its widgets that is to hear the first key."""
+
+    def on_mount(self) -> None:
+        """Be ready after the first layout, and after the focus that was asked for until then."""
+        self.call_after_refresh(self.app.call_later, self._become_ready)
+
+    def _become_ready(self) -> None:
+        self.is_ready = True
+        self.app.post_message(self.Changed())
+
     @property
     def is_closed(self) -> bool:
         """Whether it has given its result, or has never been opened."""
@@ -54,6 +68,7 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
                 return AwaitComplete()
         for above in reversed(opened[1:]):
             above.dismiss(None)
+        self.app.post_message(self.Changed())
         return super().dismiss(result)
 
     async def _on_message(self, message: Message) -> None:

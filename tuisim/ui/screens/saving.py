@@ -12,6 +12,7 @@ from textual.widgets import Input, Static
 
 from tuisim.errors import TuisimError
 from tuisim.ui.screens.dialog import Dialog
+from tuisim.ui.screens.typed import typed_path
 
 
 class FileDialog(Dialog[Path]):
@@ -71,7 +72,7 @@ class FileDialog(Dialog[Path]):
             self.say(f"Type the name of a file that ends in {self.SUFFIXES}", wrong=True)
             return
         try:
-            target = self.checked(Path(typed).expanduser())
+            target = self.checked(typed_path(typed))
             if target.exists() and self._agreed != typed:
                 self._agreed = typed
                 self.say(f"{target.name} is there already. Enter once more replaces it.", wrong=True)
