@@ -108,6 +108,11 @@ def test_exit_codes(text: str, words: list[object], code: int, tmp_path: Path, h
     assert "tuisim/" not in done.stderr
 
 
+def test_a_program_that_asks_is_told_how_it_gets_answers(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "prog.py").write_text("input('? ')\n")
+    assert "--input TEXT" in here("run", "prog.py").stderr
+
+
 def test_several_programs_run_in_turn_into_one_log_and_the_worst_exit_code_counts(
     tmp_path: Path, program: Path, here: Command
 ) -> None:

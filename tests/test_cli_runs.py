@@ -20,7 +20,7 @@ from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.datalog import store as store_module
 from tuisim.datalog.catalogue import CATALOGUE_FILE
-from tuisim.datalog.records import OutputRow, OutputWriter, TelemetryWriter
+from tuisim.datalog.records import TELEMETRY_FILE, OutputRow, OutputWriter, TelemetryWriter
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.datalog.views import OutputView
@@ -146,3 +146,20 @@ def test_a_listing_counts_only_so_many_samples(make: Make, monkeypatch: pytest.M
     (home / CATALOGUE_FILE).unlink()
     monkeypatch.setattr(store_module, "_COUNT_A_LISTING_BYTES", 70)
     assert [[run.samples for run in RunStore().runs()] for _ in range(2)] == [[1, None], [1, 2]]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["runs", "rerun", "last"], "telemetry.bin was cut off: the last"),
+        (["log", "summary", "last", "--telemetry"], "no ticks: its recording is empty or cut off"),
+    ],
+    ids=["rerun", "log of every tick"],
+)
+def test_a_recording_that_lost_all_its_ticks_is_called_cut_off(
+    make: Make, here: Command, words: list[str], said: str
+) -> None:
+    telemetry = make("a: 1").folder / TELEMETRY_FILE
+    telemetry.write_bytes(telemetry.read_bytes()[:100])
+    done = here(*words)
+    assert (done.returncode, said in done.stderr) == (2, True), done.stderr

@@ -24,6 +24,8 @@ AFTER_TICK = 0
 """Ordinal of the moment at which a tick has just been done."""
 BEFORE_NEXT_TICK = -1
 """Ordinal of the moment right before the next tick: where a pause holds."""
+NO_ANSWER = "there is no further answer to input()"
+"""What the error says of a program that asks where nobody answers."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 UNKNOWN_ORDINAL = -2

@@ -71,7 +71,7 @@ def _stop_tick(run: StoredRun) -> int | None:
 def _options(run: StoredRun) -> RunOptions:
     last = run.telemetry.last()
     if last is None:
-        raise LogError("has no recording: it ended before its first tick", file=str(run.folder))
+        raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
     # A run that was stopped might never end by itself; any other ends before the tick after its last.
     enough_s = (last.tick + 1) / run.spec.profile.tick_hz
     stored, stop_tick = run.options, _stop_tick(run)

@@ -266,6 +266,16 @@ CASES: dict[str, Case] = {
         b"Colour: 98.8\nhello\nColour: 45\nUltrasonic: 3\n",
         Read(3, ("Colour", "Ultrasonic"), left_out=1, note="no sample (row 2"),
     ),
+    "few printed lines among other words": (
+        "a.txt",
+        b"says: hi\nColour: 98.8\nleft, then right\nhello\nColour: 45\nDist = 4\nbye\n",
+        Read(2, ("Colour",), left_out=5, note="no sample (rows 1, 3, 4"),
+    ),
+    "a table below lines that look printed": (
+        "a.txt",
+        b"Samples: 3\nRate: 10\n0 5\n1 6\n2 7\n",
+        Read(-1, check=lambda log: "Rate" not in log.names),
+    ),
     "printed lines with times": (
         "a.log",
         b"Colour: 98.8 0.5\nColour: 45 1.5\n",

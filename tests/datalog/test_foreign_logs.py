@@ -131,8 +131,9 @@ def test_input(tmp_path: Path, name: str, content: bytes | Callable[[], bytes], 
     [
         ("t_ms,red\n0,1\n9,2\n", "time is the column 't_ms', in milliseconds (--time COLUMN takes another"),
         ("boot,red\n0,1\n9,2\n", "no column is a time: the rows are counted (--time COLUMN"),
+        ("row,red\n1,1\n2,2\n", "no column is a time: the rows are counted (--time COLUMN"),
     ],
-    ids=["a name", "none"],
+    ids=["a name", "none", "numbers of rows"],
 )
 def test_the_shell_says_which_column_is_the_time(here: Command, tmp_path: Path, text: str, said: str) -> None:
     (tmp_path / "a.csv").write_text(text)

@@ -9,7 +9,7 @@ from tuisim.core.geometry import shown_heading_deg
 from tuisim.datalog.records import STDERR
 from tuisim.datalog.runfile import RunEnd, StoredRun
 from tuisim.datalog.samples import counts_of
-from tuisim.protocol import Ended
+from tuisim.protocol import NO_ANSWER, Ended
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
 EXIT_BROKEN_PIPE = 141
@@ -80,6 +80,8 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
     facts = describe(run)
     if facts["error"] and not any(row.stream == STDERR for row in run.output.rows()):
         echo_error_lines(facts["error"].rstrip("\n"))
+    if facts["error"].rstrip("\n").endswith(NO_ANSWER):
+        echo_error("`tuisim run` asks nobody: give each answer with --input TEXT, or run the program in the app.")
     if as_json:
         echo_json({**facts, "exit_code": exit_code}, flush=True)
     else:

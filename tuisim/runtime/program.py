@@ -19,7 +19,7 @@ from typing import Any, NoReturn
 from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import INPUT, STDERR
 from tuisim.errors import LogError
-from tuisim.protocol import Answer, InputWanted
+from tuisim.protocol import NO_ANSWER, Answer, InputWanted
 from tuisim.runtime import real
 from tuisim.runtime.baton import Baton
 from tuisim.runtime.config import RunConfig
@@ -295,7 +295,7 @@ class ProgramRunner:
         # Answers that are there already let no time pass: a stop comes between them.
         self._output.after_write()
         if answer is None:
-            raise EOFError("there is no further answer to input()")
+            raise EOFError(NO_ANSWER)
         return answer
 
     def _users_answer(self, asked: str) -> str | None:

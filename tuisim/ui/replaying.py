@@ -48,7 +48,9 @@ def _prepare_in_thread(lab: Lab, word: str | StoredRun) -> None:
     try:
         run = RunStore().load_run(word) if isinstance(word, str) else word
         if not run.telemetry.count:
-            raise LogError("has no recording: it ended before its first tick", file=str(run.folder))
+            raise LogError(
+                run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder)
+            )
         # What is packed is unpacked here, where that may take its time, and may fail.
         run.telemetry.record(0)
         next(run.output.rows(), None)

@@ -69,6 +69,8 @@ def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
     logs = [telemetry_log(run) for run in runs] if arguments.telemetry else [log_of_runs(runs)]
     for log in logs:
         if not log.rows:
+            if arguments.telemetry:
+                raise LogError("no ticks: its recording is empty or cut off", file=log.title)
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry takes every tick instead"
             raise LogError("no samples", hint, file=log.title)
         layout = chosen(log.table, arguments.time, arguments.value, arguments.unit)

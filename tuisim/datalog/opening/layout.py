@@ -122,7 +122,7 @@ def unread_time(table: pa.Table, layout: Layout) -> str:
 
 def time_in_words(layout: Layout) -> str:
     """Return which column is the time, for people."""
-    if not layout.time:
+    if layout.time in (ROW, "row"):
         return "no column is a time: the rows are counted"
     unit = UNIT_NAMES.get(layout.unit_s, f"{layout.unit_s:g} s")
     return f"time is the column {layout.time!r}, in {unit}{' since 1970' if layout.since_first else ''}"

@@ -212,9 +212,7 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
         if not read and data.startswith((PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC, *MAGICS)):
-            raise LogError(
-                "only text can be read from a pipe or inside a compressed file", "name the Parquet or Arrow file itself"
-            )
+            raise LogError("only text can be read from a pipe or inside a compressed file", "name the file itself")
         read += len(data)
         block = cutter.feed(data) if data else cutter.finish()
         if block is not None:

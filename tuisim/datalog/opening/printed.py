@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import pyarrow as pa
 
 from tuisim.datalog.opening.lines import Block
 from tuisim.datalog.opening.notes import Notes
 from tuisim.datalog.samples import parse_sample
+
+_TABLE_ROW = re.compile(r"[,;\t]|^[^A-Za-z]*[0-9][^A-Za-z]*$")
+"""Cells with a separator between them, or nothing but numbers."""
 
 
 class PrintedReader:
@@ -47,5 +52,6 @@ class PrintedReader:
 
 
 def looks_printed(lines: list[str]) -> bool:
-    """Return whether most of some lines are samples."""
-    return bool(lines) and 2 * sum(parse_sample(line) is not None for line in lines) > len(lines)
+    """Return whether more of some lines are samples than look like rows of a table; other words count for neither."""
+    others = [line for line in lines if parse_sample(line) is None]
+    return len(lines) - len(others) > sum(_TABLE_ROW.search(line) is not None for line in others)
