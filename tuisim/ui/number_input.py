@@ -1,0 +1,26 @@
+"""A field for a number."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.binding import Binding, BindingType
+from textual.widgets import Input
+
+from tuisim.ui.actions import ACTIONS
+
+_SIGNS = frozenset({
+    "colon", "equals_sign", "left_parenthesis", "left_square_bracket", "less_than_sign", "greater_than_sign",
+    "question_mark", "right_parenthesis", "right_square_bracket", "space",
+})  # fmt: skip
+"""Keys of characters that stand in no number."""
+
+
+class NumberInput(Input):
+    """A field for a number, in which letters and signs that stand in no number are still keys of the app."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding(action.key, f"app.act('{action.id}')", action.title, show=False, priority=True)
+        for action in ACTIONS.values()
+        if len(action.key) == 1 or action.key in _SIGNS
+    ]
