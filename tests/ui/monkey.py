@@ -128,8 +128,10 @@ async def press_at_random(pilot: Pilot[Any], rng: Random, count: int) -> AsyncIt
 
 
 async def leave(pilot: Pilot[Any]) -> None:
-    """End the app as anybody can, whatever it shows: escape four times, `q`, and an answer to what is asked."""
-    for key in ("escape", "escape", "escape", "escape", "q"):
+    """End the app as anybody can, whatever it shows: escape until nothing closes any more, `q`, and what that asks."""
+    opened = len(pilot.app.screen_stack)
+    # One for each dialog and what may still come up, one for a field, one for a text that is typed into.
+    for key in (*["escape"] * (opened + 3), "q"):
         if not is_over(pilot):
             await pilot.press(key)
     give_up = time.monotonic() + PATIENCE_S

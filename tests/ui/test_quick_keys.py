@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from textual import events
+from textual.app import App
 from textual.screen import Screen
 from textual.widgets import Input
 
@@ -82,6 +83,18 @@ async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
         at_once(pilot, "o/tmp")
         await until(pilot, lambda: isinstance(app.screen, Chooser))
         await until(pilot, lambda: [field.value for field in app.screen.query(Input)] == ["/tmp"])
+
+
+async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[object] = []
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
+        app, dialog = await ready(pilot), HelpScreen()
+        await app.push_screen(dialog)
+        await pilot.press("escape")
+        monkeypatch.setattr(App, "_display", lambda app, screen, renderable: drawn.append(renderable))
+        app._display(dialog, "help")
+        monkeypatch.undo()
+    assert [what for what in drawn if what is not None] == []
 
 
 async def test_keys_that_come_when_the_app_has_ended_do_no_harm() -> None:

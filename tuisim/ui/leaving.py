@@ -81,7 +81,10 @@ class TerminalApp(App[None]):
         # Textual writes what it is given; where it would write nothing, the terminal does not come to show it either.
         update: object = renderable
         codes: str | None = None
-        if self.too_small and renderable is not None:
+        if isinstance(screen, ClosesOnce) and screen.is_closed:
+            # One that was closed while it was being built still comes to draw itself.
+            renderable = None
+        elif self.too_small and renderable is not None:
             renderable = cast(ConsoleRenderable, TooSmall(self.too_small))
             self.frame_buffer.forget()
         elif isinstance(update, CompositorUpdate) and self._writes:
