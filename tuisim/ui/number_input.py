@@ -20,7 +20,8 @@ class NumberInput(Input):
     """A field for a number, in which letters and signs that stand in no number are still keys of the app."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(action.key, f"app.act('{action.id}')", action.title, show=False, priority=True)
+        Binding(key, f"app.act('{action.id}')", action.title, show=False, priority=True)
         for action in ACTIONS.values()
-        if len(action.key) == 1 or action.key in _SIGNS
+        for key in action.key.split(",")
+        if len(key) == 1 or key in _SIGNS
     ]
