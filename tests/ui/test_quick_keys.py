@@ -11,7 +11,7 @@ import pytest
 from textual import events
 from textual.app import App
 from textual.screen import Screen
-from textual.widgets import Input
+from textual.widgets import Input, OptionList
 
 import tuisim.ui
 from tests.ui.app_help import LOGS, ready, screen_text, settings, until
@@ -31,8 +31,7 @@ IN_THE_LAB = {
     "mat": "b enter enter",
     "program": "o enter enter",
     "robot": "r pagedown enter enter",
-    "panel": "Z",
-    "panel, and no longer": "Z Z z",
+    "panel opened and closed": "Z Z z",
     "stored run": "h enter enter escape",
     "palette": "ctrl+p enter enter escape",
     "palette before its list is there": "ctrl+p pagedown escape",
@@ -105,6 +104,15 @@ async def test_keys_that_come_when_the_app_has_ended_do_no_harm() -> None:
     # They are taken out of the queue when there is no screen any more.
     await app.on_event(key_event("question_mark"))
     await app.on_event(events.Paste("x"))
+
+
+async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog() -> None:
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o")
+        await until(pilot, lambda: isinstance(app.focused, OptionList))
+        await pilot.click(offset=(1, 1))
+        assert isinstance(app.focused, OptionList)
 
 
 NO_NAMES = {"too long": "x" * 300 + ".toml", "of nobody's home": "~no-such-user/lab.toml", "with a zero": "a\0b.toml"}

@@ -386,7 +386,7 @@ class Lab(Wishes):
         """Leave an input field; from the world, come back from the past."""
         if self.debugging.is_away and self.focused in (None, self.desk.world):
             travel.to_now(self)
-        self.set_focus(self.desk.world if self.desk.shown("world") else None)
+        self.desk.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
         """The user answered `input()`."""
@@ -395,7 +395,8 @@ class Lab(Wishes):
 
     def on_click(self, event: events.Click) -> None:
         """A click beside every field leaves it."""
-        if isinstance(event.widget, Widget) and not event.widget.can_focus:
+        in_a_dialog = self.screen is not self.desk.screen
+        if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             self.action_leave_field()
 
     def say(self, text: str) -> None:

@@ -195,6 +195,10 @@ class Desk(Container):
             if isinstance(widget, PlanPanel):
                 widget.show_plan(plan)
 
+    def focus_world(self) -> None:
+        """Give the focus among the panels to the world, if it is shown; that of a dialog above them stays."""
+        self.screen.set_focus(self.world if self.shown("world") else None)
+
     def ensure(self, *panels: str) -> None:
         """Make panels that are to be fed from the start, shown or not."""
         for panel in panels:

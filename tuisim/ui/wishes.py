@@ -66,7 +66,10 @@ class Wishes(EditorWishes):
         """Give the focus to a panel that has been opened, as far as it hears keys; to the world if it was closed."""
         widget = self.desk.panels.get(panel)
         if not self.desk.shown(panel) or widget is None:
-            self.set_focus(self.desk.world if self.desk.shown("world") else None)
+            self.desk.focus_world()
+        elif not widget.is_mounted:
+            # It is still being built.
+            widget.call_later(self.attend, panel)
         elif hasattr(widget, "begin"):
             widget.begin()
         else:
