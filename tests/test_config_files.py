@@ -28,7 +28,7 @@ from tuisim.config import (
 )
 from tuisim.config.profiles import SOURCES
 from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, TouchSpec
-from tuisim.core.profile import PROFILES, ProfileSpec
+from tuisim.core.profile import PROFILES, MotorLaw, ProfileSpec
 from tuisim.core.spec import (
     GyroSpec,
     Obstacle,
@@ -243,9 +243,11 @@ def test_obstacle_files(name: str, text: str, found: tuple[Obstacle, ...], write
         ("color_read_ms = 2.5", {"color_read_ns": 2_500_000}),
         ("clock_read_ns = 7", {"clock_read_ns": 7}),
         ("tick_hz = 50\nsolid = true\ntitle = 'Mine'", {"tick_hz": 50, "solid": True, "title": "Mine"}),
-        ("base = 'nbev3devsim'\nname = 'older'\npair_tail_ms = 0", {"name": "older", "pair_tail_ns": 0}),
+        ("base = 'nbev3devsim'\nname = 'older'\ngyro_read_ms = 0", {"name": "older", "gyro_read_ns": 0}),
+        ("motor_law = 'nbev3devsim'", {"motor_law": MotorLaw.NBEV3DEVSIM}),
+        ("halve_position_moves = true\npair_tail_ms = 110", {"motor_law": MotorLaw.NBEV3DEVSIM}),
     ],
-    ids=["ms", "ns", "rules", "base"],
+    ids=["ms", "ns", "rules", "base", "motor law", "motor law before it had a name"],
 )
 def test_a_profile_file_says_only_what_differs(text: str, changes: dict[str, Any], write: Write) -> None:
     base = PROFILES["nbev3devsim" if "base" in text else "robolab"]

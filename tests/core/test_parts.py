@@ -144,7 +144,7 @@ def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: s
     steps: dict[int, Callable[[], None]] = {
         0: lambda: arm.run(300.0),
         40: lambda: lift.run_to(-90.0, 100.0, backwards=True),
-        60: lambda: arm.stop(sim.spec.profile),
+        60: lambda: arm.stop(),
         80: lambda: setattr(arm, "position_deg", 5.0),
         90: lambda: arm.run_until(-50.0, 150),
     }
@@ -156,7 +156,7 @@ def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: s
         # What was changed between two ticks is told with the next.
         for motor, (position, dps) in zip(sim.others, turns, strict=True):
             assert motor.position_deg == pytest.approx(position + dps * since_s, abs=0.3)
-            assert motor.moving_dps == dps
+            assert motor.counting_dps == dps
     # Even turning is told once.
     assert len(told) < 100
 

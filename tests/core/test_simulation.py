@@ -17,39 +17,6 @@ def simulation(profile: ProfileSpec, motor_noise: int = 0, weight: float = 6.0) 
     return Simulation(RunSpec(RobotSpec(weight=weight), world, profile, seed=5), MemorySink())
 
 
-@pytest.mark.parametrize(
-    ("speed", "seconds", "distance_mm"), [(525, 2.0, 428.63), (1050, 2.0, 696.94), (-525, 2.0, -428.01)]
-)
-def test_old_profile_moves_for_seconds(speed: float, seconds: float, distance_mm: float) -> None:
-    sim = simulation(NBEV3DEVSIM)
-    for motor in (sim.left, sim.right):
-        motor.run_until(speed, sim.end_tick_after(0, int(seconds * NS_PER_S)))
-    sim.advance(90)
-    assert sim.x_mm == pytest.approx(distance_mm, abs=0.01)
-
-
-@pytest.mark.parametrize(
-    ("speed", "rotations", "distance_mm", "encoder"),
-    [(525, 1, 86.55, 371.7), (420, 2, 177.88, 742.0), (210, 1, 88.03, 367.27), (525, 5, 437.18, 1806.7)],
-)
-def test_old_profile_halves_position_moves(speed: float, rotations: int, distance_mm: float, encoder: float) -> None:
-    sim = simulation(NBEV3DEVSIM)
-    for motor in (sim.left, sim.right):
-        motor.run_to(360.0 * rotations, speed, backwards=False)
-    while not sim.changed:
-        sim.advance(1000, until_change=True)
-    assert sim.x_mm == pytest.approx(distance_mm, abs=0.01)
-    assert sim.left.position_deg == pytest.approx(encoder, abs=0.1)
-
-
-def test_old_profile_turns_on_the_spot() -> None:
-    sim = simulation(NBEV3DEVSIM)
-    sim.left.run_to(-576.0, 420.0, backwards=True)
-    sim.right.run_to(576.0, 420.0, backwards=False)
-    sim.advance(200)
-    assert sim.heading_deg == pytest.approx(91.47, abs=0.01)
-
-
 @pytest.mark.parametrize("speed", [100.0, 525.0, 1050.0])
 @pytest.mark.parametrize("backwards", [False, True], ids=["forwards", "backwards"])
 def test_position_moves_end_exactly(speed: float, backwards: bool) -> None:
@@ -89,7 +56,7 @@ def script(sim: Simulation, step: int) -> bytes:
     advance(90)
     sim.left.run(0.0)
     advance(40)
-    sim.right.stop(sim.spec.profile)
+    sim.right.stop()
     advance(17)
     sink = sim._sink
     assert isinstance(sink, MemorySink)

@@ -152,7 +152,7 @@ def drive(sim: Simulation, moves: list[tuple[str, float, float, int]]) -> float:
                 case "position":
                     motor.run_to(motor.position_deg + speed, 400.0, speed < 0)
                 case _:
-                    motor.stop(sim.spec.profile)
+                    motor.stop()
         for _ in range(ticks):
             sim.advance(1)
             deepest = max(deepest, overlap_mm(sim))
@@ -173,7 +173,7 @@ def check_case(
     assume(overlap_mm(sim) <= 0)
     assert drive(sim, moves) <= ALLOWED_MM
     for motor in (sim.left, sim.right):
-        motor.stop(sim.spec.profile)
+        motor.stop()
     resting = sim.pose
     sim.advance(50)
     assert sim.pose == resting

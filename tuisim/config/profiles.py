@@ -9,7 +9,7 @@ from typing import Any
 
 from tuisim.config.reading import Section, means_file, name_of, read_file
 from tuisim.config.writing import Scalar, toml_lines
-from tuisim.core.profile import MS, PROFILES, ProfileSpec
+from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, MotorLaw, ProfileSpec, law_of_earlier
 from tuisim.errors import ProfileError
 from tuisim.switches import nearest
 
@@ -38,22 +38,13 @@ SOURCES: Mapping[str, str] = {
     "attribute_read_ns": f"{_NEW}, so that polling takes time; {_OLD}: nothing",
     "clock_read_ns": f"{_NEW}, so that loops on the clock end; {_OLD}: nothing",
     "display_update_ns": f"{_NEW}, an estimate: 130 steps a pixel at the brick's 300 MHz; the old simulator has none",
+    "motor_law": f"brick: moves end where they were to end, as the EV3 motor driver ends them; nbev3devsim: {_OLD}",
     "max_speed_dps": "EV3 motor driver table: large motor without a load",
     "reflected_max": "ev3dev2 library: 100; the course and the old simulator: 255",
     "ambient_percent": f"{_NEW}: a sensor close to the mat is in its own shade; {_OLD}: always 0",
-    "round_forward_speeds": _OLD,
-    "halve_position_moves": f"{_OLD}: its encoder counts such a move twice",
-    "keep_speed_when_stopped": _OLD,
-    "timed_stop_skips_tick": f"{_OLD}: 59 ticks in 2 s",
-    "direction_from_set_point": _OLD,
-    "motor_ramps": "ev3dev2 library: ramp_up_sp and ramp_down_sp; the old simulator has none",
-    "chain_relative_moves": "EV3 motor driver: a move counts from where the last was to end",
-    "pair_tail_ns": f"{_OLD}: the wait for the second motor times out",
     "halfway_heading": f"{_NEW}, so that arcs are round; {_OLD}: the heading before the turn",
-    "forward_noise_only": _OLD,
     "ultrasonic_period_ticks": _OLD,
     "solid": "on a real field things are solid; in the old simulator nothing is",
-    "plain_state": _OLD,
     "mend_library": f"{_NEW}: README tells what; ev3: the library as it is",
     "starts_in_own_folder": "ev3dev starts a program in its folder; in a course it starts where the notebook is",
 }
@@ -94,10 +85,16 @@ def profile_from_table(table: Section, name: str) -> ProfileSpec:
     kinds = {field.name: str(field.type) for field in fields(ProfileSpec)}
     in_ms = {_in_ms(key): key for key in kinds if key.endswith(_NS)}
     in_ns = frozenset(in_ms.values())
-    table.allow(("base", *(key for key in kinds if key not in in_ns), *in_ms), unsaid=in_ns)
+    earlier = EARLIER_KEYS | {_in_ms(key) for key in EARLIER_KEYS if key.endswith(_NS)}
+    table.allow(("base", *(key for key in kinds if key not in in_ns), *in_ms), unsaid=in_ns | earlier)
     base = PROFILES[table.one_of("base", PROFILES) if "base" in table else DEFAULT_PROFILE]
     found: dict[str, Any] = {"name": name}
+    law = law_of_earlier({key: table.flag(key) for key in ("halve_position_moves",) if key in table})
+    if law is not None:
+        found["motor_law"] = law
     for key in table:
+        if key in earlier:
+            continue
         if key in in_ms:
             if in_ms[key] in table:
                 raise table.wrong(key, f"stands beside {in_ms[key]}", "give one of the two")
@@ -112,6 +109,8 @@ def profile_from_table(table: Section, name: str) -> ProfileSpec:
 def _value(table: Section, key: str, kind: str) -> object:
     low, high = _RANGES.get(key, (0.0, MAX_COST_MS * MS) if key.endswith(_NS) else _ANY)
     match kind:
+        case "MotorLaw":
+            return MotorLaw(table.one_of(key, [law.value for law in MotorLaw]))
         case "bool":
             return table.flag(key)
         case "int":

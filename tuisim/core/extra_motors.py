@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tuisim.core import motors
-from tuisim.core.motors import Motor, top_speed_dps
+from tuisim.core.laws import motor_of
+from tuisim.core.motors import Motor
 from tuisim.core.simulation import Simulation
 from tuisim.core.sink import TickSink
 from tuisim.core.spec import RunSpec
@@ -29,9 +29,7 @@ class FurtherMotors(Simulation):
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         super().__init__(spec, sink)
-        self.others: tuple[Motor, ...] = tuple(
-            Motor(top_speed_dps(motor.kind, spec.profile)) for motor in spec.robot.extra_motors
-        )
+        self.others: tuple[Motor, ...] = tuple(motor_of(spec, motor.kind) for motor in spec.robot.extra_motors)
         self.tell: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when a motor turns otherwise than was told last; until then each turns evenly on."""
         self._told: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
@@ -41,7 +39,7 @@ class FurtherMotors(Simulation):
         """Do some ticks, as `Motion.advance`; tick by tick while a further motor runs."""
         done = 0
         self._tell_turns()
-        while done < ticks and any(motor.mode != motors.STOPPED for motor in self.others):
+        while done < ticks and not all(motor.resting for motor in self.others):
             self.tick_once()
             done += 1
             if until_change and self.changed:
@@ -52,14 +50,15 @@ class FurtherMotors(Simulation):
         """Do one tick of the robot, then of the further motors."""
         super().tick_once()
         for motor in self.others:
-            if motor.mode != motors.STOPPED:
-                motor.step(self.tick, self.spec.profile, self._ramp_step, self._tick_s, 0.0)
-                if motor.mode == motors.STOPPED:
+            if not motor.resting:
+                before = motor.mode
+                motor.step(self.tick, 0.0)
+                if motor.mode != before:
                     self.changed = True
         self._tell_turns()
 
     def _tell_turns(self) -> None:
-        turns = tuple((motor.position_deg, motor.moving_dps) for motor in self.others)
+        turns = tuple((motor.position_deg, motor.counting_dps) for motor in self.others)
         since_s = (self.tick - self._told_tick) * self._tick_s
         if any(
             dps != before_dps or abs(position - before - before_dps * since_s) > TOLD_DEG

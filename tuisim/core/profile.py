@@ -7,10 +7,21 @@ simulator. A profile is only data: the code that reads it never asks for its nam
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from typing import Any
 
 MS = 1_000_000
 """Nanoseconds in a millisecond."""
+
+
+class MotorLaw(StrEnum):
+    """How motors obey commands and move, and how the library drives them; `laws` holds what each one is."""
+
+    BRICK = "brick"
+    """Moves end exactly where and when they were to end, as on the real brick."""
+    NBEV3DEVSIM = "nbev3devsim"
+    """As in the browser simulator of that name, to the last bit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,38 +44,20 @@ class ProfileSpec:
     display_update_ns: int = 10 * MS
     """`Display.update()`: it turns 22 784 pixels into 91 KB."""
 
+    motor_law: MotorLaw = MotorLaw.BRICK
+    """How motors obey commands and move."""
     max_speed_dps: float = 1050.0
     """Large motor, no load (EV3 motor driver table)."""
     reflected_max: int = 255
     """What `reflected_light_intensity` gives on white."""
     ambient_percent: int = 0
     """What `ambient_light_intensity` gives on white: the light that a sensor close to the mat still gets."""
-    round_forward_speeds: bool = False
-    """Round a wheel speed of 0 or more to whole degrees per second each tick."""
-    halve_position_moves: bool = False
-    """A move to a position covers about half the distance: the encoder counts twice a tick."""
-    keep_speed_when_stopped: bool = False
-    """A stopped motor remembers its speed, and the next start begins with it."""
-    timed_stop_skips_tick: bool = False
-    """A timed move does not move in the tick at which its time is up."""
-    direction_from_set_point: bool = False
-    """A move to an absolute position goes the way of the set point's sign, not of the difference."""
-    motor_ramps: bool = True
-    """The ramp set points of a motor slow its changes of speed down."""
-    chain_relative_moves: bool = True
-    """A relative move that follows another counts from the other's target, not from the position."""
-    pair_tail_ns: int = 0
-    """How long a blocking call on two motors stands still after the move."""
     halfway_heading: bool = False
     """A tick moves the robot along the heading it has halfway through its turn, not along that before it."""
-    forward_noise_only: bool = False
-    """Motor noise works on speeds of 0 or more only, also on a wheel that stands."""
     ultrasonic_period_ticks: int = 1
     """The ultrasonic sensor measures every so many ticks."""
     solid: bool = False
     """Obstacles and walls stop the robot, unless the world says otherwise."""
-    plain_state: bool = False
-    """A motor's `state` is a string, '' or 'running', and `time_sp` is in seconds."""
     mend_library: bool = True
     """What the library does wrong and course programs need is put right."""
     starts_in_own_folder: bool = False
@@ -85,17 +78,8 @@ NBEV3DEVSIM = ProfileSpec(
     tick_hz=30,
     attribute_read_ns=0,
     clock_read_ns=0,
-    round_forward_speeds=True,
-    halve_position_moves=True,
-    keep_speed_when_stopped=True,
-    timed_stop_skips_tick=True,
-    direction_from_set_point=True,
-    motor_ramps=False,
-    chain_relative_moves=False,
-    pair_tail_ns=110 * MS,
-    forward_noise_only=True,
+    motor_law=MotorLaw.NBEV3DEVSIM,
     ultrasonic_period_ticks=3,
-    plain_state=True,
 )
 
 EV3 = ProfileSpec(
@@ -114,3 +98,46 @@ EV3 = ProfileSpec(
 
 PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3)}
 """Every profile by name."""
+
+_EARLIER_BRICK: Mapping[str, Mapping[str, bool | int]] = {
+    "halfway_heading": {
+        "round_forward_speeds": False, "halve_position_moves": False, "keep_speed_when_stopped": False,
+        "timed_stop_skips_tick": False, "direction_from_set_point": False, "motor_ramps": True,
+        "chain_relative_moves": True, "pair_tail_ns": 0,
+    },
+    "ultrasonic_period_ticks": {"forward_noise_only": False},
+    "mend_library": {"plain_state": False},
+}  # fmt: skip
+"""By the key that followed them, what profiles said of a brick's motors before there was `motor_law`."""
+
+EARLIER_KEYS = frozenset(key for keys in _EARLIER_BRICK.values() for key in keys)
+"""Keys of profiles whose place `motor_law` took."""
+
+
+def profile_to_plain(profile: ProfileSpec) -> dict[str, Any]:
+    """Return a profile as JSON has it; one of a brick as it was ever written, so that its exports stay the same."""
+    plain = asdict(profile)
+    if not profile.starts_in_own_folder:
+        # As of runs before there was a choice.
+        del plain["starts_in_own_folder"]
+    if profile.motor_law != MotorLaw.BRICK:
+        return plain
+    del plain["motor_law"]
+    return {name: value for key in plain for name, value in (*_EARLIER_BRICK.get(key, {}).items(), (key, plain[key]))}
+
+
+def law_of_earlier(keys: Mapping[str, Any]) -> MotorLaw | None:
+    """Return the motor law that a profile of before had, from the key that shows it; None if it says nothing of it."""
+    halved = keys.get("halve_position_moves")
+    return None if halved is None else MotorLaw.NBEV3DEVSIM if halved else MotorLaw.BRICK
+
+
+def profile_from_plain(data: Mapping[str, Any]) -> ProfileSpec:
+    """Return the profile that a stored run or log describes.
+
+    Raises:
+        TypeError, ValueError: there is a key too many or too few, or no such motor law.
+    """
+    known = {key: value for key, value in data.items() if key not in EARLIER_KEYS}
+    known["motor_law"] = MotorLaw(data["motor_law"]) if "motor_law" in data else law_of_earlier(data) or MotorLaw.BRICK
+    return ProfileSpec(**known)

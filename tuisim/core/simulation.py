@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tuisim.core.drive import turn_rate_dps
+from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.geometry import Pose
-from tuisim.core.motion import Motion, float32
+from tuisim.core.motion import Motion
 from tuisim.core.motors import Motor
 from tuisim.core.state import TICK_RECORD, Instant
 
@@ -27,11 +27,6 @@ class Simulation(Motion):
     """Motors that do not drive the robot, in the order of `RobotSpec.extra_motors`."""
 
     # Reading
-
-    @property
-    def weight_step(self) -> float:
-        """By how much a motor's speed can change in a tick, in degrees per second; 0 is at once."""
-        return self._ramp_step
 
     def due_ns(self, tick: int) -> int:
         """Return when a tick falls due, in ns from the start: ceil(tick · 10⁹ / f)."""
@@ -70,19 +65,17 @@ class Simulation(Motion):
 
     def place(self, pose: Pose) -> None:
         """Put the robot somewhere; the gyro keeps the angle it shows."""
-        self.gyro_zero_deg = float32(self.gyro_zero_deg + pose.heading_deg - self.heading_deg)
-        self.x_mm, self.y_mm, self.heading_deg = pose.x_mm, pose.y_mm, pose.heading_deg
+        drive, before_deg = self._drive, self.heading_deg
+        drive.put(pose)
+        drive.gyro_zero_deg = float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
 
     def reset_gyro(self) -> None:
         """Let the gyro show 0 here."""
-        self.gyro_zero_deg = float32(self.heading_deg)
+        self._drive.gyro_zero_deg = float32(self.heading_deg)
 
     def end_tick_after(self, now_ns: int, duration_ns: int) -> int:
         """Return the tick in which a timed move that starts now comes to its end."""
-        end_ns = now_ns + duration_ns
-        if self.spec.profile.timed_stop_skips_tick:
-            return -(-end_ns * self._hz // NS_PER_S)
-        return self.ticks_at(end_ns)
+        return self.ticks_at(now_ns + duration_ns)
 
     def rewrite_record(self) -> None:
         """Write the present tick's record again, after a change from outside."""

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Protocol
 from tuisim.core.checks import require, require_one_of
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import MOTOR_KINDS, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
-from tuisim.core.profile import ProfileSpec
+from tuisim.core.profile import ProfileSpec, profile_from_plain, profile_to_plain
 from tuisim.errors import ObstacleError, RobotError
 
 FIELD_WIDTH_MM = 2362
@@ -337,9 +337,7 @@ def to_plain(spec: RunSpec) -> dict[str, Any]:
     for key, usual in _SAID_IF_UNUSUAL.items():
         if plain["robot"][key] == usual:
             del plain["robot"][key]
-    if not spec.profile.starts_in_own_folder:
-        # As of runs before there was a choice, so that their exports stay the same.
-        del plain["profile"]["starts_in_own_folder"]
+    plain["profile"] = profile_to_plain(spec.profile)
     return plain
 
 
@@ -368,7 +366,7 @@ def from_plain(data: Mapping[str, Any]) -> RunSpec:
     world["remote"] = tuple(
         RemotePress(**{**press, "buttons": tuple(press["buttons"])}) for press in world.get("remote", ())
     )
-    return RunSpec(RobotSpec(**robot), WorldSpec(**world), ProfileSpec(**data["profile"]), int(data["seed"]))
+    return RunSpec(RobotSpec(**robot), WorldSpec(**world), profile_from_plain(data["profile"]), int(data["seed"]))
 
 
 def _sensor(spec: type, data: Mapping[str, Any]) -> Any:

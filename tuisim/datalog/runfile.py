@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from tuisim.atomic import replacing
+from tuisim.core.profile import MotorLaw, law_of_earlier
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
 from tuisim.datalog.lock import is_held
@@ -333,7 +334,7 @@ def read_run(folder: Path) -> StoredRun:
             tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
             end=None if data["end"] is None else _end_of(data["end"]),
             actions=actions,
-            notes=tuple(filter(None, (telemetry.note, output.note, torn))),
+            notes=tuple(filter(None, (telemetry.note, output.note, torn, _model_note(data["spec"]["profile"])))),
             telemetry=telemetry,
             output=output,
         )
@@ -342,3 +343,12 @@ def read_run(folder: Path) -> StoredRun:
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise LogError(f"damaged: {what}", file=str(folder / RUN_FILE)) from error
+
+
+def _model_note(profile: Mapping[str, Any]) -> str:
+    """What to know of a run whose motors moved otherwise than they do now; empty for any other."""
+    if "motor_law" in profile or law_of_earlier(profile) != MotorLaw.NBEV3DEVSIM:
+        return ""
+    return (
+        f"recorded with an earlier motor model of the profile {profile['name']}: run again, it may come out otherwise"
+    )

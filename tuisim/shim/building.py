@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from tuisim.core.brick_motor import BrickMotor
+from tuisim.core.browser_motor import BrowserMotor
+from tuisim.core.motors import Motor
 from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import mounted
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
-from tuisim.shim.devices import Brick
+from tuisim.shim.browser_tacho import BrowserTacho
+from tuisim.shim.devices import Brick, SimDevice
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
 from tuisim.shim.lego_sensors import ColorDevice, LegoSensor
 from tuisim.shim.ports import PORT_CLASS, all_ports
@@ -40,7 +44,7 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
     # Listed by port, so that a class asked for without an address finds the first port.
     for at, (motor, simulated) in enumerate(sorted(motors, key=lambda found: found[0].port)):
-        brick.add(MOTOR_CLASS, f"motor{at}", TachoMotor(session, simulated, motor.port, motor.kind).device())
+        brick.add(MOTOR_CLASS, f"motor{at}", _motor_device(session, simulated, motor.port, motor.kind))
     colors: dict[str, ColorDevice] = {}
     sensors: list[LegoSensor] = []
     for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
@@ -55,6 +59,15 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
         brick.add(LED_CLASS, led_name(name), light.device())
     brick.add(POWER_CLASS, BATTERY, Battery(session).device())
     return brick, colors
+
+
+def _motor_device(session: Session, motor: Motor, port: str, kind: str) -> SimDevice:
+    match motor:
+        case BrickMotor():
+            return TachoMotor(session, motor, port, kind).device()
+        case BrowserMotor():
+            return BrowserTacho(session, motor, port, kind).device()
+    raise TypeError(f"no driver for {type(motor).__name__}")
 
 
 def ports_hint(session: Session, class_name: str) -> str:

@@ -9,7 +9,8 @@ from fnmatch import fnmatch
 from functools import wraps
 from typing import Any
 
-from tuisim.core.profile import MS
+from tuisim.core.profile import MS, MotorLaw
+from tuisim.shim.browser_library import speak_as_browser
 from tuisim.shim.building import ports_hint
 from tuisim.shim.devices import Brick
 from tuisim.shim.session import Session
@@ -75,7 +76,7 @@ class MotorPoll:
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
         sim = self._session.sim
         # One that is told to stand never ends its move: it is noticed as stalled by looking again.
-        told_to_stand = any(motor.mode and not motor.target_dps for motor in (sim.left, sim.right, *sim.others))
+        told_to_stand = any(motor.mode and not motor.aim_dps for motor in (sim.left, sim.right, *sim.others))
         self._session.wait_for_motor(timeout_ns, again=self._patience.until_motors_stop > 0 and not told_to_stand)
         return []
 
@@ -223,44 +224,8 @@ def patch_motor_module(session: Session, module: types.ModuleType, brick: Brick)
     motor.Motor.wait_until_not_moving = patience.patient(motor.Motor.wait_until_not_moving)
     motor.Motor.__init__ = free_of_charge(session, motor.Motor.__init__)
     motor.Motor.wait = free_of_charge(session, motor.Motor.wait)
-    profile = session.sim.spec.profile
-    if profile.pair_tail_ns:
-        block = motor.MotorSet._block
-
-        def block_with_tail(self: Any) -> None:
-            block(self)
-            session.spend(profile.pair_tail_ns)
-
-        motor.MotorSet._block = block_with_tail
-    if profile.plain_state:
-        _speak_plainly(motor)
-
-
-def _speak_plainly(motor: Any) -> None:
-    """Give `state` as a string and take `time_sp` in seconds, as the old simulator did."""
-    state, time_sp = motor.Motor.state.fget, motor.Motor.time_sp
-    inside_library = 0
-
-    def in_ms(function: Callable[..., Any]) -> Callable[..., Any]:
-        @wraps(function)
-        def wrapper(*args: Any, **kwargs: Any) -> Any:
-            nonlocal inside_library
-            inside_library += 1
-            try:
-                return function(*args, **kwargs)
-            finally:
-                inside_library -= 1
-
-        return wrapper
-
-    def set_time(self: Any, value: float) -> None:
-        time_sp.fset(self, value if inside_library else value * 1000)
-
-    motor.Motor.state = property(lambda self: " ".join(state(self)))
-    motor.Motor.time_sp = property(lambda self: time_sp.fget(self) / 1000, set_time)
-    # The library itself goes on to count in ms.
-    motor.Motor.on_for_seconds = in_ms(motor.Motor.on_for_seconds)
-    motor.MoveTank.on_for_seconds = in_ms(motor.MoveTank.on_for_seconds)
+    if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM:
+        speak_as_browser(session, motor, brick)
 
 
 def patch_sensor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:

@@ -13,7 +13,9 @@ from __future__ import annotations
 import types
 from typing import Any
 
+from tuisim.core.profile import MotorLaw
 from tuisim.core.sensors.color import WHITE, percent
+from tuisim.shim.browser_tacho import plain
 from tuisim.shim.devices import Brick
 from tuisim.shim.lego_sensors import ColorDevice
 from tuisim.shim.library import free_of_charge
@@ -60,7 +62,8 @@ def glue_module(session: Session) -> types.ModuleType:
 
     def get_clock() -> float:
         """Return the simulated seconds since the program started."""
-        return session.sim.tick / session.sim.spec.profile.tick_hz
+        seconds = session.sim.tick / session.sim.spec.profile.tick_hz
+        return plain(seconds) if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM else seconds
 
     def pyState() -> dict[str, list[Any]]:
         """Return all answers of a notebook's responder so far, oldest first; without one there are none.

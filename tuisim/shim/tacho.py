@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
-from tuisim.core.profile import MS, ProfileSpec
+from tuisim.core.brick_motor import BrickMotor
+from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED
+from tuisim.core.profile import MS
 from tuisim.shim.devices import NumberWriter, Reader, SimDevice, refuse
 from tuisim.shim.session import Session
 
@@ -50,11 +51,10 @@ class TachoMotor:
         kind: One of `KINDS`.
     """
 
-    def __init__(self, session: Session, motor: Motor, port: str, kind: str = "large") -> None:
+    def __init__(self, session: Session, motor: BrickMotor, port: str, kind: str = "large") -> None:
         self._kind = KINDS[kind]
         self._session = session
         self._motor = motor
-        self._profile: ProfileSpec = session.sim.spec.profile
         self._port = port
         self._numbers: dict[str, int] = {}
         self._direct = False
@@ -120,24 +120,20 @@ class TachoMotor:
                 raise refuse(str(value))
             numbers[name] = value
             if name in RAMPS:
-                self._ramps = self._profile.motor_ramps and any(numbers[ramp] for ramp in RAMPS)
+                self._ramps = any(numbers[ramp] for ramp in RAMPS)
             if self._direct and name == "duty_cycle_sp" and self._motor.mode != STOPPED:
                 self._run_direct()
 
         return write
 
     def _speed(self) -> int:
-        motor = self._motor
-        kept = motor.speed_dps * motor.sign if self._profile.keep_speed_when_stopped else motor.moving_dps
-        return round(kept) * self._sign
+        return round(self._motor.moving_dps) * self._sign
 
     def state(self) -> str:
         """Return the state flags, blank-separated, in the driver's order."""
         motor = self._motor
         if motor.mode == STOPPED:
-            return "holding" if self._holding and not self._profile.plain_state else ""
-        if self._profile.plain_state:
-            return "running"
+            return "holding" if self._holding else ""
         sim = self._session.sim
         if motor.blocked_ticks >= sim.stall_ticks:
             return "running overloaded stalled"
@@ -198,14 +194,13 @@ class TachoMotor:
         self._last_goal = None
         motor, sim, down = self._motor, self._session.sim, self._ramp_dps2("ramp_down_sp")
         if not down or not motor.moving_dps:
-            motor.stop(self._profile)
+            motor.stop()
             return
         if motor.mode == TIMED and motor.target_dps == 0.0:
             # It is slowing down already.
             return
         motor.slowest_ramp_dps2 = down
-        change = motor.ramp_step(sim.weight_step, 1 / self._profile.tick_hz)
-        self._stands_tick = sim.tick + math.ceil(abs(motor.speed_dps) / change)
+        self._stands_tick = sim.tick + math.ceil(abs(motor.speed_dps) / motor.ramp_step)
         motor.run_until(0.0, self._stands_tick)
         motor.slowest_ramp_dps2 = down
 
@@ -219,7 +214,7 @@ class TachoMotor:
             self._stop()
             return
         base = self._motor.position_deg
-        if self._last_goal is not None and self._profile.chain_relative_moves:
+        if self._last_goal is not None:
             base = self._last_goal
         self._last_goal = base + delta
         self._motor.run_to(self._last_goal, speed, self._last_goal < self._motor.position_deg)
@@ -228,7 +223,7 @@ class TachoMotor:
     def _ramp_dps2(self, name: str) -> float:
         """The change of speed that a ramp set point allows, 0 for none."""
         ramp_ms = self._numbers[name]
-        return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms and self._profile.motor_ramps else 0.0
+        return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms else 0.0
 
     def _ramp(self) -> None:
         """Hand the ramp set points to the motor, and note when one that is told to stand stands."""
@@ -239,15 +234,14 @@ class TachoMotor:
             if motor.mode in (TIMED, POSITION):
                 motor.approach_dps2 = self._ramp_dps2("ramp_down_sp")
         if motor.target_dps == 0.0:
-            step = motor.ramp_step(sim.weight_step, 1 / self._profile.tick_hz)
+            step = motor.ramp_step
             self._stands_tick = sim.tick + (math.ceil(abs(motor.speed_dps) / step) if step else 0)
 
     def _run_absolute(self, speed: float) -> None:
         goal = float(self._numbers["position_sp"] * self._sign)
-        start = 0.0 if self._profile.direction_from_set_point else self._motor.position_deg
-        self._motor.run_to(goal, speed, goal < start)
+        self._motor.run_to(goal, speed, goal < self._motor.position_deg)
 
     def _reset(self) -> None:
-        self._motor.stop(self._profile)
+        self._motor.stop()
         self._motor.position_deg = 0.0
         self._set_defaults()

@@ -1,0 +1,188 @@
+"""Runs programs under the profile `nbev3devsim` and tells what its motors do in each tick.
+
+`python -m tests.core.motor_lab FOLDER` reads programs from `jobs.json` and writes what becomes of them. Each runs in a
+fork, with the runtime, the shim and the genuine library in it as in a real run; that costs a fraction of a new process.
+"""
+
+from __future__ import annotations
+
+from tuisim.runtime import real  # isort: skip - must come first: it keeps the real clock
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+from tests.core.memory_sink import MemorySink
+from tuisim.core import laws
+from tuisim.core.browser_motor import BrowserMotor
+from tuisim.core.profile import NBEV3DEVSIM
+from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
+from tuisim.core.state import TICK_RECORD
+from tuisim.fields import FieldFiles, open_field
+from tuisim.host import field_files
+from tuisim.runtime.baton import Baton
+from tuisim.runtime.channel import Channel
+from tuisim.runtime.clock import loop_hook, patch_time
+from tuisim.runtime.config import RunConfig
+from tuisim.runtime.output import Output
+from tuisim.runtime.program import Outcome, ProgramRunner
+from tuisim.runtime.session import Limits, Session
+from tuisim.runtime.standin import replace as put_in_place
+from tuisim.runtime.steering import Steering
+from tuisim.runtime.threads import patch_threads
+from tuisim.shim.install import install
+
+Row = list[float]
+Line = tuple[int, float, str]
+
+
+@dataclass(frozen=True)
+class Job:
+    """A program and the world it runs in."""
+
+    text: str
+    world: WorldSpec
+    robot: RobotSpec
+    prelude: str = "preloaded"
+
+
+@dataclass(frozen=True)
+class Course:
+    """What became of a program."""
+
+    end: str
+    end_tick: int
+    end_ms: float
+    rows: list[Row]
+    """A row a tick: x, y, heading, then position, speed register and whether it runs, of both motors."""
+    lines: list[Line]
+    """Tick, ms and text of what was printed."""
+
+
+class Watched(BrowserMotor):
+    """A motor that notes its speed register, however its ticks are done, and whether it ran before the first."""
+
+    __slots__ = ("ran_first", "registers")
+
+    def __init__(self, *given: Any) -> None:
+        super().__init__(*given)
+        self.registers: list[float] = [0.0]
+        self.ran_first: bool | None = None
+
+    def begin(self) -> None:
+        """Note whether it runs, if this is before its first tick."""
+        if self.ran_first is None:
+            self.ran_first = bool(self.mode)
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        self.begin()
+        rolled = super().step(tick, noise_dps)
+        self.registers.append(self.speed_dps)
+        return rolled
+
+    def _registers(self, ticks: int) -> list[float]:
+        self.begin()
+        ahead = super()._registers(ticks)
+        self.registers += ahead
+        return ahead
+
+
+def rows_of(sim: Simulation) -> list[Row]:
+    """Return what a run did."""
+    left, right, sink = sim.left, sim.right, sim._sink
+    assert isinstance(left, Watched) and isinstance(right, Watched) and isinstance(sink, MemorySink)
+    left.begin()
+    right.begin()
+    rows: list[Row] = []
+    records = TICK_RECORD.iter_unpack(sink.records())
+    for record, left_dps, right_dps in zip(records, left.registers, right.registers, strict=True):
+        tick, _, *pose, left_deg, right_deg, _, _, _, flags, _ = record
+        # The first record is written before the program begins.
+        runs = (flags & 1, flags >> 1 & 1) if tick else (int(left.ran_first or 0), int(right.ran_first or 0))
+        rows.append([*pose, left_deg, left_dps, runs[0], right_deg, right_dps, runs[1]])
+    return rows
+
+
+class Lines:
+    """Takes the place of the output file."""
+
+    def __init__(self) -> None:
+        self.rows: list[Line] = []
+
+    def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: int) -> None:
+        self.rows.append((tick, time_ns / 1e6, text.decode()))
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict[str, Any]:
+    """Run a program to its end, in this process."""
+    config = RunConfig(
+        folder=Path(), spec=spec, field=files, name="program.py", path="", text=text, prelude=prelude, arguments=(),
+        python_path=(), live=False, speed=0.0, start_paused=False, time_limit_s=60.0, stall_limit_s=0.0, answers=(),
+        asks_user=False, time_waits=False, replies=False, actions=(), breaks=(), trace_from_tick=None, hold_at=None,
+    )  # fmt: skip
+    sim, lines = Simulation(spec, MemorySink()), Lines()
+    output = Output(lines)  # type: ignore[arg-type]
+    channel = Channel(*os.pipe())
+    steering = Steering(channel, Path(), False, 0.0, False, ())
+    session = Session(sim, open_field(files), output, channel, steering, Limits(60 * NS_PER_S), "program.py")
+    output.place = lambda: (sim.tick, session.now, 0)
+    turn = loop_hook(session, 500, 5_000_000)
+    baton = Baton(session, lambda parked: None)
+    patch_time(session)
+    # The program's own is to be made anew, with locks that are on the baton.
+    del sys.modules["threading"]
+    patch_threads(baton)
+    install(session, {}, put_in_place, lambda file: False)
+
+    def leave(outcome: Outcome) -> NoReturn:
+        raise SystemExit(outcome.end)
+
+    outcome = ProgramRunner(config, session, output, baton, turn, leave).run()
+    return {
+        "end": " ".join(filter(None, (outcome.end, outcome.error))),
+        "end_tick": sim.tick,
+        "end_ms": session.now / 1e6,
+        "rows": rows_of(sim),
+        "lines": lines.rows,
+    }
+
+
+def courses(jobs: Iterable[Job], folder: Path) -> list[Course]:
+    """Run programs; returns what became of each."""
+    plain = [
+        {"text": job.text, "prelude": job.prelude, "spec": to_plain(RunSpec(job.robot, job.world, NBEV3DEVSIM))}
+        for job in jobs
+    ]
+    (folder / "jobs.json").write_text(json.dumps(plain))
+    subprocess.run([sys.executable, "-m", "tests.core.motor_lab", str(folder)], check=True, timeout=120)
+    found = [json.loads((folder / f"{at}.json").read_text()) for at in range(len(plain))]
+    return [Course(**{**one, "lines": [tuple(line) for line in one["lines"]]}) for one in found]
+
+
+def main(folder: Path) -> None:
+    """Run the programs of a folder, each in a fork."""
+    vars(laws)["BrowserMotor"] = Watched
+    for at, job in enumerate(json.loads((folder / "jobs.json").read_text())):
+        spec = from_plain(job["spec"])
+        files = field_files(spec)
+        child = os.fork()
+        if not child:
+            signal.alarm(60)
+            done = carry_out(spec, job["text"], job["prelude"], files)
+            (folder / f"{at}.json").write_text(json.dumps(done))
+            real.exit_process(0)
+        os.waitpid(child, 0)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

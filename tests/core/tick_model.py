@@ -1,0 +1,286 @@
+"""A second model of the profile `nbev3devsim`: library, motors, drive and clock, without a line of `tuisim`."""
+
+# mypy: ignore-errors
+
+from __future__ import annotations
+
+import builtins
+import heapq
+import math
+import threading
+import types
+
+
+def whole(number):
+    return math.floor(number + 0.5)
+
+
+def plain(number):
+    return int(number) if number == int(number) else number
+
+
+class Speed:
+    def __init__(self, dps):
+        self.dps = dps
+
+
+class Wheel:
+    def __init__(self, lab):
+        self.lab, self.v, self.p, self.target, self.end = lab, 0.0, 0.0, 0.0, 0.0
+        self.speed_sp, self.position_sp, self.cmd, self.state, self.polarity = 0, 0, "", "", "normal"
+
+    def __setattr__(self, name, value):
+        super().__setattr__(name, int(value) if name in ("speed_sp", "position_sp") else value)
+
+    def ramp(self, step):
+        if self.v < self.speed_sp:
+            self.v = min(self.v + step, self.speed_sp)
+        elif self.v > self.speed_sp:
+            self.v = max(self.v - step, self.speed_sp)
+        if self.v >= 0:
+            self.v = min(whole(self.v), 1050)
+
+    def roll(self, tick):
+        d, sign = self.v * (1 / 30), -1 if self.polarity == "inversed" else 1
+        if self.cmd == "forever" or (self.cmd == "timed" and tick < self.end):
+            self.p += d
+            return d * sign
+        if self.cmd != "position":
+            self.state = ""
+            return 0.0
+        back = self.position_sp < 0
+        d = -d if back else d
+        self.p += d
+        if self.p < self.target if back else self.p > self.target:
+            self.state = ""
+            return 0.0
+        self.p += d
+        return d * sign
+
+    def go(self, cmd, speed):
+        self.speed_sp, self.cmd, self.state = speed, cmd, "running"
+
+    def timed(self, speed, seconds):
+        self.end = self.lab.tick + seconds * 30
+        self.go("timed", speed)
+
+    def go_by(self, turn, speed, start=None):
+        self.speed_sp, self.position_sp = speed, turn
+        self.target = (self.p if start is None else start) + self.position_sp
+        self.cmd, self.state = "position", "running" if self.target != self.p else ""
+
+    def off(self):
+        self.cmd = ""
+
+    reset = stop = off
+
+    def exact(self, speed):
+        return speed.dps if isinstance(speed, Speed) else speed / 100 * 1050
+
+    def native(self, speed):
+        return whole(self.exact(speed))
+
+    def on(self, speed):
+        self.go("forever", self.native(speed))
+
+    def on_for_seconds(self, speed, seconds, block=True):
+        self.timed(self.native(speed), seconds)
+        self.block(block)
+
+    def on_for_degrees(self, speed, degrees, block=True):
+        signed = self.native(speed)
+        size = abs(signed) if isinstance(speed, Speed) else self.native(abs(speed))
+        self.go_by(whole(-degrees if signed < 0 else degrees), size)
+        self.block(block)
+
+    def on_for_rotations(self, speed, rotations, block=True):
+        self.on_for_degrees(speed, rotations * 360, block)
+
+    def on_to_position(self, speed, position):
+        self.go_by(position, self.native(speed), 0)
+        self.block(True)
+
+    def run_forever(self, speed_sp):
+        self.go("forever", speed_sp)
+
+    def run_timed(self, speed_sp, time_sp):
+        self.timed(speed_sp, time_sp)
+
+    def run_to_rel_pos(self, position_sp, speed_sp):
+        self.go_by(position_sp, speed_sp)
+
+    def run_direct(self, duty_cycle_sp):
+        self.speed_sp = duty_cycle_sp
+
+    def wait(self, condition, timeout=None):
+        deadline = self.lab.ms / 1000 + (timeout or 0) / 1000
+        while True:
+            self.lab.sleep_ms(10)
+            if condition(self.state):
+                return True
+            if timeout is not None and self.lab.ms / 1000 >= deadline:
+                return False
+
+    def wait_until(self, state, timeout=None):
+        return self.wait(lambda now: now == state, timeout)
+
+    def wait_while(self, state, timeout=None):
+        return self.wait(lambda now: now != state, timeout)
+
+    def wait_until_not_moving(self, timeout=None):
+        return self.wait_while("running", timeout)
+
+    def block(self, wanted):
+        if wanted:
+            self.wait_until("running", 100)
+            self.wait_until_not_moving()
+
+    position = property(lambda self: plain(self.p), lambda self, value: setattr(self, "p", float(int(value))))
+    speed = property(lambda self: plain(self.v))
+
+
+class Tank:
+    def __init__(self, lab, left, right):
+        self.pair = self.left_motor, self.right_motor = lab.ports[left], lab.ports[right]
+        self.off()
+
+    def off(self):
+        for wheel in self.pair:
+            wheel.off()
+
+    def split(self, left, right):
+        return self.left_motor.native(left), self.right_motor.native(right)
+
+    def on(self, a, b):
+        for wheel, speed in zip(self.pair, self.split(a, b), strict=True):
+            wheel.go("forever", speed)
+
+    def on_for_seconds(self, a=0, b=0, seconds=0, block=True, **names):
+        for wheel, speed in zip(self.pair, self.split(*(names.values() or (a, b))), strict=True):
+            wheel.timed(speed, seconds)
+        self.block(block)
+
+    def on_for_rotations(self, a, b, rotations, block=True):
+        self.on_for_degrees(a, b, rotations * 360, block)
+
+    def on_for_degrees(self, a, b, degrees, block=True):
+        left, right = pair = self.split(a, b)
+        fast, slow = (left, right) if abs(left) > abs(right) else (right, left)
+        for wheel, speed, first in zip(self.pair, pair, (fast is left, fast is right), strict=True):
+            turn = whole(degrees if first or abs(left) == abs(right) else abs(slow / fast) * degrees)
+            wheel.go_by(-turn if speed < 0 else turn, abs(speed))
+        self.block(block)
+
+    def block(self, wanted):
+        for wheel in self.pair:
+            wheel.block(wanted)
+
+
+class Steering(Tank):
+    def split(self, steering, speed):
+        v = self.left_motor.exact(speed)
+        slow = v * ((50 - abs(steering)) / 50)
+        return (whole(v), whole(slow)) if steering >= 0 else (whole(slow), whole(v))
+
+
+class Thread:
+    def __init__(self, lab, target, args=()):
+        self.lab, self.done, self.joiners = lab, False, []
+        self.thread = threading.Thread(target=lambda gate: (gate.acquire(), target(*args), self.finish()), daemon=True)
+
+    def start(self):
+        self.thread._args = (self.lab.wake_at(self.lab.ms),)
+        self.lab.threads.append(self)
+        self.thread.start()
+
+    def finish(self):
+        self.done = True
+        for gate in self.joiners:
+            self.lab.wake_at(self.lab.ms, gate)
+        self.lab.hand_on()
+
+    def join(self):
+        if not self.done:
+            self.joiners.append(gate := closed_gate())
+            self.lab.hand_on()
+            gate.acquire()
+
+
+def closed_gate():
+    gate = threading.Lock()
+    gate.acquire()
+    return gate
+
+
+class Lab:
+    """Robot, clock and threads; `rows` and `lines` are as in the records."""
+
+    def __init__(self, program, x, y, heading_deg, weight=6, diameter=56, spacing=180):
+        self.x, self.y, self.heading, self.turned = x, y, heading_deg / 180 * math.pi, 0.0
+        self.step, self.rim, self.spacing = 5000 / weight / 30 if weight else 1e9, diameter * math.pi, spacing
+        self.tick, self.ms, self.order = 0, 0.0, 0
+        self.queue, self.rows, self.lines, self.threads = [], [], [], []
+        self.pair = Wheel(self), Wheel(self)
+        self.ports = dict(zip(("outB", "outC"), self.pair, strict=True))
+        exec(program, self.names())
+        for thread in self.threads:
+            thread.join()
+        if not self.tick:
+            self.note()
+
+    def note(self):
+        wheels = [x for w in self.pair for x in (w.p, w.v, int(w.state == "running"))]
+        self.rows.append([self.x, self.y, self.heading * 180 / math.pi, *wheels])
+
+    def do_tick(self):
+        if not self.tick:
+            self.note()
+        self.tick += 1
+        for wheel in self.pair:
+            wheel.ramp(self.step)
+        left, right = (wheel.roll(self.tick) / 360 * self.rim for wheel in self.pair)
+        self.x += (left + right) / 2 * math.cos(self.heading)
+        self.y += (left + right) / 2 * math.sin(self.heading)
+        self.heading += (right - left) / self.spacing
+        self.turned += (right - left) / self.spacing
+        if self.heading > 2 * math.pi:
+            self.heading -= 2 * math.pi
+        self.note()
+
+    def wake_at(self, ms, gate=None):
+        gate, self.order = gate or closed_gate(), self.order + 1
+        heapq.heappush(self.queue, (ms, self.order, gate))
+        return gate
+
+    def sleep_ms(self, ms, value=None):
+        gate = self.wake_at(self.ms + ms)
+        self.hand_on()
+        gate.acquire()
+        return value() if value else None
+
+    def hand_on(self):
+        self.ms, _, gate = heapq.heappop(self.queue)
+        while 1000 * (self.tick + 1) / 30 <= self.ms:
+            self.do_tick()
+        gate.release()
+
+    def names(self):
+        def part(**reads):
+            costs = {name: property(lambda _, read=read: self.sleep_ms(*read)) for name, read in reads.items()}
+            return type("Part", (), costs)()
+
+        tank, steer = (lambda left, right, kind=kind: kind(self, left, right) for kind in (Tank, Steering))
+        eye = part(reflected_light_intensity=(10, lambda: 255), color=(20, lambda: 6))
+        native = {"RPS": 525, "RPM": 525 / 60, "DPS": 525 / 360, "NativeUnits": 1, "Percent": 10.5}
+        found = {f"Speed{name}": lambda number, dps=dps: Speed(number * dps) for name, dps in native.items()}
+        found |= {
+            "MoveTank": tank, "MoveSteering": steer, "OUTPUT_B": "outB", "OUTPUT_C": "outC", "colorLeft": eye,
+            "tank_drive": tank("outB", "outC"), "tank_turn": steer("outB", "outC"), "Motor": self.ports.get,
+            "sleep": lambda seconds: self.sleep_ms(1000 * seconds), "LargeMotor": self.ports.get,
+            "get_clock": lambda: plain(self.tick / 30), "Thread": lambda **given: Thread(self, **given),
+            "print": lambda *parts: self.lines.append((self.tick, self.ms, " ".join(map(str, parts)))),
+            "ultrasonic": part(distance_centimeters=(10, lambda: 255.0)),
+            "gyro": part(angle=(20, lambda: round(-math.degrees(self.turned)))),
+        }  # fmt: skip
+        module = types.SimpleNamespace(**found)
+        return {**found, "__builtins__": {**vars(builtins), "__import__": lambda *_: module}}

@@ -1,0 +1,253 @@
+"""Wheel motors: what they were told, how their speed ramps, when a move is over.
+
+A motor is changed in place, tick by tick: this is the hottest data of the simulation.
+Angles in degrees of the wheel (one encoder count is one degree), speeds in degrees per
+second.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from itertools import accumulate, repeat
+from operator import neg
+
+from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDS_STILL_DEG, STOPPED, TIMED, MotorState
+
+
+def ramped(speed: float, target: float, step: float) -> float:
+    """Return the speed one tick later.
+
+    Args:
+        speed: Speed now.
+        target: Speed asked for.
+        step: Change allowed in a tick; 0 for a motor without inertia.
+    """
+    if step == 0.0:
+        speed = target
+    elif speed < target:
+        speed += step
+        if speed > target:
+            speed = target
+    elif speed > target:
+        speed -= step
+        if speed < target:
+            speed = target
+    return speed
+
+
+class BrickMotor:
+    """One motor with its encoder.
+
+    Args:
+        tick_hz: Ticks a second.
+        weight_step: Change of speed in a tick that the weight allows; 0 is at once.
+        limit_dps: The fastest that noise makes it.
+    """
+
+    __slots__ = (
+        "_limit_dps", "_tick_s", "_weight_step", "approach_dps2", "blocked_ticks", "end_tick", "goal_deg", "mode",
+        "position_deg", "sign", "slowest_ramp_dps2", "speed_dps", "target_dps",
+    )  # fmt: skip
+
+    def __init__(self, tick_hz: int, weight_step: float, limit_dps: float) -> None:
+        self._tick_s, self._weight_step, self._limit_dps = 1.0 / tick_hz, weight_step, limit_dps
+        self.mode = STOPPED
+        self.position_deg = 0.0
+        self.speed_dps = 0.0
+        self.target_dps = 0.0
+        self.sign = 1.0
+        """-1 while a move goes backwards at a speed given without sign."""
+        self.goal_deg = 0.0
+        self.end_tick: float = 0
+        self.slowest_ramp_dps2 = 0.0
+        """Change of speed a second that the program asked for; 0 leaves it to the motor's weight."""
+        self.approach_dps2 = 0.0
+        """How it slows down before a goal or the end of its time; 0: it stops at once when it is there."""
+        self.blocked_ticks = 0
+        """For how many ticks something solid has kept the wheel from turning."""
+
+    def run(self, speed_dps: float) -> None:
+        """Run until told otherwise."""
+        if self.mode == FOREVER and not (self.slowest_ramp_dps2 or self.blocked_ticks):
+            # A control loop steers like this a hundred times a second: only the speed is new.
+            self.target_dps = speed_dps
+        else:
+            self._begin(FOREVER, speed_dps, 1.0)
+
+    def run_until(self, speed_dps: float, end_tick: int) -> None:
+        """Run until a tick is over."""
+        self._begin(TIMED, speed_dps, 1.0)
+        self.end_tick = end_tick
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
+        """Run to an encoder position at a speed given without sign."""
+        self._begin(POSITION, abs(speed_dps), -1.0 if backwards else 1.0)
+        self.goal_deg = goal_deg
+
+    def _begin(self, mode: int, speed_dps: float, sign: float) -> None:
+        if sign != self.sign:
+            # The wheel keeps turning the way it turns: only the way it is written down changes.
+            self.speed_dps = -self.speed_dps
+        self.mode, self.target_dps, self.sign = mode, speed_dps, sign
+        self.slowest_ramp_dps2 = self.approach_dps2 = 0.0
+        self.blocked_ticks = 0
+
+    def stop(self) -> None:
+        """Stand still now."""
+        self.mode = STOPPED
+        self.target_dps = 0.0
+        self.blocked_ticks = 0
+        self.speed_dps = 0.0
+        self.sign = 1.0
+
+    def state(self) -> MotorState:
+        """Return what `hold_back` needs to undo a tick."""
+        return MotorState(self.mode, self.sign, self.target_dps, self.position_deg)
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Undo the rest of a tick in which something solid stopped the wheel, as `Motor.hold_back`."""
+        if before.mode == STOPPED or turned_deg == 0.0:
+            return
+        if before.mode == POSITION and self.mode == STOPPED:
+            # It did not get to its goal after all.
+            self.mode, self.sign, self.target_dps = before.mode, before.sign, before.target_dps
+        self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
+        self.speed_dps *= part
+        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDS_STILL_DEG else 0
+
+    @property
+    def moving_dps(self) -> float:
+        """The speed at which the wheel turns, with its sign."""
+        return 0.0 if self.mode == STOPPED else self.speed_dps * self.sign
+
+    @property
+    def counting_dps(self) -> float:
+        """How fast the encoder counts."""
+        return self.moving_dps
+
+    @property
+    def aim_dps(self) -> float:
+        """The speed at which the wheel is to turn, with its sign."""
+        return self.target_dps * self.sign if self.mode else 0.0
+
+    @property
+    def resting(self) -> bool:
+        """Whether no tick changes anything of it until it is told something."""
+        return self.mode == STOPPED
+
+    @property
+    def ramp_step(self) -> float:
+        """By how much the speed can change in a tick; 0 is at once."""
+        if not self.slowest_ramp_dps2:
+            return self._weight_step
+        asked = self.slowest_ramp_dps2 * self._tick_s
+        return min(self._weight_step, asked) if self._weight_step else asked
+
+    @property
+    def ramping_ticks(self) -> int:
+        """How many ticks until its speed is steady."""
+        if self.mode == STOPPED or self.speed_dps == self.target_dps:
+            return 0
+        step = self.ramp_step
+        return math.ceil(abs(self.target_dps - self.speed_dps) / step) if step else 1
+
+    def glide(self, ticks: int) -> tuple[list[float], list[float]]:
+        """Do quiet ticks, as `Motor.glide`."""
+        if self.mode == STOPPED:
+            return [0.0] * ticks, [self.position_deg] * ticks
+        sign, tick_s = self.sign, self._tick_s
+        turns = [speed * sign * tick_s for speed in self._speeds_ahead(ticks)]
+        counts = list(accumulate(turns, initial=self.position_deg))
+        self.position_deg = counts[-1]
+        return turns, counts[1:]
+
+    def _speeds_ahead(self, ticks: int) -> list[float]:
+        """Change the speed as so many ticks do, and return it for each of them."""
+        speed, target, step = self.speed_dps, self.target_dps, self.ramp_step
+        if speed == target or step == 0.0:
+            speeds = [speed if speed == target else target] * ticks
+        else:
+            # The sums of `ramped`, without a call for each; those beyond the target become it.
+            change = step if speed < target else -step
+            speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
+            short = bisect_left(speeds, target) if change > 0 else bisect_left(speeds, -target, key=neg)
+            speeds[short:] = repeat(target, ticks - short)
+        self.speed_dps = speeds[-1]
+        return speeds
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks nothing but the ramp can change this motor, as `Motor.quiet_ticks`."""
+        if self.approach_dps2:
+            return 0
+        if self.mode == TIMED:
+            return max(0, int(self.end_tick) - tick - 1)
+        if self.mode == POSITION:
+            fastest = max(abs(self.speed_dps), abs(self.target_dps)) * self._tick_s
+            if fastest == 0.0:
+                return ENDLESS
+            left = (self.goal_deg - self.position_deg) * self.sign
+            return max(0, int(left / fastest) - 1)
+        return ENDLESS
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        """Do one tick, as `Motor.step`."""
+        mode = self.mode
+        if mode == FOREVER and not noise_dps:
+            # Most ticks are such: they need only the ramp.
+            if self.speed_dps != self.target_dps:
+                step = self.ramp_step if self.slowest_ramp_dps2 else self._weight_step
+                self.speed_dps = ramped(self.speed_dps, self.target_dps, step)
+            turned = self.speed_dps * self.sign * self._tick_s
+            self.position_deg += turned
+            return turned
+        if mode == STOPPED:
+            return 0.0
+        if mode == TIMED and tick > self.end_tick:
+            self.stop()
+            return 0.0
+        self.speed_dps = ramped(self.speed_dps, self.target_dps, self.ramp_step)
+        if self.approach_dps2:
+            self._slow_down(tick)
+        speed = self._disturbed(noise_dps) if noise_dps else self.speed_dps
+        turned = speed * self.sign * self._tick_s
+        if mode == POSITION:
+            return self._step_to_goal(turned)
+        self.position_deg += turned
+        if mode == TIMED and tick == self.end_tick:
+            self.stop()
+        return turned
+
+    def _slow_down(self, tick: int) -> None:
+        """Keep the speed so low that the motor can stand at its goal, or at the end of its time."""
+        change = self._ramp_down_step
+        if self.mode == TIMED:
+            limit = change * max(0, self.end_tick - tick)
+        else:
+            left = max(0.0, (self.goal_deg - self.position_deg) * self.sign)
+            half = change / 2
+            limit = math.sqrt(half * half + 2 * change * left / self._tick_s) - half
+        if abs(self.speed_dps) > limit:
+            self.speed_dps = math.copysign(limit, self.speed_dps)
+
+    @property
+    def _ramp_down_step(self) -> float:
+        """By how much the speed falls in a tick while the motor slows down by itself."""
+        asked = self.approach_dps2 * self._tick_s
+        return min(self._weight_step, asked) if self._weight_step else asked
+
+    def _step_to_goal(self, turned: float) -> float:
+        left = (self.goal_deg - self.position_deg) * self.sign
+        if turned * self.sign >= left:
+            turned = self.goal_deg - self.position_deg
+            self.position_deg = self.goal_deg
+            self.stop()
+            return turned
+        self.position_deg += turned
+        return turned
+
+    def _disturbed(self, noise_dps: float) -> float:
+        if self.speed_dps == 0.0:
+            return 0.0
+        limit = self._limit_dps
+        return max(-limit, min(limit, float(round(self.speed_dps + noise_dps))))

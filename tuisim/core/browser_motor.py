@@ -1,0 +1,225 @@
+"""Motors of the browser simulator nbev3devsim: what they do in each tick, to the last bit.
+
+A motor has a speed register that runs after its set point in every tick, also while the
+motor stands, and a command that decides what the register is good for. In a move to a
+position the encoder counts each step twice, so that the wheel makes half the way, and it
+goes on counting after the end. Set points are live: what is written works at once.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import accumulate
+
+from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDS_STILL_DEG, STOPPED, TIMED, MotorState
+
+
+class BrowserMotor:
+    """One motor with its encoder.
+
+    Args:
+        tick_hz: Ticks a second.
+        ramp_step: Change of speed in a tick that the weight allows; 0 is at once.
+        limit_dps: The fastest that it goes forwards.
+    """
+
+    __slots__ = (
+        "_command", "_limit_dps", "_ramp_step", "_tick_s", "backwards", "blocked_ticks", "end_tick", "goal_deg", "mode",
+        "position_deg", "roll_sign", "speed_dps", "speed_sp",
+    )  # fmt: skip
+
+    def __init__(self, tick_hz: int, ramp_step: float, limit_dps: float) -> None:
+        self._tick_s, self._ramp_step, self._limit_dps = 1.0 / tick_hz, ramp_step, limit_dps
+        self._command = STOPPED
+        self.mode = STOPPED
+        """The command, as long as the motor says that it runs."""
+        self.position_deg = 0.0
+        self.speed_dps = 0.0
+        """The speed register: a size in moves to a position, a signed speed otherwise."""
+        self.speed_sp = 0.0
+        """The speed that the register runs after, in every state."""
+        self.backwards = False
+        """The direction of a move to a position; it may change while the motor moves, and afterwards."""
+        self.goal_deg = 0.0
+        self.end_tick = 0.0
+        self.roll_sign = 1.0
+        """-1 for a motor of inversed polarity: the wheel rolls the other way, the encoder counts as ever."""
+        self.blocked_ticks = 0
+
+    # Commands
+
+    def run(self, speed_dps: float) -> None:
+        """Run until told otherwise."""
+        self._begin(FOREVER, speed_dps)
+
+    def run_until(self, speed_dps: float, end_tick: float) -> None:
+        """Run as long as ticks are before one, which need not be whole."""
+        self._begin(TIMED, speed_dps)
+        self.end_tick = end_tick
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
+        """Run to an encoder position."""
+        self._begin(POSITION, speed_dps)
+        self.goal_deg, self.backwards = goal_deg, backwards
+        if goal_deg == self.position_deg:
+            self.mode = STOPPED
+
+    def _begin(self, command: int, speed_dps: float) -> None:
+        self._command = self.mode = command
+        self.speed_sp = speed_dps
+        self.blocked_ticks = 0
+
+    def stop(self) -> None:
+        """Stand still from the next tick on, which also ends the state."""
+        self._command = STOPPED
+        self.blocked_ticks = 0
+
+    # Ticks
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        """Do one tick, as `Motor.step`."""
+        speed, target = self.speed_dps, self.speed_sp
+        if speed != target or noise_dps:
+            self.speed_dps = speed = self._rounded(self._ramped(speed, target), noise_dps)
+        turned = speed * self._tick_s
+        command = self._command
+        if command == FOREVER or (command == TIMED and tick < self.end_tick):
+            self.position_deg += turned
+            return turned * self.roll_sign + 0.0
+        if command != POSITION:
+            self.mode = STOPPED
+            return 0.0
+        if self.backwards:
+            turned = -turned
+        self.position_deg += turned
+        if self._beyond():
+            self.mode = STOPPED
+            return 0.0
+        self.position_deg += turned
+        return turned * self.roll_sign + 0.0
+
+    def _ramped(self, speed: float, target: float) -> float:
+        step = self._ramp_step
+        if step == 0.0 or speed == target:
+            return target
+        return min(speed + step, target) if speed < target else max(speed - step, target)
+
+    def _rounded(self, speed: float, noise_dps: float) -> float:
+        # A speed that is negative even with the noise is left as it is.
+        noisy = speed + noise_dps
+        return min(float(math.floor(noisy + 0.5)), self._limit_dps) if noisy >= 0 else speed
+
+    def _beyond(self) -> bool:
+        return self.position_deg < self.goal_deg if self.backwards else self.position_deg > self.goal_deg
+
+    @property
+    def _aim(self) -> float:
+        """Where the register comes to stand."""
+        return min(self.speed_sp, self._limit_dps)
+
+    @property
+    def _ended(self) -> bool:
+        """Whether a move to a position is over, so that only the encoder goes on."""
+        return self._command == POSITION and self.mode == STOPPED
+
+    # Ticks ahead
+
+    @property
+    def ramping_ticks(self) -> int:
+        """About how many ticks until the register is steady; 0 only if it is."""
+        way = abs(self._aim - self.speed_dps)
+        return math.ceil(way / self._ramp_step) if way and self._ramp_step else int(way > 0)
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks nothing but the register can change, as `Motor.quiet_ticks`."""
+        if self._command == FOREVER or (self.mode == STOPPED and self._command != POSITION):
+            return ENDLESS
+        if self._command == POSITION:
+            return self._quiet_ticks_to_goal()
+        # A motor that was told to stop says so in its next tick.
+        return max(0, math.ceil(self.end_tick) - 1 - tick) if self._command == TIMED else 0
+
+    def _quiet_ticks_to_goal(self) -> int:
+        if self._ended and self.speed_dps == self.speed_sp == 0.0:
+            return ENDLESS
+        if self._ended:
+            # It must not only be beyond its goal but also stay there.
+            return ENDLESS if self._beyond() and self.speed_dps >= 0 and self.speed_sp >= 0 else 0
+        # Rounding adds up to half a degree a second.
+        fastest = (max(abs(self.speed_dps), abs(self.speed_sp)) + 0.5) * self._tick_s
+        left = abs(self.goal_deg - self.position_deg)
+        return 0 if self._beyond() else max(0, int(left / (2 * fastest)) - 1)
+
+    def glide(self, ticks: int) -> tuple[list[float], list[float]]:
+        """Do quiet ticks, as `Motor.glide`."""
+        speeds = self._registers(ticks)
+        tick_s = -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
+        turns = [speed * tick_s for speed in speeds]
+        counts = self._counts(turns)
+        self.position_deg = counts[-1]
+        if self.mode == STOPPED:
+            return [0.0] * ticks, counts
+        sign = self.roll_sign
+        return [turned * sign + 0.0 for turned in turns], counts
+
+    def _registers(self, ticks: int) -> list[float]:
+        """Let the register run ahead; returns it for each tick."""
+        speed, target, aim = self.speed_dps, self.speed_sp, self._aim
+        speeds: list[float] = []
+        while speed != aim and len(speeds) < ticks:
+            speed = self._rounded(self._ramped(speed, target), 0.0)
+            speeds.append(speed)
+        self.speed_dps = speed
+        speeds += [speed] * (ticks - len(speeds))
+        return speeds
+
+    def _counts(self, turns: list[float]) -> list[float]:
+        start = self.position_deg
+        if self._command == POSITION and self.mode != STOPPED:
+            twice = (turned for pair in zip(turns, turns, strict=True) for turned in pair)
+            return list(accumulate(twice, initial=start))[2::2]
+        if self.mode == STOPPED and not self._ended:
+            return [start] * len(turns)
+        return list(accumulate(turns, initial=start))[1:]
+
+    # What others see
+
+    @property
+    def _direction(self) -> float:
+        return self.roll_sign if self._command != POSITION or not self.backwards else -self.roll_sign
+
+    @property
+    def moving_dps(self) -> float:
+        """The speed at which the wheel turns, with its sign."""
+        return 0.0 if self.mode == STOPPED else self.speed_dps * self._direction
+
+    @property
+    def counting_dps(self) -> float:
+        """How fast the encoder counts."""
+        if self._command == POSITION:
+            return self.speed_dps * ((self.mode != STOPPED) + 1) * (-1.0 if self.backwards else 1.0)
+        return 0.0 if self.mode == STOPPED else self.speed_dps
+
+    @property
+    def aim_dps(self) -> float:
+        """The speed at which the wheel is to turn, with its sign."""
+        return 0.0 if self.mode == STOPPED else self._aim * self._direction
+
+    @property
+    def resting(self) -> bool:
+        """Whether no tick changes anything of it until it is told something."""
+        return self.mode == STOPPED and self.speed_dps == self._aim and (self.speed_dps == 0.0 or not self._ended)
+
+    # Solid things
+
+    def state(self) -> MotorState:
+        """Return what `hold_back` needs to undo a tick."""
+        return MotorState(self.mode, self._direction, self._aim, self.position_deg)
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Undo the rest of a tick in which something solid stopped the wheel, as `Motor.hold_back`."""
+        if before.mode == STOPPED or turned_deg == 0.0:
+            return
+        self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
+        self.speed_dps *= part
+        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDS_STILL_DEG else 0

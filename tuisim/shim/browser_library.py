@@ -1,0 +1,195 @@
+"""Where the library that the browser simulator had differs from the genuine one: set points, waiting, motors.
+
+What is not here is the genuine library's. Numbers in the program are as there: `position`
+and `speed` with all their digits, `time_sp` in seconds, `state` '' or 'running'.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tuisim.core.profile import MS
+from tuisim.shim.devices import Brick
+from tuisim.shim.session import Session
+
+LOOK_MS = 10
+"""Whoever waits for a motor sleeps so long, and then looks."""
+
+
+def round_half_up(number: float) -> int:
+    """Return the nearest whole number, the upper one of two."""
+    return math.floor(number + 0.5)
+
+
+def speak_as_browser(session: Session, motor: Any, brick: Brick) -> None:
+    """Change `ev3dev2.motor` after its import.
+
+    Args:
+        session: Clock and simulation.
+        motor: The module.
+        brick: The devices.
+    """
+    _patch_properties(motor.Motor, brick)
+    motor.Motor.wait = _wait(session)
+    _patch_moves(motor)
+    _patch_sets(motor)
+    _patch_pairs(motor)
+    make = motor.Motor.__init__
+
+    def __init__(self: Any, *args: Any, **named: Any) -> None:  # noqa: N807
+        make(self, *args, **named)
+        # A quotient of whole numbers lost its fraction.
+        self.max_rps = float(self.max_speed // self.count_per_rot)
+        self.max_rpm, self.max_dps = self.max_rps * 60, self.max_rps * 360
+        self.max_dpm = self.max_rpm * 360
+
+    motor.Motor.__init__ = __init__
+
+
+def _patch_properties(motor_class: Any, brick: Brick) -> None:
+    devices = brick.by_path
+
+    def reader(name: str) -> Callable[[Any], object]:
+        return lambda self: devices[self._path].read(name)
+
+    def set_time(self: Any, seconds: float) -> None:
+        devices[self._path].write("time_sp", repr(float(seconds)))
+
+    motor_class.position = motor_class.position.getter(reader("position"))
+    motor_class.speed = property(reader("speed"))
+    motor_class.state = property(reader("state"))
+    motor_class.time_sp = property(reader("time_sp"), set_time)
+
+
+def _wait(session: Session) -> Callable[..., bool]:
+    def now_s() -> float:
+        return session.now / MS / 1000
+
+    def wait(self: Any, cond: Callable[[str], bool], timeout: float | None = None) -> bool:
+        """Sleep and look until `cond(self.state)` holds, or the timeout in milliseconds is over."""
+        deadline_s = now_s() + (timeout or 0) / 1000
+        while True:
+            session.spend(LOOK_MS * MS)
+            if cond(self.state):
+                return True
+            if timeout is not None and now_s() >= deadline_s:
+                return False
+
+    return wait
+
+
+def _patch_moves(motor: Any) -> None:
+    def on_for_degrees(self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True) -> None:
+        """Rotate the motor at `speed` for `degrees`."""
+        native = self._speed_native_units(speed)
+        if isinstance(speed, motor.SpeedValue):
+            # Rounded with its sign first.
+            native = round_half_up(native)
+        self.position_sp = round_half_up(-degrees if native < 0 else degrees)
+        self.speed_sp = round_half_up(abs(native))
+        self._set_brake(brake)
+        self.run_to_rel_pos()
+        if block:
+            _block(motor, self)
+
+    def on_for_rotations(self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True) -> None:
+        """Rotate the motor at `speed` for `rotations`."""
+        self.on_for_degrees(speed, rotations * 360, brake, block)
+
+    def on_for_seconds(self: Any, speed: Any, seconds: float, brake: bool = True, block: bool = True) -> None:
+        """Rotate the motor at `speed` for `seconds`."""
+        _refuse_negative(seconds)
+        self.speed_sp, self.time_sp = round_half_up(self._speed_native_units(speed)), seconds
+        self._set_brake(brake)
+        self.run_timed()
+        if block:
+            _block(motor, self)
+
+    def on(self: Any, speed: Any, brake: bool = True, block: bool = False) -> None:
+        """Rotate the motor at `speed` for ever."""
+        self.speed_sp = round_half_up(self._speed_native_units(speed))
+        self._set_brake(brake)
+        self.run_forever()
+        if block:
+            _block(motor, self)
+
+    def on_to_position(self: Any, speed: Any, position: float, brake: bool = True, block: bool = True) -> None:
+        """Rotate the motor at `speed` to `position`."""
+        self.speed_sp, self.position_sp = round_half_up(self._speed_native_units(speed)), position
+        self._set_brake(brake)
+        self.run_to_abs_pos()
+        if block:
+            _block(motor, self)
+
+    for method in (on, on_for_degrees, on_for_rotations, on_for_seconds, on_to_position):
+        setattr(motor.Motor, method.__name__, method)
+
+
+def _refuse_negative(seconds: float) -> None:
+    if seconds < 0:
+        raise ValueError(f"seconds is negative ({seconds})")
+
+
+def _block(motor: Any, one: Any) -> None:
+    one.wait_until("running", timeout=motor.WAIT_RUNNING_TIMEOUT)
+    one.wait_until_not_moving()
+
+
+def _patch_sets(motor: Any) -> None:
+    def __init__(self: Any, motor_specs: Mapping[str, Any], desc: str | None = None) -> None:  # noqa: N807
+        # In the order given, which is that of waiting.
+        self.motors = OrderedDict((port, motor_class(port)) for port, motor_class in motor_specs.items())
+        self.desc = desc
+        self.reset()
+
+    def block(self: Any) -> None:
+        for one in self.motors.values():
+            _block(motor, one)
+
+    motor.MotorSet.__init__, motor.MotorSet._block = __init__, block
+
+
+def _patch_pairs(motor: Any) -> None:
+    def on_for_degrees(
+        self: Any, left_speed: Any, right_speed: Any, degrees: float, brake: bool = True, block: bool = True
+    ) -> None:
+        """Rotate the motors for `degrees`, the slower one for its part of them."""
+        speeds = [round_half_up(speed) for speed in self._unpack_speeds_to_native_units(left_speed, right_speed)]
+        fastest = max(map(abs, speeds))
+        pair = (self.left_motor, self.right_motor)
+        for one, speed in zip(pair, speeds, strict=True):
+            part = round_half_up(degrees if abs(speed) == fastest else abs(speed / fastest) * degrees)
+            one.position_sp, one.speed_sp = -part if speed < 0 else part, abs(speed)
+            one._set_brake(brake)
+        for one in pair:
+            one.run_to_rel_pos()
+        if block:
+            self._block()
+
+    def on_for_seconds(
+        self: Any, left_speed: Any, right_speed: Any, seconds: float, brake: bool = True, block: bool = True
+    ) -> None:
+        """Rotate the motors for `seconds`."""
+        _refuse_negative(seconds)
+        pair = (self.left_motor, self.right_motor)
+        for one, speed in zip(pair, self._unpack_speeds_to_native_units(left_speed, right_speed), strict=True):
+            one.speed_sp, one.time_sp = round_half_up(speed), seconds
+            one._set_brake(brake)
+        for one in pair:
+            one.run_timed()
+        if block:
+            self._block()
+
+    def on(self: Any, left_speed: Any, right_speed: Any) -> None:
+        """Rotate the motors for ever."""
+        pair = (self.left_motor, self.right_motor)
+        for one, speed in zip(pair, self._unpack_speeds_to_native_units(left_speed, right_speed), strict=True):
+            one.speed_sp = round_half_up(speed)
+        for one in pair:
+            one.run_forever()
+
+    for method in (on, on_for_degrees, on_for_seconds):
+        setattr(motor.MoveTank, method.__name__, method)
