@@ -120,7 +120,6 @@ WRONG: dict[str, tuple[str, str]] = {
     "robot: pen": ("[pen]\ncolor = 'reed'", "pen.color: no such colour 'reed' (did you mean red"),
     "robot: wide pen": ("[pen]\nwidth_mm = 201", "pen.width_mm: must be from 0.1 to 200, got 201.0"),
     "robot: deep value": ("back_mm = " + "[" * 90 + "]" * 90, "back_mm: must be a number, got [[[[[[[...]]]]]]]"),
-    "json robot: key": ('{"weeldiameter": 3}', "weeldiameter: no such key (did you mean wheeldiameter or"),
     "json robot: type": ('{"sensor1": {"x": "3"}}', "sensor1.x: must be a number, got '3'"),
     "json robot: range": ('{"wheelSpacing": -1}', "wheelSpacing: must be from 1 to 1000, got -1.0"),
     "json robot: inner range": ('{"sensor2": {"y": 999}}', "sensor2.y: must be from -500 to 500, got 999.0"),

@@ -27,6 +27,7 @@ from tuisim.config import (
     save_world,
 )
 from tuisim.config.profiles import SOURCES
+from tuisim.config.robots import choose_robot
 from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.profile import PROFILES, MotorLaw, ProfileSpec
 from tuisim.core.spec import (
@@ -198,6 +199,41 @@ def test_the_json_of_the_course_is_read(write: Write) -> None:
         pen=PenSpec(1.0, 2.0, "orange", 8.0),
     )
     assert load_robot(write("bare.json", "{}")) == RobotSpec(name="bare")
+
+
+SAVED_ROBOT = {
+    **COURSE_ROBOT, "baseWeight": "medium", "width": 98, "height": 130, "wheelNoise": 7, "sensorNoise": 12,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changes", "found"),
+    [
+        ({}, {}),
+        ({"width": "?", "height": None, "baseWeight": 3}, {}),
+        ({"wheelNoise": None, "sensorNoise": None}, {"motor_noise": 1, "light_noise": None}),
+        ({"weight": None}, {"weight": 6.0}),
+        ({"weight": ""}, {"weight": 6.0}),
+        ({"ultrasonic": {"x": 0, "y": 10, "angle": 5}}, {"ultrasonic_mm": 1.0}),
+        (
+            {"colour": 3, "gyro": {"enabled": True, "drift": 2}, "pen": {"cap": 1}},
+            {"notes": "old.json: left aside what means nothing here: pen.cap, gyro.drift, colour"},
+        ),
+    ],
+    ids=["whole", "box", "no noises", "null weight", "empty weight", "no ultrasonic noise", "unknown keys"],
+)
+def test_a_saved_robot_in_full(changes: dict[str, Any], found: dict[str, Any], write: Write) -> None:
+    choice = choose_robot(str(write("old.json", json.dumps({**SAVED_ROBOT, **changes}))))
+    expected = {"motor_noise": 7, "light_noise": 12, "weight": 0.0, "ultrasonic_mm": 2.0, "notes": "", **found}
+    ultrasonic = choice.spec.ultrasonic
+    assert ultrasonic is not None
+    assert {
+        "motor_noise": choice.motor_noise,
+        "light_noise": choice.light_noise,
+        "weight": choice.spec.weight,
+        "ultrasonic_mm": ultrasonic.noise_mm,
+        "notes": "".join(note[note.index("old.json") :] for note in choice.notes),
+    } == expected
 
 
 @pytest.mark.parametrize(("words", "noise"), [("", 50), ("-M 7", 7), ("-M 0", 0)], ids=["file", "switch", "none"])

@@ -38,6 +38,10 @@ class RobotChoice:
     """The motor noise of a run that says none of its own."""
     own_places: bool = True
     """Whether its colour sensors stay where they are on a mat that has places of its own for them."""
+    light_noise: int | None = None
+    """The light noise of a run that says none of its own."""
+    notes: tuple[str, ...] = ()
+    """What to know of the file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +60,7 @@ class Settings:
     x_mm: float | None = None
     y_mm: float | None = None
     heading_deg: float | None = None
-    light_noise: int = 0
+    light_noise: int | None = None
     motor_noise: int | None = None
     pen_down: bool | None = None
     pen_color: str | None = None

@@ -14,23 +14,22 @@ from tests.core.motor_lab import Course, Job, courses
 from tests.core.motor_programs import PROGRAMS
 from tests.core.tick_model import Lab
 from tuisim.config.presets import ROBOTS
+from tuisim.config.reading import Section
+from tuisim.config.robot_json import robot_from_json
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec, WorldSpec
+from tuisim.errors import RobotError
 
 with gzip.open(Path(__file__).with_name("motor_records.jsonl.gz"), "rt", encoding="utf-8") as _file:
     RECORDS: Mapping[str, dict[str, Any]] = {record["name"]: record for record in map(json.loads, _file)}
 
-WEIGHTS = {"weightless": 0.0, "light": 3.0, "medium": 6.0, "heavy": 9.0}
 START = (1000.0, 500.0, 0.0)
 
 
 def _robot(described: str | dict[str, Any]) -> RobotSpec:
     if isinstance(described, str):
         return ROBOTS[described]
-    weight = WEIGHTS.get(described["weight"], described["weight"])
-    return RobotSpec(
-        weight=weight, wheel_diameter_mm=described["wheeldiameter"], wheel_spacing_mm=described["wheelSpacing"]
-    )
+    return robot_from_json(Section(described, "robot.json", RobotError), "recorded").spec
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import known_programs
 from tuisim.config import WorldFile, build_run_spec, load_world, means_world
+from tuisim.config.robots import choose_robot
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
@@ -20,7 +22,7 @@ from tuisim.errors import ConfigError
 from tuisim.host import Program
 from tuisim.notebook.reading import is_notebook
 from tuisim.programfile import ProgramSource, read_program
-from tuisim.switches import ARGUMENTS_FOLLOW, Settings, given, settings_of
+from tuisim.switches import ARGUMENTS_FOLLOW, RobotChoice, Settings, given, settings_of
 
 _OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors"})
 """Fields of `Settings` that have nothing to do with what is run."""
@@ -93,13 +95,21 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -
             named = world.path if world else arguments.world
             raise ConfigError(f"{named} names no program that could take arguments", key=ARGUMENTS_FOLLOW)
         settings = settings_of(in_world, given(arguments))
-        return Prepared(None, settings, build_run_spec(settings), world)
+        return Prepared(None, settings, _spec(settings), world)
     return _of_source(read_program(find_program(word)), world, arguments)
 
 
 def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
     settings = settings_of(file.switches, world.settings if world else {}, given(arguments))
-    return Prepared(_program(file, settings), settings, build_run_spec(settings), world)
+    return Prepared(_program(file, settings), settings, _spec(settings), world)
+
+
+def _spec(settings: Settings) -> RunSpec:
+    """Return the run's specification; what there is to know of the robot's file is said on stderr."""
+    robot = settings.robot if isinstance(settings.robot, RobotChoice) else choose_robot(settings.robot, "-r")
+    for note in robot.notes:
+        echo_error(f"note: {note}")
+    return build_run_spec(replace(settings, robot=robot) if robot.notes else settings)
 
 
 def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:

@@ -90,6 +90,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
     solid = profile.solid if settings.solid is None else settings.solid
     robot = _with_pen(robot_on_mat(choice, mat), settings)
     motor = settings.motor_noise if settings.motor_noise is not None else choice.motor_noise or 0
+    light = settings.light_noise if settings.light_noise is not None else choice.light_noise or 0
     return RunSpec(
         robot=robot,
         world=WorldSpec(
@@ -100,7 +101,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
             background_fit=settings.background_fit,
             pen_marks=settings.pen_marks,
             start=_start(settings, mat, robot, walled=solid and settings.walls),
-            noise=NoiseSpec(light=settings.light_noise, motor=motor),
+            noise=NoiseSpec(light=light, motor=motor),
             beacon=settings.beacon,
             remote=settings.remote,
         ),

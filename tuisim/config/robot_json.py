@@ -5,13 +5,13 @@ Its keys are translated, so that one set of rules holds for both formats.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tuisim.config.reading import Section, relocated
+from tuisim.config.reading import Section, relocated, shown
 from tuisim.config.robot_table import robot_from_table
-from tuisim.core.spec import MAX_MOTOR_NOISE
+from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
 from tuisim.errors import ConfigError
 from tuisim.switches import RobotChoice
 
@@ -31,11 +31,20 @@ _KEYS = {
     "back": "back_mm",
     "weight": "weight",
 }
-_WHEEL_NOISE = "wheelNoise"
+_WHEEL_NOISE, _SENSOR_NOISE = "wheelNoise", "sensorNoise"
+_NOISE_UNSAID = 1
+"""What a motor or ultrasonic noise that is not said came to in the simulator."""
+
+_KEYS_SHOWN = 5
+
+_WITHOUT_EFFECT = ("baseWeight", "width", "height")
+"""Keys of every saved file that change nothing in a run."""
 
 
 def robot_from_json(table: Section, name: str) -> RobotChoice:
-    """Return the robot; what the table leaves out is as in Default_Robot, its wheel noise goes to the run.
+    """Return the robot; what the table leaves out is as in Default_Robot, its noises go to the run.
+
+    A key that the simulator did not know either is left aside, with a note.
 
     Args:
         table: The object in the file.
@@ -44,29 +53,49 @@ def robot_from_json(table: Section, name: str) -> RobotChoice:
     Raises:
         RobotError: a key or a value is wrong.
     """
-    table.allow((*_KEYS, _WHEEL_NOISE, *_PLACES))
     ours: dict[str, Any] = {"color_sensors": {}}
     theirs: dict[str, str] = {}
+    unknown: list[str] = []
     for key in table:
         if key in _KEYS:
+            if key == "weight" and table.raw(key) in (None, ""):
+                # That is medium, as without the key.
+                continue
             ours[_KEYS[key]] = table.raw(key)
             theirs[_KEYS[key]] = key
         elif key in _PLACES:
             place, keys = _PLACES[key]
             theirs |= {place: key, f"{place}.port": key} | {f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()}
             outer, _, inner = place.rpartition(".")
-            (ours[outer] if outer else ours)[inner] = _part(table.section(key), keys, key != "pen")
-    noise = table.whole(_WHEEL_NOISE, 0, MAX_MOTOR_NOISE) if _WHEEL_NOISE in table else None
+            part = table.section(key)
+            (ours[outer] if outer else ours)[inner] = _part(part, keys)
+            unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
+        elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
+            unknown.append(key)
+    motor, light = _noise(table, _WHEEL_NOISE, MAX_MOTOR_NOISE), _noise(table, _SENSOR_NOISE, MAX_LIGHT_NOISE)
     try:
         choice = robot_from_table(table.instead(ours), name)
     except ConfigError as error:
         raise relocated(error, table.file, theirs.get(error.key, error.key)) from None
-    return replace(choice, motor_noise=noise)
+    notes = (f"{table.file}: left aside what means nothing here: {shown_keys(unknown)}",) if unknown else ()
+    return replace(choice, motor_noise=_NOISE_UNSAID if motor is None else motor, light_noise=light, notes=notes)
 
 
-def _part(part: Section, keys: Mapping[str, str], may_be_off: bool) -> dict[str, object] | bool:
+def _noise(table: Section, key: str, most: int) -> int | None:
+    return None if key not in table or table.raw(key) is None else table.whole(key, 0, most)
+
+
+def shown_keys(keys: Sequence[str]) -> str:
+    """Return keys as a message names them: short, however many and long they are."""
+    names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
+    return ", ".join(names) + (f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else "")
+
+
+def _part(part: Section, keys: Mapping[str, str]) -> dict[str, object] | bool:
     """A sensor or the pen in our own keys; False for one that is not enabled."""
-    part.allow(("enabled", *keys) if may_be_off else keys)
-    if "enabled" in part and not part.flag("enabled"):
+    if "pen" != part.key and "enabled" in part and not part.flag("enabled"):
         return False
-    return {keys[key]: part.raw(key) for key in part if key != "enabled"}
+    found = {keys[key]: part.raw(key) for key in part if key in keys}
+    if "noise" in keys and found.get("noise_mm") is None:
+        found["noise_mm"] = _NOISE_UNSAID
+    return found

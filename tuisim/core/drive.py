@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from itertools import accumulate, repeat
+from itertools import accumulate, islice, repeat
 from math import cos, degrees, radians, sin
+from operator import add, mul
 from struct import Struct
 from typing import NamedTuple, Protocol
 
@@ -71,6 +72,23 @@ class Drive(Protocol):
         """Let the wheels roll for some ticks."""
 
 
+def tracks(
+    forward: Iterable[float], ways: Iterable[float], x_mm: float, y_mm: float
+) -> tuple[list[float], list[float]]:
+    """Return x and y from a place on, after each of some ticks.
+
+    Args:
+        forward: How far each goes, in mm.
+        ways: In which direction, in radians.
+        x_mm: Where the first begins.
+        y_mm: Where the first begins.
+    """
+    directions = list(ways)
+    steps = list(islice(forward, len(directions)))
+    xs = list(accumulate(map(mul, steps, map(cos, directions)), initial=x_mm))
+    return xs, list(accumulate(map(mul, steps, map(sin, directions)), initial=y_mm))
+
+
 class BrickDrive:
     """The drive of a brick.
 
@@ -103,42 +121,38 @@ class BrickDrive:
 
     def roll_evenly(self, ticks: int, left_deg: float, right_deg: float) -> Way:
         """Let the wheels roll by the same for some ticks."""
-        if left_deg != right_deg:
-            return self.roll_along([left_deg] * ticks, [right_deg] * ticks)
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
-        forward, heading = (left_mm + right_mm) / 2, radians(self.heading_deg)
-        xs = list(accumulate(repeat(forward * cos(heading), ticks), initial=self.x_mm))
-        ys = list(accumulate(repeat(forward * sin(heading), ticks), initial=self.y_mm))
+        turned = degrees((right_mm - left_mm) / self._spacing_mm)
+        return self._roll((left_mm + right_mm) / 2, turned, ticks)
+
+    def _roll(self, forward: float, turned: float, ticks: int) -> Way:
+        early = turned * self._early
+        if not turned:
+            return self._straight([forward] * ticks)
+        headings = list(accumulate(repeat(turned, ticks), initial=self.heading_deg))
+        self.heading_deg = headings[-1]
+        ways = [radians(heading + early) for heading in headings[:-1]]
+        return self._along(repeat(forward), ways, headings[1:])
+
+    def _straight(self, forward: list[float]) -> Way:
+        ways = repeat(radians(self.heading_deg), len(forward))
+        return self._along(forward, ways, repeat(self.heading_deg))
+
+    def _along(self, forward: Iterable[float], ways: Iterable[float], headings: Iterable[float]) -> Way:
+        xs, ys = tracks(forward, ways, self.x_mm, self.y_mm)
         self.x_mm, self.y_mm = xs[-1], ys[-1]
-        return Way(xs[1:], ys[1:], repeat(self.heading_deg), repeat(self.gyro_zero_deg))
+        return Way(xs[1:], ys[1:], headings, repeat(self.gyro_zero_deg))
 
     def roll_along(self, left_deg: list[float], right_deg: list[float]) -> Way:
         """Let the wheels roll for some ticks."""
         per_deg, spacing, early = self._mm_per_deg, self._spacing_mm, self._early
-        x, y, heading = self.x_mm, self.y_mm, self.heading_deg
-        xs, ys, headings, faced = [], [], [], False
-        across = up = 0.0
-        for left, right in zip(left_deg, right_deg, strict=True):
-            left_mm, right_mm = left * per_deg, right * per_deg
-            forward = (left_mm + right_mm) / 2
-            if left_mm != right_mm:
-                turned = degrees((right_mm - left_mm) / spacing)
-                turn = radians(heading + turned * early)
-                x += forward * cos(turn)
-                y += forward * sin(turn)
-                heading += turned
-                faced = False
-            else:
-                if not faced:
-                    turn = radians(heading)
-                    across, up, faced = cos(turn), sin(turn), True
-                x += forward * across
-                y += forward * up
-            xs.append(x)
-            ys.append(y)
-            headings.append(heading)
-        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
-        return Way(xs, ys, headings, repeat(self.gyro_zero_deg))
+        left_mm, right_mm = [deg * per_deg for deg in left_deg], [deg * per_deg for deg in right_deg]
+        forward = [(left + right) / 2 for left, right in zip(left_mm, right_mm, strict=True)]
+        turns = [degrees((right - left) / spacing) for left, right in zip(left_mm, right_mm, strict=True)]
+        headings = list(accumulate(turns, initial=self.heading_deg))
+        ways = [radians(heading + turned * early) for heading, turned in zip(headings, turns)]  # noqa: B905
+        self.heading_deg = headings[-1]
+        return self._along(forward, ways, headings[1:])
 
 
 class BrowserDrive:
@@ -182,30 +196,35 @@ class BrowserDrive:
 
     def roll_evenly(self, ticks: int, left_deg: float, right_deg: float) -> Way:
         """Let the wheels roll by the same for some ticks."""
-        if left_deg != right_deg:
-            return self.roll_along([left_deg] * ticks, [right_deg] * ticks)
         left_mm, right_mm = left_deg / 360 * self._rim_mm, right_deg / 360 * self._rim_mm
-        forward, heading = (left_mm + right_mm) / 2, self._heading
-        xs = list(accumulate(repeat(forward * cos(heading), ticks), initial=self.x_mm))
-        ys = list(accumulate(repeat(forward * sin(heading), ticks), initial=self.y_mm))
-        self.x_mm, self.y_mm = xs[-1], ys[-1]
-        return Way(xs[1:], ys[1:], repeat(self.heading_deg), repeat(self.gyro_zero_deg))
+        turned, forward = (right_mm - left_mm) / self._spacing_mm, (left_mm + right_mm) / 2
+        return self._along(repeat(forward, ticks), repeat(turned, ticks))
 
     def roll_along(self, left_deg: list[float], right_deg: list[float]) -> Way:
         """Let the wheels roll for some ticks."""
-        if left_deg == right_deg:
-            return self._roll_straight(left_deg)
-        way: list[tuple[float, float, float, float]] = []
-        for left, right in zip(left_deg, right_deg, strict=True):
-            self.roll(left, right)
-            way.append((self.x_mm, self.y_mm, self.heading_deg, self.gyro_zero_deg))
-        return Way(*zip(*way, strict=True))
+        rim, spacing = self._rim_mm, self._spacing_mm
+        left_mm, right_mm = [deg / 360 * rim for deg in left_deg], [deg / 360 * rim for deg in right_deg]
+        forward = [(left + right) / 2 for left, right in zip(left_mm, right_mm, strict=True)]
+        return self._along(forward, [(right - left) / spacing for left, right in zip(left_mm, right_mm, strict=True)])
 
-    def _roll_straight(self, turned_deg: list[float]) -> Way:
-        across, up, rim = cos(self._heading), sin(self._heading), self._rim_mm
-        forward = [turned / 360 * rim for turned in turned_deg]
-        # As in `roll`: half of twice a way is the way, to the last bit.
-        xs = list(accumulate((mm * across for mm in forward), initial=self.x_mm))
-        ys = list(accumulate((mm * up for mm in forward), initial=self.y_mm))
-        self.x_mm, self.y_mm = xs[-1], ys[-1]
-        return Way(xs[1:], ys[1:], repeat(self.heading_deg), repeat(self.gyro_zero_deg))
+    def _along(self, forward: Iterable[float], turns: Iterable[float]) -> Way:
+        turned, early = list(turns), self._early
+        headings, zeros = self._headings(turned)
+        ways = map(add, headings, (turn * early for turn in turned)) if early else headings[:-1]
+        xs, ys = tracks(forward, ways, self.x_mm, self.y_mm)
+        self.x_mm, self.y_mm, self._heading = xs[-1], ys[-1], headings[-1]
+        shown = [heading * 180 / math.pi for heading in headings[1:]]
+        self.heading_deg = shown[-1]
+        return Way(xs[1:], ys[1:], shown, zeros)
+
+    def _headings(self, turned: list[float]) -> tuple[list[float], Iterable[float]]:
+        """Return the headings in radians from now on, and the gyro's zero after each turn."""
+        headings = list(accumulate(turned, initial=self._heading))
+        if max(headings[1:]) <= 2 * math.pi:
+            return headings, repeat(self.gyro_zero_deg)
+        headings, zeros = [self._heading], []
+        for turn in turned:
+            self._turn(turn)
+            headings.append(self._heading)
+            zeros.append(self.gyro_zero_deg)
+        return headings, zeros

@@ -260,30 +260,24 @@ class Motion:
             right_degs, right_counts = self.right.glide(part)
             hz, left_deg, right_deg = self._hz, left_degs[-1], right_degs[-1]
             self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
+            wheels: tuple[Iterable[float], ...]
             if ramping:
-                left_dps, right_dps = [deg * hz for deg in left_degs], [deg * hz for deg in right_degs]
                 way = self._drive.roll_along(left_degs, right_degs)
-                self._record(buffer, part, way, zip(left_counts, right_counts, left_dps, right_dps, strict=True))
+                wheels = left_counts, right_counts, [deg * hz for deg in left_degs], [deg * hz for deg in right_degs]
             else:
                 way = self._drive.roll_evenly(part, left_deg, right_deg)
-                even = zip(left_counts, right_counts, repeat(self._left_dps), repeat(self._right_dps))
-                self._record(buffer, part, way, even)
+                wheels = left_counts, right_counts, repeat(self._left_dps), repeat(self._right_dps)
+            self._record(buffer, part, way, wheels)
             ticks -= part
 
-    def _record(
-        self, buffer: Buffer, ticks: int, way: Way, wheels: Iterable[tuple[float, float, float, float]]
-    ) -> None:
+    def _record(self, buffer: Buffer, ticks: int, way: Way, wheels: Iterable[Iterable[float]]) -> None:
         """Write down ticks that have been done: where the robot was, and counts and speeds of its wheels."""
-        line, flags, actions = self.line, self._flags(), self.actions & 0xFFFF
-        pack_into, sink = TICK_RECORD.pack_into, self._sink
-        at = 64 + 64 * sink.count
-        for tick, x_mm, y_mm, heading_deg, zero_deg, (left_at, right_at, left_dps, right_dps) in zip(  # noqa: B905
-            range(self.tick + 1, self.tick + ticks + 1), *way, wheels
-        ):
-            pack_into(
-                buffer, at, tick, line, x_mm, y_mm, heading_deg, left_at, right_at, left_dps, right_dps, zero_deg,
-                flags, actions,
-            )  # fmt: skip
-            at += 64
+        sink, at = self._sink, 64 + 64 * self._sink.count
+        numbers = range(self.tick + 1, self.tick + ticks + 1)
+        *pose, zeros = way
+        flags, actions = repeat(self._flags()), repeat(self.actions & 0xFFFF)
+        buffer[at : at + 64 * ticks] = b"".join(
+            map(TICK_RECORD.pack, numbers, repeat(self.line), *pose, *wheels, zeros, flags, actions)
+        )
         self.tick += ticks
         sink.publish(sink.count + ticks)

@@ -210,10 +210,11 @@ def at_pose(plan: Plan, pose: Pose) -> Plan:
 
 def with_noise(plan: Plan, noise: NoiseSpec) -> Plan:
     """Return the plan with other noise."""
-    # A robot file may say how far its motors stray: that holds until the user says it.
-    kept = noise.motor == plan.spec.world.noise.motor
-    motor = plan.settings.motor_noise if kept else noise.motor
-    settings = replace(plan.settings, light_noise=noise.light, motor_noise=motor)
+    # A robot file may say how far its motors and sensors stray: that holds until the user says it.
+    before = plan.spec.world.noise
+    motor = plan.settings.motor_noise if noise.motor == before.motor else noise.motor
+    light = plan.settings.light_noise if noise.light == before.light else noise.light
+    settings = replace(plan.settings, light_noise=light, motor_noise=motor)
     return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, noise=noise)))
 
 
