@@ -2,13 +2,12 @@
 
 # mypy: ignore-errors
 
-from __future__ import annotations
-
 import builtins
 import heapq
 import math
 import threading
 import types
+from functools import partialmethod
 
 
 def whole(number):
@@ -19,9 +18,7 @@ def plain(number):
     return int(number) if number == int(number) else number
 
 
-class Speed:
-    def __init__(self, dps):
-        self.dps = dps
+Speed = type("Speed", (types.SimpleNamespace,), {})
 
 
 class Wheel:
@@ -33,36 +30,24 @@ class Wheel:
         super().__setattr__(name, int(value) if name in ("speed_sp", "position_sp") else value)
 
     def ramp(self, step):
-        if self.v < self.speed_sp:
-            self.v = min(self.v + step, self.speed_sp)
-        elif self.v > self.speed_sp:
-            self.v = max(self.v - step, self.speed_sp)
+        aim = self.speed_sp
+        self.v = min(self.v + step, aim) if self.v < aim else max(self.v - step, aim)
         if self.v >= 0:
             self.v = min(whole(self.v), 1050)
 
     def roll(self, tick):
-        d, sign = self.v * (1 / 30), -1 if self.polarity == "inversed" else 1
-        if self.cmd == "forever" or (self.cmd == "timed" and tick < self.end):
+        d, sign, back = self.v * (1 / 30), -1 if self.polarity == "inversed" else 1, self.position_sp < 0
+        if self.cmd == "position":
+            d = -d if back else d
             self.p += d
-            return d * sign
-        if self.cmd != "position":
-            self.state = ""
-            return 0.0
-        back = self.position_sp < 0
-        d = -d if back else d
-        self.p += d
-        if self.p < self.target if back else self.p > self.target:
-            self.state = ""
-            return 0.0
-        self.p += d
-        return d * sign
+            goes = self.p >= self.target if back else self.p <= self.target
+        else:
+            goes = self.cmd == "forever" or (self.cmd == "timed" and tick < self.end)
+        self.p, self.state = self.p + d * goes, self.state if goes else ""
+        return d * sign * goes
 
     def go(self, cmd, speed):
         self.speed_sp, self.cmd, self.state = speed, cmd, "running"
-
-    def timed(self, speed, seconds):
-        self.end = self.lab.tick + seconds * 30
-        self.go("timed", speed)
 
     def go_by(self, turn, speed, start=None):
         self.speed_sp, self.position_sp = speed, turn
@@ -81,10 +66,10 @@ class Wheel:
         return whole(self.exact(speed))
 
     def on(self, speed):
-        self.go("forever", self.native(speed))
+        self.run_forever(self.native(speed))
 
     def on_for_seconds(self, speed, seconds, block=True):
-        self.timed(self.native(speed), seconds)
+        self.run_timed(self.native(speed), seconds)
         self.block(block)
 
     def on_for_degrees(self, speed, degrees, block=True):
@@ -92,9 +77,6 @@ class Wheel:
         size = abs(signed) if isinstance(speed, Speed) else self.native(abs(speed))
         self.go_by(whole(-degrees if signed < 0 else degrees), size)
         self.block(block)
-
-    def on_for_rotations(self, speed, rotations, block=True):
-        self.on_for_degrees(speed, rotations * 360, block)
 
     def on_to_position(self, speed, position):
         self.go_by(position, self.native(speed), 0)
@@ -104,7 +86,8 @@ class Wheel:
         self.go("forever", speed_sp)
 
     def run_timed(self, speed_sp, time_sp):
-        self.timed(speed_sp, time_sp)
+        self.end = self.lab.tick + time_sp * 30
+        self.go("timed", speed_sp)
 
     def run_to_rel_pos(self, position_sp, speed_sp):
         self.go_by(position_sp, speed_sp)
@@ -112,29 +95,22 @@ class Wheel:
     def run_direct(self, duty_cycle_sp):
         self.speed_sp = duty_cycle_sp
 
-    def wait(self, condition, timeout=None):
-        deadline = self.lab.ms / 1000 + (timeout or 0) / 1000
+    def wait_until(self, state, timeout=math.inf, wanted=True):
+        deadline = self.lab.ms / 1000 + timeout / 1000
         while True:
             self.lab.sleep_ms(10)
-            if condition(self.state):
+            if (self.state == state) is wanted:
                 return True
-            if timeout is not None and self.lab.ms / 1000 >= deadline:
+            if self.lab.ms / 1000 >= deadline:
                 return False
 
-    def wait_until(self, state, timeout=None):
-        return self.wait(lambda now: now == state, timeout)
-
-    def wait_while(self, state, timeout=None):
-        return self.wait(lambda now: now != state, timeout)
-
-    def wait_until_not_moving(self, timeout=None):
-        return self.wait_while("running", timeout)
+    def wait_while(self, state="running", timeout=math.inf):
+        return self.wait_until(state, timeout, wanted=False)
 
     def block(self, wanted):
-        if wanted:
-            self.wait_until("running", 100)
-            self.wait_until_not_moving()
+        return wanted and (self.wait_until("running", 100), self.wait_while())
 
+    wait_until_not_moving = partialmethod(wait_while, "running")
     position = property(lambda self: plain(self.p), lambda self, value: setattr(self, "p", float(int(value))))
     speed = property(lambda self: plain(self.v))
 
@@ -153,21 +129,21 @@ class Tank:
 
     def on(self, a, b):
         for wheel, speed in zip(self.pair, self.split(a, b), strict=True):
-            wheel.go("forever", speed)
+            wheel.run_forever(speed)
 
-    def on_for_seconds(self, a=0, b=0, seconds=0, block=True, **names):
-        for wheel, speed in zip(self.pair, self.split(*(names.values() or (a, b))), strict=True):
-            wheel.timed(speed, seconds)
+    def on_for_seconds(self, a, b, seconds, block=True):
+        for wheel, speed in zip(self.pair, self.split(a, b), strict=True):
+            wheel.run_timed(speed, seconds)
         self.block(block)
 
     def on_for_rotations(self, a, b, rotations, block=True):
         self.on_for_degrees(a, b, rotations * 360, block)
 
     def on_for_degrees(self, a, b, degrees, block=True):
-        left, right = pair = self.split(a, b)
-        fast, slow = (left, right) if abs(left) > abs(right) else (right, left)
-        for wheel, speed, first in zip(self.pair, pair, (fast is left, fast is right), strict=True):
-            turn = whole(degrees if first or abs(left) == abs(right) else abs(slow / fast) * degrees)
+        pair = self.split(a, b)
+        slow, fast = sorted(map(abs, pair))
+        for wheel, speed in zip(self.pair, pair, strict=True):
+            turn = whole(degrees if abs(speed) == fast else slow / fast * degrees)
             wheel.go_by(-turn if speed < 0 else turn, abs(speed))
         self.block(block)
 
@@ -218,8 +194,7 @@ class Lab:
     def __init__(self, program, x, y, heading_deg, weight=6, diameter=56, spacing=180):
         self.x, self.y, self.heading, self.turned = x, y, heading_deg / 180 * math.pi, 0.0
         self.step, self.rim, self.spacing = 5000 / weight / 30 if weight else 1e9, diameter * math.pi, spacing
-        self.tick, self.ms, self.order = 0, 0.0, 0
-        self.queue, self.rows, self.lines, self.threads = [], [], [], []
+        self.tick, self.ms, self.order, self.queue, self.rows, self.lines, self.threads = 0, 0.0, 0, [], [], [], []
         self.pair = Wheel(self), Wheel(self)
         self.ports = dict(zip(("outB", "outC"), self.pair, strict=True))
         exec(program, self.names())
@@ -229,8 +204,8 @@ class Lab:
             self.note()
 
     def note(self):
-        wheels = [x for w in self.pair for x in (w.p, w.v, int(w.state == "running"))]
-        self.rows.append([self.x, self.y, self.heading * 180 / math.pi, *wheels])
+        self.rows.append([self.x, self.y, self.heading * 180 / math.pi])
+        self.rows[-1] += [x for w in self.pair for x in (w.p, w.v, int(w.state == "running"))]
 
     def do_tick(self):
         if not self.tick:
@@ -241,10 +216,8 @@ class Lab:
         left, right = (wheel.roll(self.tick) / 360 * self.rim for wheel in self.pair)
         self.x += (left + right) / 2 * math.cos(self.heading)
         self.y += (left + right) / 2 * math.sin(self.heading)
-        self.heading += (right - left) / self.spacing
-        self.turned += (right - left) / self.spacing
-        if self.heading > 2 * math.pi:
-            self.heading -= 2 * math.pi
+        self.heading, self.turned = (x + (right - left) / self.spacing for x in (self.heading, self.turned))
+        self.heading -= 2 * math.pi if self.heading > 2 * math.pi else 0
         self.note()
 
     def wake_at(self, ms, gate=None):
@@ -272,7 +245,7 @@ class Lab:
         tank, steer = (lambda left, right, kind=kind: kind(self, left, right) for kind in (Tank, Steering))
         eye = part(reflected_light_intensity=(10, lambda: 255), color=(20, lambda: 6))
         native = {"RPS": 525, "RPM": 525 / 60, "DPS": 525 / 360, "NativeUnits": 1, "Percent": 10.5}
-        found = {f"Speed{name}": lambda number, dps=dps: Speed(number * dps) for name, dps in native.items()}
+        found = {f"Speed{name}": lambda number, dps=dps: Speed(dps=number * dps) for name, dps in native.items()}
         found |= {
             "MoveTank": tank, "MoveSteering": steer, "OUTPUT_B": "outB", "OUTPUT_C": "outC", "colorLeft": eye,
             "tank_drive": tank("outB", "outC"), "tank_turn": steer("outB", "outC"), "Motor": self.ports.get,
