@@ -2,20 +2,15 @@
 
 # mypy: ignore-errors
 
-import builtins
-import heapq
 import math
-import threading
 import types
 from functools import partialmethod
+
+from tests.core.tick_threads import Clock, plain
 
 
 def whole(number):
     return math.floor(number + 0.5)
-
-
-def plain(number):
-    return int(number) if number == int(number) else number
 
 
 Speed = type("Speed", (types.SimpleNamespace,), {})
@@ -159,49 +154,16 @@ class Steering(Tank):
         return (whole(v), whole(slow)) if steering >= 0 else (whole(slow), whole(v))
 
 
-class Thread:
-    def __init__(self, lab, target, args=()):
-        self.lab, self.done, self.joiners = lab, False, []
-        self.thread = threading.Thread(target=lambda gate: (gate.acquire(), target(*args), self.finish()), daemon=True)
-
-    def start(self):
-        self.thread._args = (self.lab.wake_at(self.lab.ms),)
-        self.lab.threads.append(self)
-        self.thread.start()
-
-    def finish(self):
-        self.done = True
-        for gate in self.joiners:
-            self.lab.wake_at(self.lab.ms, gate)
-        self.lab.hand_on()
-
-    def join(self):
-        if not self.done:
-            self.joiners.append(gate := closed_gate())
-            self.lab.hand_on()
-            gate.acquire()
-
-
-def closed_gate():
-    gate = threading.Lock()
-    gate.acquire()
-    return gate
-
-
-class Lab:
+class Lab(Clock):
     """Robot, clock and threads; `rows` and `lines` are as in the records."""
 
-    def __init__(self, program, x, y, heading_deg, weight=6, diameter=56, spacing=180):
+    def __init__(self, program, x, y, heading_deg):
+        super().__init__()
         self.x, self.y, self.heading, self.turned = x, y, heading_deg / 180 * math.pi, 0.0
-        self.step, self.rim, self.spacing = 5000 / weight / 30 if weight else 1e9, diameter * math.pi, spacing
-        self.tick, self.ms, self.order, self.queue, self.rows, self.lines, self.threads = 0, 0.0, 0, [], [], [], []
+        self.rows = []
         self.pair = Wheel(self), Wheel(self)
         self.ports = dict(zip(("outB", "outC"), self.pair, strict=True))
-        exec(program, self.names())
-        for thread in self.threads:
-            thread.join()
-        if not self.tick:
-            self.note()
+        self.carry_out(program, self.names())
 
     def note(self):
         self.rows.append([self.x, self.y, self.heading * 180 / math.pi])
@@ -212,30 +174,13 @@ class Lab:
             self.note()
         self.tick += 1
         for wheel in self.pair:
-            wheel.ramp(self.step)
-        left, right = (wheel.roll(self.tick) / 360 * self.rim for wheel in self.pair)
+            wheel.ramp(5000 / 6 / 30)
+        left, right = (wheel.roll(self.tick) / 360 * (56 * math.pi) for wheel in self.pair)
         self.x += (left + right) / 2 * math.cos(self.heading)
         self.y += (left + right) / 2 * math.sin(self.heading)
-        self.heading, self.turned = (x + (right - left) / self.spacing for x in (self.heading, self.turned))
+        self.heading, self.turned = (x + (right - left) / 180 for x in (self.heading, self.turned))
         self.heading -= 2 * math.pi if self.heading > 2 * math.pi else 0
         self.note()
-
-    def wake_at(self, ms, gate=None):
-        gate, self.order = gate or closed_gate(), self.order + 1
-        heapq.heappush(self.queue, (ms, self.order, gate))
-        return gate
-
-    def sleep_ms(self, ms, value=None):
-        gate = self.wake_at(self.ms + ms)
-        self.hand_on()
-        gate.acquire()
-        return value() if value else None
-
-    def hand_on(self):
-        self.ms, _, gate = heapq.heappop(self.queue)
-        while 1000 * (self.tick + 1) / 30 <= self.ms:
-            self.do_tick()
-        gate.release()
 
     def names(self):
         def part(**reads):
@@ -246,14 +191,10 @@ class Lab:
         eye = part(reflected_light_intensity=(10, lambda: 255), color=(20, lambda: 6))
         native = {"RPS": 525, "RPM": 525 / 60, "DPS": 525 / 360, "NativeUnits": 1, "Percent": 10.5}
         found = {f"Speed{name}": lambda number, dps=dps: Speed(dps=number * dps) for name, dps in native.items()}
-        found |= {
+        return found | {
             "MoveTank": tank, "MoveSteering": steer, "OUTPUT_B": "outB", "OUTPUT_C": "outC", "colorLeft": eye,
             "tank_drive": tank("outB", "outC"), "tank_turn": steer("outB", "outC"), "Motor": self.ports.get,
-            "sleep": lambda seconds: self.sleep_ms(1000 * seconds), "LargeMotor": self.ports.get,
-            "get_clock": lambda: plain(self.tick / 30), "Thread": lambda **given: Thread(self, **given),
-            "print": lambda *parts: self.lines.append((self.tick, self.ms, " ".join(map(str, parts)))),
+            "LargeMotor": self.ports.get,
             "ultrasonic": part(distance_centimeters=(10, lambda: 255.0)),
             "gyro": part(angle=(20, lambda: round(-math.degrees(self.turned)))),
         }  # fmt: skip
-        module = types.SimpleNamespace(**found)
-        return {**found, "__builtins__": {**vars(builtins), "__import__": lambda *_: module}}
