@@ -68,6 +68,8 @@ class Program:
     """Folders besides its own in which it finds modules."""
     working_directory: str = ""
     """Where it starts, and where relative paths of it begin; empty is here, with the PYTHONPATH of this process."""
+    module_folder: str = ""
+    """Folder in which a program without a file has its modules, such as that of the notebook whose cell it is."""
     modules_from: Path | None = None
     """Folder of a run from which it takes the modules of its own that were imported there; None takes all as they are
     now."""
@@ -112,8 +114,9 @@ def program_again(run: StoredRun | RunHandle) -> Program:
     """Return the program of a run as it was, to be run again: with its arguments, its folder and its own modules."""
     was = run.program
     return Program(
-        was.name, was.text, was.prelude, was.path, was.arguments, was.python_path, was.working_directory, run.folder
-    )
+        was.name, was.text, was.prelude, was.path, was.arguments, was.python_path, was.working_directory,
+        was.module_folder, run.folder,
+    )  # fmt: skip
 
 
 class RunHandle:

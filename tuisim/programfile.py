@@ -63,6 +63,8 @@ class ProgramSource:
     """none, imports or preloaded."""
     switches: Mapping[str, Any] = field(default_factory=dict)
     """Switches of the magic line, by field of `Settings`; files in them are found from the program's folder."""
+    module_folder: str = ""
+    """Folder of the notebook that it is a cell of; empty for a program with a file of its own."""
 
 
 def _head(lines: list[str]) -> Iterator[tuple[int, str]]:

@@ -127,8 +127,9 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     """Run a program to its end, in this process."""
     config = RunConfig(
         folder=Path(), spec=spec, field=files, name="program.py", path="", text=text, prelude=prelude, arguments=(),
-        python_path=(), live=False, speed=0.0, start_paused=False, time_limit_s=60.0, stall_limit_s=0.0, answers=(),
-        asks_user=False, time_waits=False, replies=False, actions=(), breaks=(), trace_from_tick=None, hold_at=None,
+        python_path=(), module_folder="", live=False, speed=0.0, start_paused=False, time_limit_s=60.0,
+        stall_limit_s=0.0, answers=(), asks_user=False, time_waits=False, replies=False, actions=(), breaks=(),
+        trace_from_tick=None, hold_at=None,
     )  # fmt: skip
     sim, lines = Simulation(spec, MemorySink()), Lines()
     output = Output(lines)  # type: ignore[arg-type]

@@ -58,6 +58,25 @@ def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
     assert "line 2" in done.stderr
 
 
+BESIDE = [("code", "%%sim_magic\nimport drive_lib\nfrom pathlib import Path\nprint(drive_lib.SPEED, Path.cwd().name)")]
+"""A cell that takes a module which lies beside its notebook."""
+
+
+@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
+def test_a_cell_finds_modules_beside_its_notebook(
+    profile: str, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, elsewhere = tmp_path / "lessons", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.mkdir()
+    write(folder / "l.ipynb", BESIDE)
+    (folder / "drive_lib.py").write_text("SPEED = 30\n")
+    monkeypatch.chdir(elsewhere)
+    done = here("run", "../lessons/l.ipynb", "--all", "--profile", profile)
+    starts_in = "lessons" if profile == "ev3" else "elsewhere"
+    assert (done.returncode, done.stdout.splitlines()[0]) == (0, f"30 {starts_in}"), done.stderr
+
+
 VARIABLES = [
     ("code", "x = 300"),
     ("code", "%%sim_magic_preloaded -b Grey_bands -x $_x\nprint('never')\n"),

@@ -6,20 +6,21 @@ the defaults.
 
 from __future__ import annotations
 
+import os
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tuisim.commands.echo import echo_error
-from tuisim.commands.notebooks import known_programs
+from tuisim.commands.notebooks import NotRun, check_folder, known_programs, known_programs_of
 from tuisim.config import WorldFile, build_run_spec, load_world, means_world
 from tuisim.config.robots import choose_robot
 from tuisim.core.spec import RunSpec
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError
-from tuisim.host import Program
+from tuisim.host import Program, field_files
 from tuisim.notebook.reading import is_notebook
 from tuisim.programfile import ProgramSource, read_program
 from tuisim.switches import ARGUMENTS_FOLLOW, RobotChoice, Settings, given, settings_of
@@ -36,6 +37,8 @@ class Prepared:
     settings: Settings
     spec: RunSpec
     world: WorldFile | None = None
+    label: str = ""
+    """What it is called in a table; empty for the program's name."""
 
 
 def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
@@ -55,6 +58,8 @@ def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
         raise ConfigError("arguments go to one program", f"got {len(programs)}", key=ARGUMENTS_FOLLOW)
     if not programs and not any(map(means_world, words)) and not arguments.world:
         raise ConfigError("arguments need a program", "tuisim PROGRAM -- ARGUMENTS", key=ARGUMENTS_FOLLOW)
+    if programs and os.path.isdir(programs[0]):
+        raise ConfigError(f"{programs[0]} is a folder, whose notebooks take no arguments", key=ARGUMENTS_FOLLOW)
     if programs and is_notebook(programs[0]):
         raise ConfigError(f"{programs[0]} is a notebook, whose cells take no arguments", key=ARGUMENTS_FOLLOW)
 
@@ -127,6 +132,7 @@ def _program(file: ProgramSource, settings: Settings) -> Program:
         prelude=settings.preload or file.prelude,
         path=file.path,
         arguments=settings.arguments,
+        module_folder=file.module_folder,
     )
 
 
@@ -168,12 +174,17 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tupl
         raise ConfigError(f"a stored run has a program and a world of its own, not {what}", "name one", key="--run")
     stored = RunStore().load_run(Path(run) if "/" in run else run)
     program = stored.program
-    opened = Program(program.name, program.text, program.prelude, program.path, program.arguments)
+    opened = Program(
+        program.name, program.text, program.prelude, program.path, program.arguments,
+        module_folder=program.module_folder,
+    )  # fmt: skip
     return stored, Prepared(opened, settings_of(chosen), stored.spec)
 
 
-def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared]:
+def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared | NotRun]:
     """Read programs to run one after another, all in the world that is named, if one is.
+
+    What is wrong in one notebook of a folder does not keep the others from running.
 
     Args:
         words: Programs and at most one world, as the user named them.
@@ -189,10 +200,41 @@ def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared]:
     if not programs:
         where = f"{world.path} names no program" if world else "no program is named"
         raise ConfigError(where, "tuisim run PROGRAM…")
-    prepared: list[Prepared] = []
+    prepared: list[Prepared | NotRun] = []
     for word in programs:
-        if is_notebook(word):
-            prepared += [_of_cell(program.source, world, arguments) for program in known_programs(word)]
+        if os.path.isdir(word):
+            prepared += _of_folder(word, world, arguments)
+        elif is_notebook(word):
+            prepared += [_checked(_of_cell(program.source, world, arguments)) for program in known_programs(word)]
         else:
-            prepared.append(_prepared(word, world, arguments))
+            prepared.append(_checked(_prepared(word, world, arguments)))
     return prepared
+
+
+def _of_folder(word: str, world: WorldFile | None, arguments: Namespace) -> list[Prepared | NotRun]:
+    # What is wrong with the command line is not to be told for each cell.
+    build_run_spec(settings_of(world.settings if world else {}, given(arguments)))
+    found: list[Prepared | NotRun] = []
+    for path in check_folder(word, run_all=arguments.all):
+        label = os.path.relpath(path, word)
+        try:
+            programs = known_programs_of(path)
+        except ConfigError as error:
+            found.append(NotRun(label, error))
+            continue
+        for program in programs:
+            cell = f"{label}#{program.number}"
+            try:
+                found.append(replace(_checked(_of_source(program.source, world, arguments)), label=cell))
+            except ConfigError as error:
+                found.append(NotRun(cell, error))
+    if not found:
+        raise ConfigError("has no notebook with a program", "program cells begin with %%sim_magic", file=word)
+    return found
+
+
+def _checked(one: Prepared) -> Prepared:
+    """Read the picture of a mat of the user's own: a damaged one shows only then. The catalogue's are whole."""
+    if os.path.isabs(one.spec.world.background):
+        field_files(one.spec)
+    return one

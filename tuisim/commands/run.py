@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 from collections.abc import Callable, Sequence
@@ -11,7 +10,7 @@ from tuisim.commands import outcome
 from tuisim.commands.breaks import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
 from tuisim.commands.echo import echo_error
 from tuisim.commands.follow import Follower, Interrupts
-from tuisim.commands.notebooks import print_list, print_results, to_list
+from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.prepare import Prepared, prepare_runs
 from tuisim.commands.press import parse_press, press_actions
 from tuisim.commands.progress import Progress, is_watched, tell
@@ -20,7 +19,7 @@ from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.datalog.runfile import StoredRun
 from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError, ExportError, LogError, TuisimError
-from tuisim.host import RunHandle, RunOptions, field_files, start_run
+from tuisim.host import RunHandle, RunOptions, start_run
 from tuisim.switches import SwitchParser, number
 
 MAX_TIME_LIMIT_S = 1e6
@@ -46,7 +45,7 @@ def add_arguments(parser: SwitchParser) -> None:
     add("--press", action="append", default=[], metavar="BUTTON@S", type=parse_press,
         help="hold a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated")  # fmt: skip
     add_break_arguments(parser)
-    add("--all", action="store_true", help="all program cells of a notebook, and a table of what became of them")
+    add("--all", action="store_true", help="all program cells of a notebook, or of a folder's notebooks; then a table")
     add("--json", action="store_true", help="one JSON object a program on stdout; what programs print goes to stderr")
     parser.add_switches()
 
@@ -65,22 +64,18 @@ def execute(arguments: Namespace) -> int:
         return 0
     # All input is checked before the first program runs.
     prepared = prepare_runs(arguments.programs, arguments)
-    for one in prepared:
-        # A damaged picture shows only when it is read; the catalogue's are whole, and are read when they are needed.
-        if os.path.isabs(one.spec.world.background):
-            field_files(one.spec)
-    check_breaks(arguments.breaks, arguments.watches, prepared)
+    check_breaks(arguments.breaks, arguments.watches, [one for one in prepared if isinstance(one, Prepared)])
     telemetry = arguments.telemetry
     check_targets(target for target in (*arguments.export, telemetry) if target is not None)
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
     store = RunStore()
     with Interrupts() as interrupts, Progress(""):
-        code, done = _run_all(prepared, arguments, store, interrupts)
-        if done:
+        code, results = _run_all(prepared, arguments, store, interrupts)
+        if done := [run for _, run in results if run is not None]:
             _export(done, arguments)
         if arguments.all and not arguments.json:
-            print_results(done)
+            print_results(results)
     return max(code, interrupts.exit_code)
 
 
@@ -112,23 +107,29 @@ def _check_only_listed(arguments: Namespace, count: int) -> None:
 
 
 def _run_all(
-    prepared: Sequence[Prepared], arguments: Namespace, store: RunStore, interrupts: Interrupts
-) -> tuple[int, list[StoredRun]]:
-    """Run one after another until all are done or the user interrupts; return exit code and runs."""
-    done: list[StoredRun] = []
+    prepared: Sequence[Prepared | NotRun], arguments: Namespace, store: RunStore, interrupts: Interrupts
+) -> tuple[int, list[tuple[str, StoredRun | None]]]:
+    """Run one after another until all are done or the user interrupts; return exit code, and runs by what they are."""
+    results: list[tuple[str, StoredRun | None]] = []
     code = 0
     for at, one in enumerate(prepared):
+        if isinstance(one, NotRun):
+            one.report(as_json=arguments.json)
+            results.append((one.label, None))
+            code = max(code, outcome.EXIT_BAD_OUTPUT)
+            continue
         how_far = _how_far(at, len(prepared))
         exit_code, handle = _run_one(one, arguments, store, interrupts, how_far)
         if handle.folder.is_dir():
-            done.append(handle.stored())
-            outcome.report(done[-1], exit_code, as_json=arguments.json)
+            run = handle.stored()
+            results.append((one.label or run.program.name, run))
+            outcome.report(run, exit_code, as_json=arguments.json)
         else:
             echo_error(f"tuisim: {handle.program.name}: nothing of run {handle.number} is kept: {handle.unstored}")
         code = max(code, exit_code)
         if exit_code > outcome.SIGNALLED:
             break
-    return code, done
+    return code, results
 
 
 def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:

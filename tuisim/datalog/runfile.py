@@ -55,6 +55,8 @@ class ProgramLike(Protocol):
     def python_path(self) -> tuple[str, ...]: ...
     @property
     def working_directory(self) -> str: ...
+    @property
+    def module_folder(self) -> str: ...
 
 
 class EndLike(Protocol):
@@ -93,6 +95,8 @@ class StoredProgram:
     """Folders besides its own in which it found modules: the user's PYTHONPATH."""
     working_directory: str = ""
     """Where the user was; empty if that is not known."""
+    module_folder: str = ""
+    """Folder of the notebook that it is a cell of, in which its modules are; empty for a program of its own."""
 
     @property
     def sha256(self) -> str:
@@ -317,7 +321,7 @@ def read_run(folder: Path) -> StoredRun:
         }
         # Runs that were stored before say nothing of these.
         program |= {key: tuple(data["program"].get(key, ())) for key in ("arguments", "python_path")}
-        program["working_directory"] = data["program"].get("working_directory", "")
+        program |= {key: data["program"].get(key, "") for key in ("working_directory", "module_folder")}
         spec = from_plain(data["spec"])
         if spec.profile.tick_hz < 1:
             raise ValueError(f"a tick rate of {spec.profile.tick_hz}")

@@ -124,6 +124,7 @@ class RunStore:
             program.arguments,
             program.python_path,
             program.working_directory,
+            program.module_folder,
         )
         info = _info_of(run_id, created, stored, spec)
         try:
@@ -145,6 +146,7 @@ class RunStore:
                         "arguments": list(stored.arguments),
                         "python_path": list(stored.python_path),
                         "working_directory": stored.working_directory,
+                        "module_folder": stored.module_folder,
                     },
                     "spec": to_plain(spec),
                     "field": None if field is None else dict(field),

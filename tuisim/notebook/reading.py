@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -22,6 +23,7 @@ _MAGIC = re.compile(r"%(?P<cell>%)?(?P<name>sim_magic\w*)(?P<words>.*)")
 _VARIABLE = re.compile(r"(?<!\$)\$[A-Za-z_][\w.]*|\{[^{}]+\}")
 """What IPython replaces in a magic line by the value that it has in the notebook."""
 
+_NUMBERS = re.compile(r"([0-9]+)|([^0-9]+)")
 _HEADING = re.compile(r"#+\s+(.*\S)")
 
 
@@ -54,6 +56,23 @@ def is_notebook(word: str) -> bool:
     return word.partition("#")[0].endswith(SUFFIX)
 
 
+def notebooks_in(folder: Path) -> list[Path]:
+    """Return the notebooks of a folder and the folders in it, in the order of their names: 2 comes before 10.
+
+    Hidden folders are left out: Jupyter keeps former versions in them.
+    """
+    found: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        found += [Path(place, name) for name in files if name.endswith(SUFFIX) and not name.startswith(".")]
+    return sorted(found, key=lambda path: [_natural(part) for part in path.parts])
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """What sorts names by the numbers in them."""
+    return [(int(digits), "") if digits else (-1, text.lower()) for digits, text in _NUMBERS.findall(name)]
+
+
 def _cells(path: Path) -> Iterator[tuple[str, str]]:
     """Yield (cell type, text)."""
     shown = str(path)
@@ -84,6 +103,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
     """
     found: list[NotebookProgram] = []
     title, lasting, notes = "", dict[str, Any](), list[str]()
+    folder = os.path.dirname(os.path.abspath(path))
     for place, (kind, text) in enumerate(_cells(path), 1):
         if kind == "markdown":
             headings = [match[1] for line in source_lines(text) if (match := _HEADING.match(line))]
@@ -100,7 +120,8 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
                 at = text.index("%%")
                 body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
                 prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
-                source = ProgramSource(f"{path.name}#{number}", "", body, prelude, {**lasting, **said})
+                switches = {**lasting, **said}
+                source = ProgramSource(f"{path.name}#{number}", "", body, prelude, switches, folder)
                 found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()
             elif words.unknown:

@@ -122,7 +122,7 @@ class Child:
         interrupts = Interrupts(session, frozenset({turn.__code__}))
         baton = Baton(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
         patch_time(session)
-        patch_datetime(session, session.program_file)
+        patch_datetime(session, self._config.own_folder)
         patch_process_times(session)
         patch_urandom(self._config.spec.seed)
         waits = FileWaits(session)

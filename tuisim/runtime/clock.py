@@ -78,14 +78,13 @@ def _patch_calendar(wall: Callable[[], float]) -> None:
     replace(time, "strftime", lambda form, *when: strftime(form, *when or (localtime(wall()),)), (1, 2))
 
 
-def patch_datetime(session: Session, program_file: str) -> None:
+def patch_datetime(session: Session, folder: str) -> None:
     """Give the program, its own modules and the library a `datetime` that tells simulated time.
 
     Everybody else keeps the real module: compiled ones, such as those of pandas, build on
     the real classes and crash on others.
     """
     real_import = builtins.__import__
-    folder = os.path.dirname(real.absolute(program_file))
     shadow: list[types.ModuleType] = []
 
     def wants_simulated(importer: Mapping[str, Any]) -> bool:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.core.spec import RunSpec, from_plain
 from tuisim.fields import FieldFiles
 from tuisim.protocol import ScriptedAction
+from tuisim.runtime import real
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +27,7 @@ class RunConfig:
     prelude: str
     arguments: tuple[str, ...]
     python_path: tuple[str, ...]
+    module_folder: str
     live: bool
     speed: float
     start_paused: bool
@@ -38,6 +41,11 @@ class RunConfig:
     breaks: tuple[str, ...]
     trace_from_tick: int | None
     hold_at: tuple[int, int] | None
+
+    @property
+    def own_folder(self) -> str:
+        """Where the program's own modules are: where its file is, or what it says, or where it was started."""
+        return self.module_folder or os.path.dirname(real.absolute(self.path or self.name))
 
     @property
     def debugged(self) -> bool:
@@ -63,6 +71,7 @@ def read_config(folder: Path) -> RunConfig:
         prelude=program["prelude"],
         arguments=tuple(program["arguments"]),
         python_path=tuple(program["python_path"]),
+        module_folder=program["module_folder"],
         live=options["live"],
         speed=options["speed"],
         start_paused=options["start_paused"],

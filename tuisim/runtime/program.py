@@ -20,7 +20,6 @@ from tuisim.core.simulation import NS_PER_S
 from tuisim.datalog.records import INPUT, STDERR
 from tuisim.errors import LogError
 from tuisim.protocol import NO_ANSWER, Answer, InputWanted
-from tuisim.runtime import real
 from tuisim.runtime.baton import Baton
 from tuisim.runtime.config import RunConfig
 from tuisim.runtime.frames import patch_faulthandler
@@ -90,9 +89,11 @@ class ProgramRunner:
     ) -> None:
         self._config, self._session, self._output, self._baton = config, session, output, baton
         self._leave = leave
-        self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and bool(config.path)
+        has_own_folder = bool(config.path or config.module_folder)
+        self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and has_own_folder
         # A relative path would mean another file from there.
-        self._file = real.absolute(config.path) if self._starts_in_own_folder else session.program_file
+        in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
+        self._file = in_own_folder if self._starts_in_own_folder else session.program_file
         self._answers = list(config.answers)
         self.stdout, self.stderr = LineStream(output), LineStream(output, STDERR)
         self._module = types.ModuleType("__main__")
@@ -197,7 +198,7 @@ class ProgramRunner:
                 module.__dict__[part] = MissingPart(part, error)
         self._session.free -= 1
         # Not before: a program called logging.py is not what the library means by `import logging`.
-        folder = os.path.dirname(real.absolute(self._session.program_file))
+        folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.python_path]
         find_modules_for(self._config.folder)
         if self._starts_in_own_folder:

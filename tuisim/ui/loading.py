@@ -309,8 +309,9 @@ class Loading:
         """Take another text of the program that is open, with what its magic line says anew."""
         program = self._lab.bridge.program
         as_said = new.prelude if new.prelude != self._prelude_said or program is None else program.prelude
+        folder = program.module_folder if program and not new.path else ""
         before = self._magic_said
-        self._take_said(_differences(before, said), replace(new, prelude=as_said))
+        self._take_said(_differences(before, said), replace(new, prelude=as_said, module_folder=folder))
         self._note_program(new, said)
         self._show_as_said(before, said)
 
