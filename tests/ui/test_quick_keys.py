@@ -11,7 +11,7 @@ import pytest
 from textual import events
 from textual.app import App
 from textual.screen import Screen
-from textual.widgets import Input, OptionList
+from textual.widgets import Input, OptionList, Static
 
 import tuisim.ui
 from tests.ui.app_help import LOGS, ready, screen_text, settings, until
@@ -23,7 +23,7 @@ from tuisim.ui.analyser.subject import Wanted
 from tuisim.ui.app import Lab
 from tuisim.ui.palette import Palette
 from tuisim.ui.screens.choosing import Chooser
-from tuisim.ui.screens.dialog import ClosesOnce
+from tuisim.ui.screens.dialog import ClosesOnce, Dialog
 from tuisim.ui.screens.help import HelpScreen
 from tuisim.ui.screens.question import Question
 
@@ -143,6 +143,33 @@ async def test_a_dialog_gives_its_result_once() -> None:
         await until(pilot, lambda: len(app.screen_stack) == 1)
         await pilot.pause()
     assert given == ["y"]
+
+
+async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        text = Static("gone", id="gone")
+        await app.push_screen(HelpScreen())
+        await app.screen.mount(text)
+        await until(pilot, lambda: text.region.area > 0)
+        x, y = text.region.offset
+        with app.batch_update():
+            # No layout comes in between.
+            await text.remove()
+            await app.on_event(events.MouseDown(None, x, y, 0, 0, 1, False, False, False, screen_x=x, screen_y=y))
+        await pilot.press("escape")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+
+
+@pytest.mark.parametrize("key", ["o", "question_mark", "ctrl+s"])
+async def test_no_palette_opens_above_a_dialog(key: str) -> None:
+    async with Lab(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press(key)
+        await until(pilot, lambda: isinstance(app.screen, Dialog) and app.screen.is_ready)
+        await pilot.press("ctrl+p")
+        await pilot.pause()
+        assert len(app.screen_stack) == 2
 
 
 @pytest.mark.parametrize("above", [HelpScreen, Palette])

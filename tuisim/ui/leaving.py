@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
 from rich.console import Console, ConsoleRenderable, RichCast
 from textual import events, on
 from textual._compositor import CompositorUpdate
 from textual.app import App
+from textual.command import Provider
 from textual.css.query import NoMatches
 from textual.driver import Driver
 from textual.filter import LineFilter
@@ -23,7 +24,7 @@ from tuisim.ui.driver import TerminalDriver
 from tuisim.ui.framebuffer import FrameBuffer
 from tuisim.ui.harmless import Harmless
 from tuisim.ui.minimum import TooSmall, is_too_small, laid_out
-from tuisim.ui.screens.dialog import ClosesOnce
+from tuisim.ui.screens.dialog import ClosesOnce, Dialog
 
 _HARMLESS = Harmless()
 
@@ -36,6 +37,9 @@ def is_leaving(app: App[Any]) -> bool:
 
 class TerminalApp(App[None]):
     """An app that gives the terminal back in order, also when it is stopped or ended from outside."""
+
+    # Its palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
+    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = set()
 
     def __init__(self) -> None:
         super().__init__(driver_class=TerminalDriver)
@@ -63,8 +67,18 @@ class TerminalApp(App[None]):
         await super().on_event(event)
 
     def _is_deaf_to(self, event: events.Event) -> bool:
-        """Whether nobody is there to hear the user, or the user cannot see what is pointed at."""
-        return is_leaving(self) or (self.too_small is not None and isinstance(event, events.MouseEvent))
+        """Whether nobody is there to hear the user, or what is pointed at cannot be seen or has just been removed."""
+        if is_leaving(self):
+            return True
+        if not isinstance(event, events.MouseEvent):
+            return False
+        if self.too_small is not None:
+            return True
+        if not isinstance(event, events.MouseDown):
+            return False
+        # Until the next layout a screen still finds a removed widget, and fails when a selection is to begin there.
+        widget, _ = self.screen.get_widget_and_offset_at(event.x, event.y)
+        return widget is not None and not widget.is_attached
 
     @on(ClosesOnce.Changed)
     async def give_waiting_keys(self) -> None:
@@ -143,10 +157,10 @@ class TerminalApp(App[None]):
         """Be told that the app is about to stop."""
 
     def action_command_palette(self) -> None:
-        """Open the command palette, unless it is open."""
+        """Open the command palette, unless it is open, or a dialog is: its commands would open dialogs above that."""
         from tuisim.ui.palette import Palette
 
-        if self.use_command_palette and not Palette.is_open(cast(App[object], self)) and not is_leaving(self):
+        if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
             self.push_screen(Palette())
 
     def _handle_exception(self, error: Exception) -> None:
