@@ -24,7 +24,7 @@ OWN_START = Pose(200.0, 800.0, 0.0)
 """Where a robot starts on an image of the user's own."""
 _PACKAGE = Path(__file__).resolve().parent
 _FOLDERS = ("backgrounds", "programs")
-_KEYS = {"title", "start", "obstacles", "sensor_x_mm"}
+_KEYS = {"title", "original", "shipped", "start", "obstacles", "sensor_x_mm"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,14 @@ class Background:
     """What stands on the mat by itself."""
     sensor_x_mm: Mapping[str, float] = field(default_factory=dict)
     """Colour sensors that sit elsewhere while this mat is used, by name."""
+    original: str = ""
+    """File name of its picture in the browser simulator of the course, empty if it had none."""
+    shipped: bool = True
+    """Whether there is a picture of ours."""
+    is_own: bool = False
+    """Whether the picture is the user's, in a folder of mats."""
+    fit: str | None = None
+    """How the picture becomes a mat unless the user says it, one of `core.spec.BACKGROUND_FITS`; None is the first."""
 
 
 class ProgramFile(NamedTuple):
@@ -138,6 +146,11 @@ def _background(name: str, entry: object, file: Path) -> Background:
     if not isinstance(title, str) or not title:
         raise BackgroundError(f"must be a line of text, got {title!r}", file=str(file), key=f"{name}.title")
     start = _numbers(entry.get("start"), ("x_mm", "y_mm", "heading_deg"), f"{name}.start", file)
+    original, shipped = entry.get("original", ""), entry.get("shipped", True)
+    if not isinstance(original, str):
+        raise BackgroundError(f"must be a file name, got {original!r}", file=str(file), key=f"{name}.original")
+    if not isinstance(shipped, bool):
+        raise BackgroundError(f"must be true or false, got {shipped!r}", file=str(file), key=f"{name}.shipped")
     boxes, sensors = entry.get("obstacles", []), entry.get("sensor_x_mm", {})
     if not isinstance(boxes, list):
         raise BackgroundError(f"must be a list, got {boxes!r}", file=str(file), key=f"{name}.obstacles")
@@ -150,11 +163,22 @@ def _background(name: str, entry: object, file: Path) -> Background:
         image=file.parent / f"{name}.png",
         obstacles=tuple(_obstacle(box, f"{name}.obstacles", file) for box in boxes),
         sensor_x_mm={sensor: _number(x, f"{name}.sensor_x_mm.{sensor}", file) for sensor, x in sensors.items()},
+        original=original,
+        shipped=shipped,
     )
 
 
 def backgrounds() -> Mapping[str, Background]:
-    """Return every mat by name, in the order of the catalogue.
+    """Return every mat that has a picture of ours by name, in the order of the catalogue.
+
+    Raises:
+        As `catalogue`.
+    """
+    return {name: mat for name, mat in catalogue().items() if mat.shipped}
+
+
+def catalogue() -> Mapping[str, Background]:
+    """Return every mat of the catalogue by name, in its order.
 
     Raises:
         ConfigError: there is no folder of mats.
@@ -173,7 +197,7 @@ def backgrounds() -> Mapping[str, Background]:
 
 
 def background(name: str) -> Background:
-    """Return one mat: of the catalogue, or an image of the user's own.
+    """Return one mat as a specification calls it: of the catalogue, or an image of the user's own.
 
     What has a folder in it or a suffix is the path of an image, and so is the name of a file
     here; a name of the catalogue goes first. An own mat is called after its file, without
@@ -186,11 +210,11 @@ def background(name: str) -> Background:
         BackgroundError: there is none of that name, or its picture is missing.
         ConfigError: there is no folder of mats.
     """
-    known = backgrounds()
+    known = catalogue()
     if name not in known:
         if is_image_path(name):
             return own_background(Path(name))
-        raise BackgroundError(f"no such mat {name!r}", _names_hint(name, list(known)))
+        raise BackgroundError(f"no such mat {name!r}", names_hint(name, list(known)))
     found = known[name]
     if not found.image.is_file():
         raise BackgroundError(f"the mat {name!r} has no picture", file=str(found.image))
@@ -216,7 +240,8 @@ def own_background(path: Path) -> Background:
     return Background(image.stem, f"The image {image.name}", OWN_START, image)
 
 
-def _names_hint(name: str, known: list[str]) -> str:
+def names_hint(name: str, known: list[str]) -> str:
+    """Return the hint for a wrong name of a mat: the nearest one, and all that there are."""
     from difflib import get_close_matches
 
     by_lower = {each.lower(): each for each in known}

@@ -7,6 +7,7 @@ is turned as its EXIF data say and put on white. How it meets the field is one o
 stretch   fills the field, the proportions give way
 fit       as large as the field allows, in the middle, white around it
 centre    one pixel is one mm, in the middle; what is too large is cut off
+corner    one pixel is one mm, from the upper left corner, as in the browser simulator of the course
 """
 
 from __future__ import annotations
@@ -92,6 +93,16 @@ def fits_as_it_is(content: bytes) -> bool:
     """
     size = tuple(int.from_bytes(content[at : at + 4], "big") for at in (16, 20))
     return content.startswith(_PNG) and size == _FIELD and b"eXIf" not in content
+
+
+def size_of(content: bytes) -> tuple[int, int]:
+    """Return width and height of a picture that can be decoded, in pixels."""
+    import io
+
+    from PIL import Image
+
+    with Image.open(io.BytesIO(content)) as picture:
+        return picture.size
 
 
 def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
@@ -190,6 +201,7 @@ def _laid(picture: Image, fit: str) -> Image:
         width, height = (max(1, round(own * scale)) for own in picture.size)
         picture = picture.resize((width, height), Image.Resampling.LANCZOS)
     field = Image.new("RGB", _FIELD, "white")
-    left, top = ((side - own) // 2 for side, own in zip(_FIELD, picture.size, strict=True))
+    corner = fit == "corner"
+    left, top = (0 if corner else (side - own) // 2 for side, own in zip(_FIELD, picture.size, strict=True))
     field.paste(picture, (left, top))
     return field

@@ -92,6 +92,8 @@ def beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
         switches: By field of `Settings`.
     """
     found = dict(switches)
+    if "mats" in found:
+        found["mats"] = str(folder / os.path.expanduser(found["mats"]))
     for field_name in _FILE_FIELDS & found.keys():
         word = found[field_name]
         if os.sep in word or Path(word).suffix:

@@ -50,7 +50,9 @@ class Settings:
 
     background: str = "Empty_Map"
     """A mat's name, or an image file."""
-    background_fit: str = BACKGROUND_FITS[0]
+    mats: str | None = None
+    """A folder with mats of the user's own."""
+    background_fit: str | None = None
     robot: str | RobotChoice = "Default_Robot"
     """Its name or file, or itself."""
     obstacles: str | tuple[Obstacle, ...] | None = None
@@ -197,6 +199,7 @@ WORLD, RUN, APP, PANEL = "world", "run", "app", "panels (app)"
 
 SWITCHES: tuple[Switch, ...] = (
     Switch(WORLD, ("-b", "--background"), "background", "mat, see `tuisim backgrounds`, or image file", "MAT", _name),
+    Switch(WORLD, ("--mats",), "mats", "folder with pictures of mats, named as in `-b`", "FOLDER", _name),
     Switch(
         WORLD,
         ("--background-fit",),

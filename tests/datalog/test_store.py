@@ -19,8 +19,9 @@ from tuisim.datalog.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.datalog.lock import hold, is_held
 from tuisim.datalog.records import ACTIONS_FILE, OUTPUT_FILE
 from tuisim.datalog.runfile import INTERRUPTED, RUN_FILE, RUNNING, Action, RunEnd, StoredRun, noise_at
-from tuisim.datalog.store import RunStore, home_folder, load_run
+from tuisim.datalog.store import RunStore, load_run
 from tuisim.errors import LogError
+from tuisim.home import home_folder
 
 FINISHED = RunEnd("finished", 100, 1_000_000_000)
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -94,6 +96,15 @@ def given_ready(cell: Cell, words: str) -> bool:
     return "import MoveTank" in str(cell(f"%sim_magic -W {words}").result)
 
 
+def own_mat(cell: Cell, words: str) -> str:
+    """The file of the mat `Loop`, with a picture of one's own in a folder `pics`."""
+    folder = Path(os.environ["TUISIM_HOME"], "pics")
+    folder.mkdir()
+    Image.new("RGB", (30, 20)).save(folder / "_loop.png")
+    done = cell(f"%sim_magic -W -b Loop {words.replace('pics', str(folder))}\nroboSim.spec.world.background")
+    return Path(done.result).name
+
+
 @dataclass(frozen=True, slots=True)
 class Case:
     """One switch."""
@@ -109,6 +120,7 @@ PINK, RAY = (255, 105, 180), (230, 120, 0)
 
 CASES = [
     Case(("-b", "--background"), "Loop", spec("world.background"), "Loop"),
+    Case(("--mats",), "pics", own_mat, "_loop.png"),
     Case(("--background-fit",), "centre", spec("world.background_fit"), "centre"),
     Case(("-r", "--robot", "--robotSetup"), "Small_Robot", spec("robot.name"), "Small_Robot"),
     Case(("-o", "--obstacles"), "Square_posts", spec("world.obstacles.__len__()"), 4),

@@ -10,8 +10,10 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
 from tests.ui.app_help import LOGS, notices, ready, settings, until
+from tuisim.switches import Settings
 from tuisim.ui.app import Lab
 from tuisim.ui.cellview import PixelView
+from tuisim.ui.session import AppSettings
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
@@ -67,3 +69,49 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
         await until(pilot, lambda: app.bridge.plan == before)
         assert app.loading.mat_is_ready
         assert app.bridge.snapshot().colors["left"].rgb == (255, 255, 255)
+
+
+def with_mats(folder: Path | None) -> AppSettings:
+    return settings(LOGS, settings=Settings(background="Grey_bands", mats=None if folder is None else str(folder)))
+
+
+async def choose(pilot: Pilot[None], name: str) -> None:
+    """Choose a mat in the picker by its name."""
+    await pilot.press("b")
+    await pilot.pause()
+    listed = pilot.app.screen.query_one(OptionList)
+    listed.highlighted = listed.get_option_index(name)
+    listed.focus()
+    await pilot.press("enter")
+
+
+@pytest.mark.parametrize("named", [False, True], ids=["usual folder", "--mats"])
+async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "pics" if named else home / "backgrounds"
+    folder.mkdir(parents=True)
+    Image.new("RGB", (300, 200), (200, 0, 0)).save(folder / "FLL2018.jpg", quality=100)
+    async with Lab(with_mats(folder if named else None)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await choose(pilot, "FLL_2018_Into_Orbit")
+        picture = str(folder / "FLL2018.jpg")
+        await until(pilot, lambda: app.bridge.plan.spec.world.background == picture and app.loading.mat_is_ready)
+        assert app.bridge.plan.spec.world.start.x_mm == 150
+
+
+async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> None:
+    async with Lab(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        before = app.bridge.plan
+        await choose(pilot, "FLL_2018_Into_Orbit")
+        await until(pilot, lambda: any("put it as FLL2018.jpg" in notice for notice in notices(app)))
+        assert app.bridge.plan == before
+
+
+async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
+    folder = tmp_path / "pics"
+    folder.mkdir()
+    async with Lab(with_mats(folder)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        folder.rmdir()
+        await pilot.press("b")
+        await until(pilot, lambda: any("there is no such folder" in notice for notice in notices(app)))

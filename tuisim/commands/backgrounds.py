@@ -3,30 +3,79 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
 
-from tuisim.assets import backgrounds
-from tuisim.commands.echo import echo_json, echo_lines
+from tuisim.assets import Background
+from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
 from tuisim.commands.tables import table
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.errors import listed
+from tuisim.own_mats import Taken, import_originals, mats, own_folder
 from tuisim.switches import SwitchParser
 
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim backgrounds`."""
     parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.add_argument("--mats", metavar="FOLDER", help="a further folder with mats of your own")
+    parser.add_argument(
+        "--use-originals", metavar="FOLDER", help="copy the pictures of the browser simulator from there, to use them"
+    )
 
 
 def execute(arguments: Namespace) -> int:
-    """Print every mat with its start pose."""
-    mats = backgrounds().values()
+    """Print every mat with its start pose, or import pictures.
+
+    Raises:
+        BackgroundError: a folder or a picture in it is wrong.
+    """
+    if arguments.use_originals is not None:
+        taken, left = import_originals(Path(arguments.use_originals).expanduser())
+        _tell_taken(taken, left, as_json=arguments.json)
+        return 0
+    found = mats(arguments.mats).values()
     if arguments.json:
-        poses = [
-            {"name": mat.name, "title": mat.title, "x_mm": mat.start.x_mm, "y_mm": mat.start.y_mm,
-             "heading_deg": mat.start.heading_deg}
-            for mat in mats
-        ]  # fmt: skip
-        echo_json(poses)
+        echo_json([_plain(mat) for mat in found])
     else:
-        starts = [f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in mats]
-        rows = [(mat.name, start, mat.title) for mat, start in zip(mats, starts, strict=True)]
+        starts = [f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in found]
+        rows = [(mat.name, start, _shows(mat)) for mat, start in zip(found, starts, strict=True)]
         echo_lines(table(("NAME", "START x, y, heading", "SHOWS"), rows))
+        if any(map(_is_missing, found)):
+            echo()
+            echo(f"Pictures of your own go into {own_folder()}")
     return 0
+
+
+def _is_missing(mat: Background) -> bool:
+    return not mat.shipped and not mat.is_own
+
+
+def _shows(mat: Background) -> str:
+    if _is_missing(mat):
+        return f"{mat.title} (without a picture: bring {mat.original})"
+    return f"{mat.title} (your {mat.image.name})" if mat.is_own and mat.original else mat.title
+
+
+def _plain(mat: Background) -> dict[str, object]:
+    return {
+        "name": mat.name, "title": mat.title, "x_mm": mat.start.x_mm, "y_mm": mat.start.y_mm,
+        "heading_deg": mat.start.heading_deg, "picture": None if _is_missing(mat) else str(mat.image),
+    }  # fmt: skip
+
+
+def _tell_taken(taken: Sequence[Taken], left: Sequence[str], *, as_json: bool) -> None:
+    if as_json:
+        echo_json([{"name": one.name, "file": one.file, "size_px": list(one.size_px)} for one in taken])
+    else:
+        rows = [(one.name, one.file, _size(one)) for one in taken]
+        echo_lines(table(("MAT", "PICTURE", "PIXELS"), rows))
+    echo_error(f"{len(taken)} picture{'s' * (len(taken) != 1)} copied to {own_folder()}; remove one there to undo it")
+    if left:
+        echo_error(f"left aside, as no mat is called so: {listed(left)}")
+
+
+def _size(one: Taken) -> str:
+    width, height = one.size_px
+    other = "" if one.size_px == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) else f", not {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM}"
+    return f"{width} × {height}{other}"

@@ -85,12 +85,13 @@ def find_program(word: str) -> Path:
     return path
 
 
-def _world(words: Sequence[str], switch: str | None) -> WorldFile | None:
+def _world(words: Sequence[str], arguments: Namespace) -> WorldFile | None:
     """The world that is named, as a word or with the switch."""
+    switch = arguments.world
     named = [word for word in words if means_world(word)] + ([] if switch is None else [switch])
     if len(named) > 1:
         raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
-    return load_world(named[0]) if named else None
+    return load_world(named[0], given(arguments).get("mats")) if named else None
 
 
 def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -> Prepared:
@@ -146,7 +147,7 @@ def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
     Raises:
         ConfigError: program, magic line, world or switches are wrong, or there are two programs.
     """
-    world = _world(words, arguments.world)
+    world = _world(words, arguments)
     programs = [word for word in words if not means_world(word)]
     if len(programs) > 1:
         raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
@@ -193,7 +194,7 @@ def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared | 
     Raises:
         ConfigError: a program, magic line, world or switch is wrong, or there is no program.
     """
-    world = _world(words, arguments.world)
+    world = _world(words, arguments)
     programs = [word for word in words if not means_world(word)]
     if not programs and world and world.program is not None:
         programs = [world.program]

@@ -7,7 +7,7 @@ import os
 from dataclasses import replace
 from typing import Any
 
-from tuisim.assets import Background, background, backgrounds
+from tuisim.assets import Background
 from tuisim.config.obstacles import load_obstacles
 from tuisim.config.profiles import load_profile
 from tuisim.config.reading import told_as
@@ -15,7 +15,17 @@ from tuisim.config.robots import choose_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.solid import reach_mm
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.spec import (
+    BACKGROUND_FITS,
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    NoiseSpec,
+    Obstacle,
+    RobotSpec,
+    RunSpec,
+    WorldSpec,
+)
+from tuisim.own_mats import find_mat, spec_name
 from tuisim.switches import RobotChoice, Settings
 
 
@@ -27,11 +37,6 @@ def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
         replace(sensor, x_mm=mat.sensor_x_mm.get(sensor.name, sensor.x_mm)) for sensor in choice.spec.color_sensors
     )
     return replace(choice.spec, color_sensors=moved)
-
-
-def mat_name(word: str) -> str:
-    """Return what a specification calls a mat: its name in the catalogue, or the full path of an image."""
-    return word if word in backgrounds() else os.path.abspath(os.path.expanduser(word))
 
 
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
@@ -83,7 +88,7 @@ def build_run_spec(settings: Settings) -> RunSpec:
             obstacles or profile, or a file that describes one is wrong.
     """
     with told_as("", "-b"):
-        mat = background(os.path.expanduser(settings.background))
+        mat = find_mat(os.path.expanduser(settings.background), settings.mats)
     chosen = settings.robot
     choice = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
     profile = _profile(settings)
@@ -94,11 +99,11 @@ def build_run_spec(settings: Settings) -> RunSpec:
     return RunSpec(
         robot=robot,
         world=WorldSpec(
-            background=mat_name(settings.background),
+            background=spec_name(mat),
             obstacles=_obstacles(settings, mat),
             walls=settings.walls,
             solid=solid,
-            background_fit=settings.background_fit,
+            background_fit=settings.background_fit or mat.fit or BACKGROUND_FITS[0],
             pen_marks=settings.pen_marks,
             start=_start(settings, mat, robot, walled=solid and settings.walls),
             noise=NoiseSpec(light=light, motor=motor),

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.assets import Background, background, backgrounds
+from tuisim.assets import Background
 from tuisim.config.building import build_run_spec, robot_on_mat
 from tuisim.config.obstacles import obstacle_lines
 from tuisim.config.presets import OBSTACLES, ROBOTS
@@ -21,6 +21,7 @@ from tuisim.config.writing import Scalar, toml_lines, write_toml
 from tuisim.core.profile import PROFILES, ProfileSpec
 from tuisim.core.spec import RobotSpec, RunSpec
 from tuisim.errors import ConfigError
+from tuisim.own_mats import mat_of_spec
 from tuisim.switches import RobotChoice, settings_of
 
 _HEAD = "# A world for tuisim. Lengths in mm, angles in degrees counter-clockwise from +x; y up from the bottom edge."
@@ -28,7 +29,7 @@ _COMMENTS = {
     "program": "beside this file",
     "arguments": "what the program finds in sys.argv",
     "background": "a mat's name, or an image beside this file",
-    "background_fit": "for an image: stretch, fit or centre",
+    "background_fit": "for an image: stretch, fit, centre or corner",
     "walls": "on the four edges of the field",
     "solid": "whether obstacles and walls stop the robot",
     "pen_marks": "whether the sensors see what the pen draws",
@@ -47,10 +48,11 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
         ConfigError: its mat is gone.
     """
     world, pen = spec.world, spec.robot.pen
+    word, mat = mat_of_spec(world.background)
     return {
-        "background": world.background,
+        "background": word,
         "background_fit": world.background_fit,
-        "robot": _robot(spec.robot, background(world.background)),
+        "robot": _robot(spec.robot, mat),
         "obstacles": next((name for name, boxes in OBSTACLES.items() if boxes == world.obstacles), world.obstacles),
         "walls": world.walls,
         "solid": None if world.solid == spec.profile.solid else world.solid,
@@ -115,7 +117,7 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     if arguments:
         top["arguments"] = list(arguments)
     mat = settings["background"]
-    top["background"] = mat if mat in backgrounds() else _relative(mat, folder)
+    top["background"] = _relative(mat, folder) if os.sep in mat else mat
     settings["solid"] = spec.world.solid
     for key in ("background_fit", "walls", "solid", "pen_marks", "robot", "obstacles", "profile", "seed"):
         if isinstance(settings[key], str | int):

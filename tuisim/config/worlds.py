@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tuisim.assets import background, programs_folder
+from tuisim.assets import programs_folder
 from tuisim.config.obstacles import load_obstacles, obstacles_from_table
 from tuisim.config.profiles import load_profile, profile_from_table
 from tuisim.config.reading import Section, means_file, name_of, read_file, shown
@@ -18,6 +18,7 @@ from tuisim.config.robots import load_robot
 from tuisim.config.world_infrared import infrared_from_table
 from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
 from tuisim.errors import ConfigError, ProfileError, RobotError
+from tuisim.own_mats import find_mat
 from tuisim.switches import (
     MAX_ANGLE_DEG,
     MAX_PEN_MM,
@@ -35,8 +36,8 @@ NOISE_LIMITS = {"light": MAX_LIGHT_NOISE, "motor": MAX_MOTOR_NOISE}
 PANEL_KEYS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 PEN_KEYS = ("down", "color", "width_mm")
 TOP_KEYS = (
-    "program", "arguments", "background", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed", *FLAGS,
-    *PANEL_KEYS, "start", "noise", "pen", "beacon", "remote",
+    "program", "arguments", "background", "mats", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed",
+    *FLAGS, *PANEL_KEYS, "start", "noise", "pen", "beacon", "remote",
 )  # fmt: skip
 
 
@@ -62,8 +63,12 @@ def means_world(word: str) -> bool:
     return Path(word).suffix.lower() == WORLD_SUFFIX
 
 
-def load_world(path: Path | str) -> WorldFile:
+def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
     """Read a world file. Paths in it are relative to its folder.
+
+    Args:
+        path: The file.
+        mats: A folder with mats of the user's own, where the file names none.
 
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
@@ -71,15 +76,16 @@ def load_world(path: Path | str) -> WorldFile:
     path = Path(path).expanduser()
     if not means_world(path.name):
         raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
-    return world_from_table(Section(read_file(path, ConfigError), str(path), ConfigError), path)
+    return world_from_table(Section(read_file(path, ConfigError), str(path), ConfigError), path, mats)
 
 
-def world_from_table(table: Section, path: Path) -> WorldFile:
+def world_from_table(table: Section, path: Path, mats: str | None = None) -> WorldFile:
     """Return the world that a table describes.
 
     Args:
         table: The table.
         path: Where the file is, or will be.
+        mats: As for `load_world`.
 
     Raises:
         ConfigError: a key or a value is wrong.
@@ -87,7 +93,7 @@ def world_from_table(table: Section, path: Path) -> WorldFile:
     table.allow(TOP_KEYS)
     referred: list[Path] = []
     near = partial(_near, path.parent, referred)
-    found: dict[str, Any] = _mat(table, near)
+    found: dict[str, Any] = _mat(table, near, mats)
     found |= {field: table.flag(key) for key, field in FLAGS.items() if key in table}
     for key, choose in (("robot", _robot), ("obstacles", _obstacles), ("profile", _profile)):
         if key in table:
@@ -128,17 +134,19 @@ def _near(folder: Path, referred: list[Path], word: str) -> str:
     return str(found)
 
 
-def _mat(table: Section, near: Near) -> dict[str, Any]:
+def _mat(table: Section, near: Near, mats: str | None) -> dict[str, Any]:
     """Mat, how it fits, and start pose. A mat brings its own start pose, so the magic line's goes with its mat."""
     found: dict[str, Any] = {}
     if "background_fit" in table:
         found["background_fit"] = table.one_of("background_fit", BACKGROUND_FITS)
+    if "mats" in table:
+        found["mats"] = near(table.text("mats"))
     if "background" in table:
         word = table.text("background")
         found |= dict.fromkeys(START_LIMITS)
         found["background"] = near(word) if os.sep in word or Path(word).suffix else word
         with table.telling("background"):
-            background(found["background"])
+            find_mat(found["background"], found.get("mats", mats))
     if "start" in table:
         start = table.section("start")
         start.allow(START_LIMITS)

@@ -41,8 +41,9 @@ ROBOT_WEIGHTS: Mapping[str, float] = {"weightless": 0.0, "light": 3.0, "medium":
 STRATEGIES = ("mean", "gaussian", "centre")
 """How a colour sensor weighs the pixels of its disc: all alike, by a bell curve, or the middle threefold."""
 
-BACKGROUND_FITS = ("stretch", "fit", "centre")
-"""How an own image becomes a mat: filling the field, as large as fits, or pixel for pixel in the middle."""
+BACKGROUND_FITS = ("stretch", "fit", "centre", "corner")
+"""How an own image becomes a mat: filling the field, as large as fits, or pixel for pixel in the middle or
+from the upper left corner."""
 
 
 @dataclass(frozen=True, slots=True)

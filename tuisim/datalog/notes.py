@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
-from tuisim.datalog.store import home_folder
 from tuisim.errors import LogError
+from tuisim.home import home_folder
 
 NOTES_FILE = "notes.jsonl"
 _HASHED_BYTES = 1 << 16

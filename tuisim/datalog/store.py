@@ -37,6 +37,7 @@ from tuisim.datalog.runfile import (
 from tuisim.datalog.samples import counts_of
 from tuisim.datalog.views import OutputView, TelemetryView
 from tuisim.errors import LogError
+from tuisim.home import home_folder
 
 RUNS_FOLDER = "runs"
 LAST = "last"
@@ -61,16 +62,6 @@ class NewRun:
     id: str
     number: int
     folder: Path
-
-
-def home_folder() -> Path:
-    """Return where runs are kept: `TUISIM_HOME`, or the user's data folder."""
-    home = os.environ.get("TUISIM_HOME")
-    if home:
-        return Path(home)
-    import platformdirs
-
-    return platformdirs.user_data_path("tuisim")
 
 
 class RunStore:

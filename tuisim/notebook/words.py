@@ -16,7 +16,7 @@ DEFAULT_REFRESH_S = 0.2
 
 LASTING = frozenset(
     {
-        "background", "background_fit", "robot", "obstacles", "walls", "solid", "x_mm", "y_mm", "heading_deg",
+        "background", "mats", "background_fit", "robot", "obstacles", "walls", "solid", "x_mm", "y_mm", "heading_deg",
         "light_noise", "motor_noise", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
     }
 )  # fmt: skip

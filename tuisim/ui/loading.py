@@ -191,7 +191,7 @@ class Loading:
         """Read a world file and keep what it said; returns the path of its program."""
         from tuisim.config import load_world
 
-        world = load_world(path)
+        world = load_world(path, self._lab.bridge.plan.settings.mats)
         self.world_file, self._world_said, self._world_refers = path, world.settings, world.files
         return _program_path(world.program) if world.program is not None else None
 

@@ -17,7 +17,7 @@ from tuisim.switches import RobotChoice, Settings, settings_of
 
 POSE_FIELDS = ("x_mm", "y_mm", "heading_deg")
 WORLD_FIELDS = (
-    "background", "background_fit", "robot", "obstacles", "walls", "solid", *POSE_FIELDS, "light_noise",
+    "background", "mats", "background_fit", "robot", "obstacles", "walls", "solid", *POSE_FIELDS, "light_noise",
     "motor_noise", "pen_down", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
     "arguments",
 )  # fmt: skip
@@ -25,7 +25,7 @@ WORLD_FIELDS = (
 
 _ANY_MAT = "Empty_Map"
 
-_OF_THE_MAT: Mapping[str, Any] = {**dict.fromkeys(("obstacles", *POSE_FIELDS)), "background_fit": "stretch"}
+_OF_THE_MAT: Mapping[str, Any] = dict.fromkeys(("obstacles", "background_fit", *POSE_FIELDS))
 """What another mat brings with it."""
 
 

@@ -20,7 +20,7 @@ _LIMITS = {"x_mm": 10_000.0, "y_mm": 10_000.0, "heading_deg": 36_000.0}
 
 def poses_file() -> Path:
     """Return where poses are kept."""
-    from tuisim.datalog.store import home_folder
+    from tuisim.home import home_folder
 
     return home_folder() / FILE
 

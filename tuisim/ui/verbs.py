@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.core.geometry import Pose
+from tuisim.errors import TuisimError
 from tuisim.ui import plan as plans
 from tuisim.ui.panels import PANELS
 from tuisim.ui.plan import Plan
@@ -153,13 +154,21 @@ def saved_poses(lab: Lab) -> None:
 
 def choose_mat(lab: Lab) -> None:
     """Ask for a mat and lay it out."""
+    from tuisim.own_mats import mats
     from tuisim.ui.screens.mats import MatPicker
+
+    folder = lab.bridge.plan.settings.mats
+    try:
+        known = mats(folder)
+    except TuisimError as error:
+        lab.complain(error)
+        return
 
     def lay(name: str | None) -> None:
         if name:
             lab.loading.change_mat(name)
 
-    lab.push_screen(MatPicker(lab.bridge.spec.world.background), lay)
+    lab.push_screen(MatPicker(lab.bridge.spec.world.background, known, folder), lay)
 
 
 def open_program(lab: Lab) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import ClassVar
 
 from rich.style import Style
@@ -91,7 +92,7 @@ class Controls(Widget, can_focus=False):
             self._line("State", self._state(now)),
             self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
             self._line("Program", self._program or "none: o opens one"),
-            self._line("Mat", spec.world.background),
+            self._line("Mat", Path(spec.world.background).name),
             self._line("Robot", spec.robot.name),
             self._line("Profile", f"{spec.profile.name}, seed {spec.seed}"),
             self._line("Pen", f"{'down' if now.pen_down else 'up'}, {spec.robot.pen.color}"),

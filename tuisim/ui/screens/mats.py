@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
+from typing import TYPE_CHECKING
 
 from textual import on
 from textual.app import ComposeResult
@@ -17,31 +19,39 @@ from tuisim.ui.render.mat import Pixels, shrink
 from tuisim.ui.render.viewport import whole_field
 from tuisim.ui.screens.choosing import ListDialog
 
+if TYPE_CHECKING:
+    from tuisim.assets import Background
+
+WIDEST_NAME = 32
+"""So many columns the list has at most: a file of one's own may have any name."""
+
 
 class MatPicker(ListDialog):
     """Gives the name of the chosen mat, or the path of an image.
 
     Args:
-        current: The mat that lies there now.
+        current: The mat that lies there now, as a specification calls it.
+        known: Every mat that there is, by name.
+        folder: A folder with mats of the user's own, None for none but the usual one.
     """
 
     TITLE_TEXT: str = "Mats"
     HINT: str = "Enter lays it out · tab to the field · Escape closes"
 
-    def __init__(self, current: str) -> None:
+    def __init__(self, current: str, known: Mapping[str, Background], folder: str | None) -> None:
         super().__init__()
-        self._current = current
+        self._current, self._mats, self._folder = current, known, folder
         self._shown = ""
         self._pictures: dict[tuple[str, int, int], Pixels] = {}
 
     def content(self) -> ComposeResult:
         """The list, the picture, and a field for a path."""
-        from tuisim.assets import backgrounds
+        from tuisim.own_mats import spec_name
 
-        mats = backgrounds()
-        listed = OptionList(*(Option(name, id=name) for name in mats), markup=False)
-        listed.styles.width = max(map(len, mats), default=0) + 5
-        listed.highlighted = list(mats).index(self._current) if self._current in mats else 0
+        listed = OptionList(*(Option(name, id=name) for name in self._mats), markup=False)
+        listed.styles.width = min(max(map(len, self._mats), default=0) + 5, WIDEST_NAME)
+        names = [spec_name(mat) for mat in self._mats.values()]
+        listed.highlighted = names.index(self._current) if self._current in names else 0
         with Horizontal(classes="mats"):
             yield listed
             with Vertical():
@@ -72,13 +82,11 @@ class MatPicker(ListDialog):
 
     def _show(self, name: str) -> None:
         """Show a mat: its title at once, its picture as soon as it is decoded."""
-        from tuisim.assets import backgrounds
-
         self._shown = name
-        view, mats = self.query_one(PixelView), backgrounds()
-        if name not in mats or not view.size:
+        view = self.query_one(PixelView)
+        if name not in self._mats or not view.size:
             return
-        self.query_one("#title", Static).update(mats[name].title)
+        self.query_one("#title", Static).update(self._mats[name].title)
         width, height = view.size.width, 2 * view.size.height
         if (picture := self._pictures.get((name, width, height))) is not None:
             view.set_picture(picture)
@@ -87,12 +95,12 @@ class MatPicker(ListDialog):
             self.run_worker(work, thread=True, group="picture", exclusive=True)
 
     def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> None:
-        from tuisim.assets import background
+        from tuisim.own_mats import find_mat
         from tuisim.pictures import decode, read_file
 
         try:
-            image = background(name).image
-            mat = decode(read_file(image), image, "stretch")
+            found = find_mat(name, self._folder)
+            mat = decode(read_file(found.image), found.image, found.fit or "stretch")
         except TuisimError as error:
             self.app.call_from_thread(self._told, name, str(error))
             return
