@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from pathlib import Path
 
 import pytest
 
@@ -212,3 +213,10 @@ def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -
 
 def test_one_sample_is_told_as_one(cell: Cell) -> None:
     assert cell(program("-RW", "print('Colour: 1')")).plain == "finished · 0.000 s · 1 sample"
+
+
+def test_what_a_robots_file_has_that_means_nothing_here_is_said_once(cell: Cell, tmp_path: Path) -> None:
+    (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
+    noted = cell(f"%sim_magic -W -r {tmp_path / 'mine.json'}")
+    assert noted.err.count("means nothing here: owner") == 1
+    assert "means nothing here" not in cell("%sim_magic -W -x 100").err

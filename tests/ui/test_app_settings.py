@@ -13,6 +13,7 @@ from tests.ui.app_help import ENDLESS, LOGS, notices, ready, screen_text, settin
 from tuisim.config import load_robot
 from tuisim.ui.app import Lab
 from tuisim.ui.form import Choice, Row
+from tuisim.ui.plan import with_robot
 from tuisim.ui.snapshot import ENDED, RUNNING
 
 
@@ -191,3 +192,11 @@ async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
         pieces = list(world._view.trace.pieces(0))
         assert {piece.pen for piece in pieces} == {((0, 128, 128), 40)}
         assert pieces[0].ys_mm[1] == pytest.approx(500 - 150)
+
+
+async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: Path) -> None:
+    (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
+    async with Lab(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.loading.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
+        await until(pilot, lambda: sum("means nothing here: owner" in notice for notice in notices(app)) == 1)

@@ -5,6 +5,7 @@ What runs and draws is imported by the first cell that needs it: a notebook load
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -159,10 +160,14 @@ class Lab:
 
     def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _Plan:
         from tuisim.config import build_run_spec
+        from tuisim.config.robots import choose_robot
         from tuisim.host import Program, field_files
         from tuisim.notebook.words import lasting_after
         from tuisim.switches import settings_of
 
+        if isinstance(robot := words.settings.get("robot"), str):
+            for note in choose_robot(robot, "-r").notes:
+                print(f"tuisim: note: {note}", file=sys.stderr)
         lasting = lasting_after(self._lasting, words.settings)
         settings = settings_of(lasting, words.settings)
         spec = build_run_spec(settings)

@@ -132,6 +132,9 @@ class Loading:
 
     def take(self, plan: Plan) -> None:
         """Take a plan that differs in other things than the start."""
+        if plan.robot != self._lab.bridge.plan.robot:
+            for note in plan.robot.notes:
+                self._lab.say(note)
         self._lab.bridge.change(plan)
         self._loaded()
 
