@@ -8,7 +8,7 @@ import pytest
 from tests.ui.analyser.logs import long_log, model_of, wide_log
 from tuisim.datalog.analysis.derived import definition_of, derived
 from tuisim.errors import LogError
-from tuisim.ui.analyser.asking import Offering
+from tuisim.ui.analyser.asking import completed
 from tuisim.ui.analyser.deriving import derive
 from tuisim.ui.analyser.panes import PANES
 
@@ -95,10 +95,10 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     assert model.selected == "wave" and len(model.rows) == 100
 
 
-async def test_the_word_that_is_typed_is_ended() -> None:
-    offering = Offering(("Colour", "Left", "slope(", "`a b`"))
+def test_the_word_that_is_typed_is_ended() -> None:
+    words = ("Colour", "Left", "slope(", "`a b`")
     lines = {"slope(Co": "slope(Colour", "2 * sl": "2 * slope(", "`a": "`a b`", "2 + 3": None, "Colour": None}
-    assert {line: await offering.get_suggestion(line) for line in lines} == lines
+    assert {line: completed(line, words) for line in lines} == lines
 
 
 def test_columns_that_mean_something_else_have_nothing_derived() -> None:

@@ -112,6 +112,18 @@ async def test_a_long_note_goes_on_in_further_lines(run: StoredRun) -> None:
         assert not model.notes
 
 
+async def test_tab_takes_the_word_that_is_offered(run: StoredRun) -> None:
+    async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        await opened(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: isinstance(pilot.app.focused, Input))
+        field = pilot.app.screen.query_one(Input)
+        await pilot.press("v", "=", "s", "l")
+        await until(pilot, lambda: bool(field._suggestion))
+        await pilot.press("tab")
+        assert field.value == "v=slope("
+
+
 async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
     target = tmp_path / "bands.csv"
     async with AnalyserApp(Wanted(runs=(run.id,))).run_test(size=(120, 40)) as pilot:

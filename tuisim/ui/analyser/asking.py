@@ -10,7 +10,7 @@ from rich.table import Table
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.suggester import Suggester
+from textual.suggester import SuggestionReady
 from textual.widgets import Input, Static
 
 from tuisim.errors import TuisimError
@@ -33,31 +33,31 @@ class _Line(Input):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "cursor_right", "Take the offered word", show=False)]
 
     def __init__(self, value: str, words: Sequence[str]) -> None:
-        offering = Offering(words) if words else None
-        super().__init__(value, compact=True, select_on_focus=True, suggester=offering)
-
-
-class Offering(Suggester):
-    """Offers the first word that begins like the one that is being typed.
-
-    Args:
-        words: In the order in which they are offered.
-    """
-
-    def __init__(self, words: Sequence[str]) -> None:
-        super().__init__(use_cache=False, case_sensitive=True)
+        super().__init__(value, compact=True, select_on_focus=True)
         self._words = words
 
-    async def get_suggestion(self, value: str) -> str | None:
-        """Return the line with its last word ended, None if there is nothing to offer."""
-        match = _LAST_WORD.search(value)
-        if match is None:
-            return None
-        typed = match[0]
-        begun = (word for word in self._words if word.lower().startswith(typed.lower()) and len(word) > len(typed))
-        word = next(begun, None)
-        # What was typed stays: an offer only adds to it.
-        return None if word is None else value + word[len(typed) :]
+    @on(Input.Changed)
+    def _offer(self, event: Input.Changed) -> None:
+        # At once: Textual's own suggester leaves work undone, and a warning, when the field closes first.
+        if (offered := completed(event.value, self._words)) is not None:
+            self.post_message(SuggestionReady(event.value, offered))
+
+
+def completed(line: str, words: Sequence[str]) -> str | None:
+    """Return the line with its last word ended, None if there is nothing to offer.
+
+    Args:
+        line: What has been typed.
+        words: What may be offered, the first that begins like the last word of the line.
+    """
+    match = _LAST_WORD.search(line)
+    if match is None:
+        return None
+    typed = match[0]
+    begun = (word for word in words if word.lower().startswith(typed.lower()) and len(word) > len(typed))
+    word = next(begun, None)
+    # What was typed stays: an offer only adds to it.
+    return None if word is None else line + word[len(typed) :]
 
 
 class Asking(Dialog[bool]):
