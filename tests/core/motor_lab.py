@@ -21,6 +21,7 @@ from typing import Any, NoReturn
 from tests.core.memory_sink import MemorySink
 from tuisim.core import laws
 from tuisim.core.browser_motor import BrowserMotor
+from tuisim.core.drive import EvenGlide
 from tuisim.core.profile import NBEV3DEVSIM
 from tuisim.core.simulation import NS_PER_S, Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
@@ -86,6 +87,11 @@ class Watched(BrowserMotor):
         rolled = super().step(tick, noise_dps)
         self.registers.append(self.speed_dps)
         return rolled
+
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        self.begin()
+        self.registers += [self.speed_dps] * ticks
+        return super().glide_evenly(ticks)
 
     def _registers(self, ticks: int) -> list[float]:
         self.begin()

@@ -12,6 +12,7 @@ from bisect import bisect_left
 from itertools import accumulate, repeat
 from operator import neg
 
+from tuisim.core.drive import EvenGlide, Glide
 from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDS_STILL_DEG, STOPPED, TIMED, MotorState
 
 
@@ -152,15 +153,22 @@ class BrickMotor:
         step = self.ramp_step
         return math.ceil(abs(self.target_dps - self.speed_dps) / step) if step else 1
 
-    def glide(self, ticks: int) -> tuple[list[float], list[float]]:
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Do quiet ticks at a steady speed, as `Motor.glide_evenly`."""
+        if self.mode == STOPPED:
+            return EvenGlide(0.0, repeat(self.position_deg, ticks))
+        turned = self.speed_dps * self.sign * self._tick_s
+        return EvenGlide(turned, accumulate(repeat(turned, ticks - 1), initial=self.position_deg + turned))
+
+    def glide(self, ticks: int) -> Glide:
         """Do quiet ticks, as `Motor.glide`."""
         if self.mode == STOPPED:
-            return [0.0] * ticks, [self.position_deg] * ticks
+            return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign, tick_s = self.sign, self._tick_s
         turns = [speed * sign * tick_s for speed in self._speeds_ahead(ticks)]
         counts = list(accumulate(turns, initial=self.position_deg))
         self.position_deg = counts[-1]
-        return turns, counts[1:]
+        return Glide(turns, counts[1:])
 
     def _speeds_ahead(self, ticks: int) -> list[float]:
         """Change the speed as so many ticks do, and return it for each of them."""

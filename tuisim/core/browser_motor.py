@@ -9,8 +9,10 @@ goes on counting after the end. Set points are live: what is written works at on
 from __future__ import annotations
 
 import math
-from itertools import accumulate
+from collections.abc import Iterator
+from itertools import accumulate, islice, repeat
 
+from tuisim.core.drive import EvenGlide, Glide
 from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDS_STILL_DEG, STOPPED, TIMED, MotorState
 
 
@@ -29,7 +31,8 @@ class BrowserMotor:
     )  # fmt: skip
 
     def __init__(self, tick_hz: int, ramp_step: float, limit_dps: float) -> None:
-        self._tick_s, self._ramp_step, self._limit_dps = 1.0 / tick_hz, ramp_step, limit_dps
+        self._tick_s, self._limit_dps = 1.0 / tick_hz, limit_dps
+        self._ramp_step = ramp_step or math.inf
         self._command = STOPPED
         self.mode = STOPPED
         """The command, as long as the motor says that it runs."""
@@ -80,7 +83,7 @@ class BrowserMotor:
         """Do one tick, as `Motor.step`."""
         speed, target = self.speed_dps, self.speed_sp
         if speed != target or noise_dps:
-            self.speed_dps = speed = self._rounded(self._ramped(speed, target), noise_dps)
+            self.speed_dps = speed = self._next(speed, noise_dps)
         turned = speed * self._tick_s
         command = self._command
         if command == FOREVER or (command == TIMED and tick < self.end_tick):
@@ -98,16 +101,23 @@ class BrowserMotor:
         self.position_deg += turned
         return turned * self.roll_sign + 0.0
 
-    def _ramped(self, speed: float, target: float) -> float:
-        step = self._ramp_step
-        if step == 0.0 or speed == target:
-            return target
-        return min(speed + step, target) if speed < target else max(speed - step, target)
-
-    def _rounded(self, speed: float, noise_dps: float) -> float:
+    def _next(self, speed: float, noise_dps: float = 0.0) -> float:
+        """The register after one more tick."""
+        target, step = self.speed_sp, self._ramp_step
+        if speed < target:
+            speed += step
+            if speed > target:
+                speed = target
+        elif speed > target:
+            speed -= step
+            if speed < target:
+                speed = target
         # A speed that is negative even with the noise is left as it is.
         noisy = speed + noise_dps
-        return min(float(math.floor(noisy + 0.5)), self._limit_dps) if noisy >= 0 else speed
+        if noisy < 0.0:
+            return speed
+        noisy = float(math.floor(noisy + 0.5))
+        return noisy if noisy <= self._limit_dps else self._limit_dps
 
     def _beyond(self) -> bool:
         return self.position_deg < self.goal_deg if self.backwards else self.position_deg > self.goal_deg
@@ -128,7 +138,7 @@ class BrowserMotor:
     def ramping_ticks(self) -> int:
         """About how many ticks until the register is steady; 0 only if it is."""
         way = abs(self._aim - self.speed_dps)
-        return math.ceil(way / self._ramp_step) if way and self._ramp_step else int(way > 0)
+        return math.ceil(way / self._ramp_step) or int(way > 0)
 
     def quiet_ticks(self, tick: int) -> int:
         """Return for how many ticks nothing but the register can change, as `Motor.quiet_ticks`."""
@@ -150,7 +160,20 @@ class BrowserMotor:
         left = abs(self.goal_deg - self.position_deg)
         return 0 if self._beyond() else max(0, int(left / (2 * fastest)) - 1)
 
-    def glide(self, ticks: int) -> tuple[list[float], list[float]]:
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Do quiet ticks at a steady speed, as `Motor.glide_evenly`."""
+        turned = self.speed_dps * (-self._tick_s if self._command == POSITION and self.backwards else self._tick_s)
+        start = self.position_deg
+        counts: Iterator[float]
+        if self.mode == STOPPED and not self._ended:
+            return EvenGlide(0.0, repeat(start, ticks))
+        if self.mode == STOPPED or self._command != POSITION:
+            counts = accumulate(repeat(turned, ticks - 1), initial=start + turned)
+        else:
+            counts = islice(accumulate(repeat(turned, 2 * ticks), initial=start), 2, None, 2)
+        return EvenGlide(0.0 if self.mode == STOPPED else turned * self.roll_sign + 0.0, counts)
+
+    def glide(self, ticks: int) -> Glide:
         """Do quiet ticks, as `Motor.glide`."""
         speeds = self._registers(ticks)
         tick_s = -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
@@ -158,16 +181,16 @@ class BrowserMotor:
         counts = self._counts(turns)
         self.position_deg = counts[-1]
         if self.mode == STOPPED:
-            return [0.0] * ticks, counts
+            return Glide([0.0] * ticks, counts)
         sign = self.roll_sign
-        return [turned * sign + 0.0 for turned in turns], counts
+        return Glide([turned * sign + 0.0 for turned in turns], counts)
 
     def _registers(self, ticks: int) -> list[float]:
         """Let the register run ahead; returns it for each tick."""
-        speed, target, aim = self.speed_dps, self.speed_sp, self._aim
+        speed, aim = self.speed_dps, self._aim
         speeds: list[float] = []
         while speed != aim and len(speeds) < ticks:
-            speed = self._rounded(self._ramped(speed, target), 0.0)
+            speed = self._next(speed)
             speeds.append(speed)
         self.speed_dps = speed
         speeds += [speed] * (ticks - len(speeds))

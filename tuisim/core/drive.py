@@ -1,23 +1,25 @@
 """Differential drive: how two rolling wheels move the robot.
 
 A profile's motor law also says how it reckons, because figures that are to be the same
-to the last bit need the same sums in the same order.
+to the last bit need the same sums in the same order. The loops over many ticks do the
+sums of one tick in full, and write the records themselves: they are the hottest ones.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from itertools import accumulate, islice, repeat
+from collections.abc import Iterator
 from math import cos, degrees, radians, sin
-from operator import add, mul
 from struct import Struct
 from typing import NamedTuple, Protocol
 
 from tuisim.core.geometry import Pose
+from tuisim.core.sink import Buffer
 from tuisim.core.spec import RobotSpec
+from tuisim.core.state import TICK_RECORD
 
 _FLOAT32 = Struct("<f")
+_WHOLE_TURN = 2 * math.pi
 
 
 def float32(value: float) -> float:
@@ -41,13 +43,36 @@ def turn_rate_dps(left_dps: float, right_dps: float, robot: RobotSpec) -> float:
     return (right_dps - left_dps) * robot.wheel_diameter_mm / (2.0 * robot.wheel_spacing_mm)
 
 
-class Way(NamedTuple):
-    """Where the robot is after each of some ticks."""
+class Records(NamedTuple):
+    """Where the records of some ticks go, and what is the same in all of them."""
 
-    x_mm: Iterable[float]
-    y_mm: Iterable[float]
-    heading_deg: Iterable[float]
-    gyro_zero_deg: Iterable[float]
+    buffer: Buffer
+    at: int
+    """Where the first one begins in it, in bytes."""
+    tick: int
+    """The first one."""
+    line: int
+    flags: int
+    actions: int
+    tick_hz: int
+
+
+class Glide(NamedTuple):
+    """What a wheel does in some ticks."""
+
+    rolls_deg: list[float]
+    """How far it rolls in each."""
+    counts_deg: list[float]
+    """What its encoder shows after each."""
+
+
+class EvenGlide(NamedTuple):
+    """What a wheel of steady speed does in some ticks."""
+
+    roll_deg: float
+    """How far it rolls in each."""
+    counts_deg: Iterator[float]
+    """What its encoder shows after each."""
 
 
 class Drive(Protocol):
@@ -65,28 +90,11 @@ class Drive(Protocol):
     def roll(self, left_deg: float, right_deg: float) -> None:
         """Let the wheels roll by what one tick turns them."""
 
-    def roll_evenly(self, ticks: int, left_deg: float, right_deg: float) -> Way:
-        """Let the wheels roll by the same for some ticks."""
+    def glide(self, records: Records, left: Glide, right: Glide) -> None:
+        """Let the wheels roll for some ticks, and write each down."""
 
-    def roll_along(self, left_deg: list[float], right_deg: list[float]) -> Way:
-        """Let the wheels roll for some ticks."""
-
-
-def tracks(
-    forward: Iterable[float], ways: Iterable[float], x_mm: float, y_mm: float
-) -> tuple[list[float], list[float]]:
-    """Return x and y from a place on, after each of some ticks.
-
-    Args:
-        forward: How far each goes, in mm.
-        ways: In which direction, in radians.
-        x_mm: Where the first begins.
-        y_mm: Where the first begins.
-    """
-    directions = list(ways)
-    steps = list(islice(forward, len(directions)))
-    xs = list(accumulate(map(mul, steps, map(cos, directions)), initial=x_mm))
-    return xs, list(accumulate(map(mul, steps, map(sin, directions)), initial=y_mm))
+    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
+        """Let the wheels roll by the same for some ticks, and write each down; returns what the encoders show then."""
 
 
 class BrickDrive:
@@ -119,40 +127,51 @@ class BrickDrive:
         self.y_mm += forward * sin(heading)
         self.heading_deg += turned
 
-    def roll_evenly(self, ticks: int, left_deg: float, right_deg: float) -> Way:
-        """Let the wheels roll by the same for some ticks."""
-        left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
-        turned = degrees((right_mm - left_mm) / self._spacing_mm)
-        return self._roll((left_mm + right_mm) / 2, turned, ticks)
+    def glide(self, records: Records, left: Glide, right: Glide) -> None:
+        """Let the wheels roll for some ticks, and write each down."""
+        buffer, at, tick, line, flags, actions, hz = records
+        per_deg, spacing, early, zero = self._mm_per_deg, self._spacing_mm, self._early, self.gyro_zero_deg
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
+        for left_deg, left_at, right_deg, right_at in zip(*left, *right, strict=True):
+            left_mm, right_mm = left_deg * per_deg, right_deg * per_deg
+            turned, forward = degrees((right_mm - left_mm) / spacing), (left_mm + right_mm) / 2
+            way = radians(heading + turned * early)
+            x += forward * cos(way)
+            y += forward * sin(way)
+            heading += turned
+            pack_into(
+                buffer, at, tick, line, x, y, heading, left_at, right_at, left_deg * hz, right_deg * hz,
+                zero, flags, actions,
+            )  # fmt: skip
+            at += 64
+            tick += 1
+        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
 
-    def _roll(self, forward: float, turned: float, ticks: int) -> Way:
+    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
+        """Let the wheels roll by the same for some ticks, and write each down; returns what the encoders show then."""
+        buffer, at, tick, line, flags, actions, hz = records
+        left_mm, right_mm = left.roll_deg * self._mm_per_deg, right.roll_deg * self._mm_per_deg
+        turned, forward = degrees((right_mm - left_mm) / self._spacing_mm), (left_mm + right_mm) / 2
+        left_dps, right_dps, zero = left.roll_deg * hz, right.roll_deg * hz, self.gyro_zero_deg
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
         early = turned * self._early
-        if not turned:
-            return self._straight([forward] * ticks)
-        headings = list(accumulate(repeat(turned, ticks), initial=self.heading_deg))
-        self.heading_deg = headings[-1]
-        ways = [radians(heading + early) for heading in headings[:-1]]
-        return self._along(repeat(forward), ways, headings[1:])
-
-    def _straight(self, forward: list[float]) -> Way:
-        ways = repeat(radians(self.heading_deg), len(forward))
-        return self._along(forward, ways, repeat(self.heading_deg))
-
-    def _along(self, forward: Iterable[float], ways: Iterable[float], headings: Iterable[float]) -> Way:
-        xs, ys = tracks(forward, ways, self.x_mm, self.y_mm)
-        self.x_mm, self.y_mm = xs[-1], ys[-1]
-        return Way(xs[1:], ys[1:], headings, repeat(self.gyro_zero_deg))
-
-    def roll_along(self, left_deg: list[float], right_deg: list[float]) -> Way:
-        """Let the wheels roll for some ticks."""
-        per_deg, spacing, early = self._mm_per_deg, self._spacing_mm, self._early
-        left_mm, right_mm = [deg * per_deg for deg in left_deg], [deg * per_deg for deg in right_deg]
-        forward = [(left + right) / 2 for left, right in zip(left_mm, right_mm, strict=True)]
-        turns = [degrees((right - left) / spacing) for left, right in zip(left_mm, right_mm, strict=True)]
-        headings = list(accumulate(turns, initial=self.heading_deg))
-        ways = [radians(heading + turned * early) for heading, turned in zip(headings, turns)]  # noqa: B905
-        self.heading_deg = headings[-1]
-        return self._along(forward, ways, headings[1:])
+        way = radians(heading + early)
+        across, up = forward * cos(way), forward * sin(way)
+        left_at = right_at = 0.0
+        for left_at, right_at in zip(left.counts_deg, right.counts_deg, strict=True):
+            x += across
+            y += up
+            if turned:
+                heading += turned
+                way = radians(heading + early)
+                across, up = forward * cos(way), forward * sin(way)
+            pack_into(
+                buffer, at, tick, line, x, y, heading, left_at, right_at, left_dps, right_dps, zero, flags, actions
+            )
+            at += 64
+            tick += 1
+        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+        return left_at, right_at
 
 
 class BrowserDrive:
@@ -189,42 +208,59 @@ class BrowserDrive:
 
     def _turn(self, turned: float) -> None:
         self._heading += turned
-        if self._heading > 2 * math.pi:
-            self._heading -= 2 * math.pi
+        if self._heading > _WHOLE_TURN:
+            self._heading -= _WHOLE_TURN
             self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
         self.heading_deg = self._heading * 180 / math.pi
 
-    def roll_evenly(self, ticks: int, left_deg: float, right_deg: float) -> Way:
-        """Let the wheels roll by the same for some ticks."""
-        left_mm, right_mm = left_deg / 360 * self._rim_mm, right_deg / 360 * self._rim_mm
+    def glide(self, records: Records, left: Glide, right: Glide) -> None:
+        """Let the wheels roll for some ticks, and write each down."""
+        buffer, at, tick, line, flags, actions, hz = records
+        rim, spacing, early, zero = self._rim_mm, self._spacing_mm, self._early, self.gyro_zero_deg
+        x, y, heading, shown, pack_into = self.x_mm, self.y_mm, self._heading, self.heading_deg, TICK_RECORD.pack_into
+        whole, pi = _WHOLE_TURN, math.pi
+        for left_deg, left_at, right_deg, right_at in zip(*left, *right, strict=True):
+            left_mm, right_mm = left_deg / 360 * rim, right_deg / 360 * rim
+            turned, forward = (right_mm - left_mm) / spacing, (left_mm + right_mm) / 2
+            way = heading + turned * early
+            x += forward * cos(way)
+            y += forward * sin(way)
+            if turned:
+                heading += turned
+                if heading > whole:
+                    heading, zero = heading - whole, float32(zero - 360)
+                shown = heading * 180 / pi
+            pack_into(
+                buffer, at, tick, line, x, y, shown, left_at, right_at, left_deg * hz, right_deg * hz,
+                zero, flags, actions,
+            )  # fmt: skip
+            at += 64
+            tick += 1
+        self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = x, y, heading, shown, zero
+
+    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
+        """Let the wheels roll by the same for some ticks, and write each down; returns what the encoders show then."""
+        buffer, at, tick, line, flags, actions, hz = records
+        left_mm, right_mm = left.roll_deg / 360 * self._rim_mm, right.roll_deg / 360 * self._rim_mm
         turned, forward = (right_mm - left_mm) / self._spacing_mm, (left_mm + right_mm) / 2
-        return self._along(repeat(forward, ticks), repeat(turned, ticks))
-
-    def roll_along(self, left_deg: list[float], right_deg: list[float]) -> Way:
-        """Let the wheels roll for some ticks."""
-        rim, spacing = self._rim_mm, self._spacing_mm
-        left_mm, right_mm = [deg / 360 * rim for deg in left_deg], [deg / 360 * rim for deg in right_deg]
-        forward = [(left + right) / 2 for left, right in zip(left_mm, right_mm, strict=True)]
-        return self._along(forward, [(right - left) / spacing for left, right in zip(left_mm, right_mm, strict=True)])
-
-    def _along(self, forward: Iterable[float], turns: Iterable[float]) -> Way:
-        turned, early = list(turns), self._early
-        headings, zeros = self._headings(turned)
-        ways = map(add, headings, (turn * early for turn in turned)) if early else headings[:-1]
-        xs, ys = tracks(forward, ways, self.x_mm, self.y_mm)
-        self.x_mm, self.y_mm, self._heading = xs[-1], ys[-1], headings[-1]
-        shown = [heading * 180 / math.pi for heading in headings[1:]]
-        self.heading_deg = shown[-1]
-        return Way(xs[1:], ys[1:], shown, zeros)
-
-    def _headings(self, turned: list[float]) -> tuple[list[float], Iterable[float]]:
-        """Return the headings in radians from now on, and the gyro's zero after each turn."""
-        headings = list(accumulate(turned, initial=self._heading))
-        if max(headings[1:]) <= 2 * math.pi:
-            return headings, repeat(self.gyro_zero_deg)
-        headings, zeros = [self._heading], []
-        for turn in turned:
-            self._turn(turn)
-            headings.append(self._heading)
-            zeros.append(self.gyro_zero_deg)
-        return headings, zeros
+        left_dps, right_dps, zero = left.roll_deg * hz, right.roll_deg * hz, self.gyro_zero_deg
+        x, y, heading, shown, pack_into = self.x_mm, self.y_mm, self._heading, self.heading_deg, TICK_RECORD.pack_into
+        whole, pi = _WHOLE_TURN, math.pi
+        early = turned * self._early
+        way = heading + early
+        across, up = forward * cos(way), forward * sin(way)
+        left_at = right_at = 0.0
+        for left_at, right_at in zip(left.counts_deg, right.counts_deg, strict=True):
+            x += across
+            y += up
+            if turned:
+                heading += turned
+                if heading > whole:
+                    heading, zero = heading - whole, float32(zero - 360)
+                shown, way = heading * 180 / pi, heading + early
+                across, up = forward * cos(way), forward * sin(way)
+            pack_into(buffer, at, tick, line, x, y, shown, left_at, right_at, left_dps, right_dps, zero, flags, actions)
+            at += 64
+            tick += 1
+        self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = x, y, heading, shown, zero
+        return left_at, right_at

@@ -7,11 +7,9 @@ loop does the same floating-point operations in the same order as a single tick.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from itertools import repeat
 from math import degrees
 
-from tuisim.core.drive import Way, mm_per_degree
+from tuisim.core.drive import Records, mm_per_degree
 from tuisim.core.laws import drive_of, motor_of
 from tuisim.core.motors import MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise
@@ -250,34 +248,30 @@ class Motion:
         return self._buffer
 
     def _glide(self, ticks: int) -> None:
-        """Do ticks in which only the ramps and the motion go on: the hottest loop."""
+        """Do ticks in which only the ramps and the motion go on."""
         while ticks:
             ramping = min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
             part = ramping or ticks
+            if part <= FEW_TICKS:
+                for _ in range(part):
+                    self.tick_once()
+                ticks -= part
+                continue
             # Before anything moves: where there is no room for the records, there are no ticks.
             buffer = self._make_room(part)
-            left_degs, left_counts = self.left.glide(part)
-            right_degs, right_counts = self.right.glide(part)
-            hz, left_deg, right_deg = self._hz, left_degs[-1], right_degs[-1]
-            self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
-            wheels: tuple[Iterable[float], ...]
+            sink, hz = self._sink, self._hz
+            at, flags, actions = 64 + 64 * sink.count, self._flags(), self.actions & 0xFFFF
+            records = Records(buffer, at, self.tick + 1, self.line, flags, actions, hz)
             if ramping:
-                way = self._drive.roll_along(left_degs, right_degs)
-                wheels = left_counts, right_counts, [deg * hz for deg in left_degs], [deg * hz for deg in right_degs]
+                left, right = self.left.glide(part), self.right.glide(part)
+                self._drive.glide(records, left, right)
+                left_deg, right_deg = left.rolls_deg[-1], right.rolls_deg[-1]
             else:
-                way = self._drive.roll_evenly(part, left_deg, right_deg)
-                wheels = left_counts, right_counts, repeat(self._left_dps), repeat(self._right_dps)
-            self._record(buffer, part, way, wheels)
+                left_even, right_even = self.left.glide_evenly(part), self.right.glide_evenly(part)
+                counts = self._drive.glide_evenly(records, left_even, right_even)
+                self.left.position_deg, self.right.position_deg = counts
+                left_deg, right_deg = left_even.roll_deg, right_even.roll_deg
+            self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
+            self.tick += part
+            sink.publish(sink.count + part)
             ticks -= part
-
-    def _record(self, buffer: Buffer, ticks: int, way: Way, wheels: Iterable[Iterable[float]]) -> None:
-        """Write down ticks that have been done: where the robot was, and counts and speeds of its wheels."""
-        sink, at = self._sink, 64 + 64 * self._sink.count
-        numbers = range(self.tick + 1, self.tick + ticks + 1)
-        *pose, zeros = way
-        flags, actions = repeat(self._flags()), repeat(self.actions & 0xFFFF)
-        buffer[at : at + 64 * ticks] = b"".join(
-            map(TICK_RECORD.pack, numbers, repeat(self.line), *pose, *wheels, zeros, flags, actions)
-        )
-        self.tick += ticks
-        sink.publish(sink.count + ticks)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
+from tuisim.core.drive import EvenGlide, Glide
 from tuisim.core.profile import ProfileSpec
 
 STOPPED, FOREVER, TIMED, POSITION = range(4)
@@ -102,8 +103,11 @@ class Motor(Protocol):
     def quiet_ticks(self, tick: int) -> int:
         """Return for how many ticks nothing but the ramp can change this motor; `tick` of them are done."""
 
-    def glide(self, ticks: int) -> tuple[list[float], list[float]]:
-        """Do quiet ticks. Returns for each of them how far the wheel rolls, and what the encoder shows then."""
+    def glide(self, ticks: int) -> Glide:
+        """Do quiet ticks."""
+
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Do quiet ticks of a motor that is not ramping; the caller sets what its encoder shows in the end."""
 
     def state(self) -> MotorState:
         """Return what `hold_back` needs to undo a tick."""

@@ -33,7 +33,7 @@ def speak_as_browser(session: Session, motor: Any, brick: Brick) -> None:
         brick: The devices.
     """
     _patch_properties(motor.Motor, brick)
-    motor.Motor.wait = _wait(session)
+    motor.Motor.wait = _wait(session, motor.__name__)
     _patch_moves(motor)
     _patch_sets(motor)
     _patch_pairs(motor)
@@ -64,15 +64,31 @@ def _patch_properties(motor_class: Any, brick: Brick) -> None:
     motor_class.time_sp = property(reader("time_sp"), set_time)
 
 
-def _wait(session: Session) -> Callable[..., bool]:
+def _wait(session: Session, library: str) -> Callable[..., bool]:
+    look_ns = LOOK_MS * MS
+
     def now_s() -> float:
         return session.now / MS / 1000
+
+    def look_when_a_motor_ends() -> None:
+        """Sleep until the first look after that, or until the next look where others may change things meanwhile."""
+        begun = session.now
+        session.wait_for_motor(look_ns, again=True)
+        if rest_ns := (begun - session.now) % look_ns:
+            session.spend(rest_ns)
+        elif session.now == begun:
+            session.spend(look_ns)
 
     def wait(self: Any, cond: Callable[[str], bool], timeout: float | None = None) -> bool:
         """Sleep and look until `cond(self.state)` holds, or the timeout in milliseconds is over."""
         deadline_s = now_s() + (timeout or 0) / 1000
+        # What a condition of the library's own says changes only when a motor ends a move.
+        only_state = timeout is None and getattr(cond, "__module__", "") == library
         while True:
-            session.spend(LOOK_MS * MS)
+            if only_state and not cond(self.state):
+                look_when_a_motor_ends()
+            else:
+                session.spend(look_ns)
             if cond(self.state):
                 return True
             if timeout is not None and now_s() >= deadline_s:
