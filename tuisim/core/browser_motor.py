@@ -137,6 +137,8 @@ class BrowserMotor:
     @property
     def ramping_ticks(self) -> int:
         """About how many ticks until the register is steady; 0 only if it is."""
+        if self.speed_dps == self.speed_sp <= self._limit_dps:
+            return 0
         way = abs(self._aim - self.speed_dps)
         return math.ceil(way / self._ramp_step) or int(way > 0)
 

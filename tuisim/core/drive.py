@@ -204,14 +204,11 @@ class BrowserDrive:
         self.x_mm += forward * cos(way)
         self.y_mm += forward * sin(way)
         if turned:
-            self._turn(turned)
-
-    def _turn(self, turned: float) -> None:
-        self._heading += turned
-        if self._heading > _WHOLE_TURN:
-            self._heading -= _WHOLE_TURN
-            self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
-        self.heading_deg = self._heading * 180 / math.pi
+            heading = self._heading + turned
+            if heading > _WHOLE_TURN:
+                heading -= _WHOLE_TURN
+                self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
+            self._heading, self.heading_deg = heading, heading * 180 / math.pi
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
         """Let the wheels roll for some ticks, and write each down."""

@@ -40,9 +40,9 @@ class Motion:
     """
 
     __slots__ = (
-        "_buffer", "_drive", "_early", "_hz", "_left_dps", "_longest_mm", "_mm_per_deg", "_right_dps", "_room_end",
-        "_sink", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "left", "line", "noise", "pen_down",
-        "right", "spec", "tick",
+        "_buffer", "_early", "_hz", "_left_dps", "_longest_mm", "_mm_per_deg", "_right_dps", "_room_end",
+        "_sink", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "drive", "left", "line", "noise",
+        "pen_down", "right", "spec", "tick",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -61,7 +61,8 @@ class Motion:
             farthest = fastest * self._tick_s * self._mm_per_deg
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
-        self._drive = drive_of(spec)
+        self.drive = drive_of(spec)
+        """Where the robot is."""
         left, right = spec.robot.wheel_motors
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
         self.noise = spec.world.noise
@@ -82,22 +83,22 @@ class Motion:
     @property
     def x_mm(self) -> float:
         """Where the robot is."""
-        return self._drive.x_mm
+        return self.drive.x_mm
 
     @property
     def y_mm(self) -> float:
         """Where the robot is."""
-        return self._drive.y_mm
+        return self.drive.y_mm
 
     @property
     def heading_deg(self) -> float:
         """Where the robot looks."""
-        return self._drive.heading_deg
+        return self.drive.heading_deg
 
     @property
     def gyro_zero_deg(self) -> float:
         """Heading at which the gyro shows 0."""
-        return self._drive.gyro_zero_deg
+        return self.drive.gyro_zero_deg
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
         """Do some ticks.
@@ -142,14 +143,14 @@ class Motion:
         # Before anything moves: where there is no room for its record, there is no tick.
         buffer = self._buffer if count < self._room_end else self._make_room(1)
         self.tick = tick = self.tick + 1
-        left, right, drive = self.left, self.right, self._drive
+        left, right, drive = self.left, self.right, self.drive
         before, aside_mm = None, None
         if self._solids is not None and self._solids.left_of_room_mm(self._pose()) < self._longest_mm:
             before = left.state(), right.state()
         left_noise, right_noise = self._noise_dps(tick) if self.noise.motor else (0.0, 0.0)
-        modes = left.mode, right.mode
+        left_mode, right_mode = left.mode, right.mode
         left_deg, right_deg = left.step(tick, left_noise), right.step(tick, right_noise)
-        if (left.mode, right.mode) != modes:
+        if left.mode != left_mode or right.mode != right_mode:
             self.changed = True
         if before is not None:
             left_deg, right_deg, aside_mm = self._obstructed(before, left_deg, right_deg)
@@ -194,7 +195,7 @@ class Motion:
         return most if free >= way * most else int(free / way)
 
     def _pose(self) -> tuple[float, float, float]:
-        drive = self._drive
+        drive = self.drive
         return drive.x_mm, drive.y_mm, drive.heading_deg
 
     def _obstructed(
@@ -230,7 +231,7 @@ class Motion:
         return (
             self.tick, self.line, *self._pose(),
             self.left.position_deg, self.right.position_deg, self._left_dps, self._right_dps,
-            self._drive.gyro_zero_deg, self._flags(), self.actions & 0xFFFF,
+            self.drive.gyro_zero_deg, self._flags(), self.actions & 0xFFFF,
         )  # fmt: skip
 
     def _flags(self) -> int:
@@ -264,11 +265,11 @@ class Motion:
             records = Records(buffer, at, self.tick + 1, self.line, flags, actions, hz)
             if ramping:
                 left, right = self.left.glide(part), self.right.glide(part)
-                self._drive.glide(records, left, right)
+                self.drive.glide(records, left, right)
                 left_deg, right_deg = left.rolls_deg[-1], right.rolls_deg[-1]
             else:
                 left_even, right_even = self.left.glide_evenly(part), self.right.glide_evenly(part)
-                counts = self._drive.glide_evenly(records, left_even, right_even)
+                counts = self.drive.glide_evenly(records, left_even, right_even)
                 self.left.position_deg, self.right.position_deg = counts
                 left_deg, right_deg = left_even.roll_deg, right_even.roll_deg
             self._left_dps, self._right_dps = left_deg * hz, right_deg * hz

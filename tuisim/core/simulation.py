@@ -39,7 +39,8 @@ class Simulation(Motion):
     @property
     def pose(self) -> Pose:
         """Where the robot is."""
-        return Pose(self.x_mm, self.y_mm, self.heading_deg)
+        drive = self.drive
+        return Pose(drive.x_mm, drive.y_mm, drive.heading_deg)
 
     def instant(self) -> Instant:
         """Return the present moment, with values rounded as the telemetry stores them."""
@@ -65,13 +66,13 @@ class Simulation(Motion):
 
     def place(self, pose: Pose) -> None:
         """Put the robot somewhere; the gyro keeps the angle it shows."""
-        drive, before_deg = self._drive, self.heading_deg
+        drive, before_deg = self.drive, self.heading_deg
         drive.put(pose)
         drive.gyro_zero_deg = float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
 
     def reset_gyro(self) -> None:
         """Let the gyro show 0 here."""
-        self._drive.gyro_zero_deg = float32(self.heading_deg)
+        self.drive.gyro_zero_deg = float32(self.heading_deg)
 
     def end_tick_after(self, now_ns: int, duration_ns: int) -> int:
         """Return the tick in which a timed move that starts now comes to its end."""

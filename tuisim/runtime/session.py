@@ -34,8 +34,8 @@ COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
 """So many calls that cost nothing cost this much together."""
 
-REPEATED_WAITS = 100
-"""So many waits that follow each other anyway are done as one."""
+REPEATED_WAIT_NS = 10 * NS_PER_S
+"""Waits that follow each other anyway are done as one of this length."""
 
 CHUNK_TICKS = 2000
 """A long wait is done in pieces of so many ticks, to look for commands in between."""
@@ -93,6 +93,7 @@ class Session:
         """The brick's buttons that are held down."""
         self._due = sim.due_ns(1)
         hz = sim.spec.profile.tick_hz
+        self._hz = hz
         self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz
         """Length of a tick, 0 where that is no whole number."""
         self._limit_ns = limits.time_ns or 1 << 62
@@ -132,7 +133,8 @@ class Session:
             sim = self.sim
             sim.line = self.program_line()
             # Most readings make just one tick due, and whole ticks can be counted up.
-            following = self._due + self._tick_ns if self._tick_ns else sim.due_ns(sim.tick + 2)
+            # As `sim.due_ns(sim.tick + 2)` says it.
+            following = self._due + self._tick_ns if self._tick_ns else -(-(sim.tick + 2) * NS_PER_S // self._hz)
             if until < following:
                 sim.tick_once()
                 self.now, self._due = until, following
@@ -169,7 +171,7 @@ class Session:
         """
         if again and not self.slow & THREADS:
             # Nobody else can change anything meanwhile, so many short waits are as good as one long one.
-            timeout_ns *= REPEATED_WAITS
+            timeout_ns *= max(1, REPEATED_WAIT_NS // max(1, timeout_ns))
         self._pass(self.now + timeout_ns, True)
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:

@@ -150,7 +150,8 @@ class ColorDevice(LegoSensor):
             if sim.noise.light or sim.spec.world.pen_marks:
                 self._seen = color.reading(self._spec, sim.instant(), self._session.field).rgb
             else:
-                self._seen = self._clear(sim.x_mm, sim.y_mm, sim.heading_deg)
+                drive = sim.drive
+                self._seen = self._clear(drive.x_mm, drive.y_mm, drive.heading_deg)
         return self._seen
 
     def read(self, mode: str) -> tuple[int, int, int]:
