@@ -19,7 +19,8 @@ BAD = {
     "misspelt command's help": ("rnu --help", "did you mean `tuisim run`?"),
     "second program missing": ("run prog.py nope.py", "nope.py: there is no such program"),
     "no program": ("run", "no program is named (tuisim run PROGRAM…)"),
-    "directory as program": ("run .", "is a directory, not a program"),
+    "folder of notebooks as program": ("run .", ".: is a folder of 1 notebook (tuisim run . --all runs them all)"),
+    "directory as program": ("run empty", "is a directory, not a program"),
     "binary as program": ("run binary.py", "is not Python text"),
     "notebook as program": ("run book.ipynb", "is no notebook"),
     "wrong magic": ("run magic.py", "magic.py, line 1: -x: must be a number"),
@@ -69,6 +70,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "binary.py").write_bytes(b"\xff\xfe\x00\x01")
     (tmp_path / "book.ipynb").write_text("{}")
     (tmp_path / "folder.csv").mkdir()
+    (tmp_path / "empty").mkdir()
     return tmp_path
 
 

@@ -171,7 +171,9 @@ except Exception as error:
 """
 
 
-@pytest.mark.parametrize(("profile", "position"), [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "810")])
+@pytest.mark.parametrize(
+    ("profile", "position"), [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "809.6000000000001")]
+)
 def test_wheels_of_medium_motors(here: Command, tmp_path: Path, profile: str, position: str) -> None:
     (tmp_path / "robot.toml").write_text(MEDIUM_WHEELS)
     (tmp_path / "prog.py").write_text(DRIVES)
