@@ -20,7 +20,7 @@ BAD = {
     "second program missing": ("run prog.py nope.py", "nope.py: there is no such program"),
     "no program": ("run", "no program is named (tuisim run PROGRAM…)"),
     "folder of notebooks as program": ("run .", ".: is a folder of 1 notebook (tuisim run . --all runs them all)"),
-    "directory as program": ("run empty", "is a directory, not a program"),
+    "directory as program": ("run empty", "empty: is a folder without notebooks"),
     "binary as program": ("run binary.py", "is not Python text"),
     "notebook as program": ("run book.ipynb", "is no notebook"),
     "wrong magic": ("run magic.py", "magic.py, line 1: -x: must be a number"),

@@ -29,7 +29,8 @@ def test_picture_equals_a_fresh_drawing(name: str) -> None:
 
 def test_every_mat_has_one_picture_and_one_entry() -> None:
     catalog = tomllib.loads((FOLDER / "catalog.toml").read_text(encoding="utf-8"))
-    assert sorted(catalog) == sorted(MATS) == sorted(path.stem for path in FOLDER.glob("*.png"))
+    drawn = [name for name, entry in catalog.items() if entry.get("shipped", True)]
+    assert sorted(drawn) == sorted(MATS) == sorted(path.stem for path in FOLDER.glob("*.png"))
 
 
 @pytest.mark.parametrize("name", MATS)
