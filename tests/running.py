@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tuisim.host import RunHandle
 from tuisim.protocol import Ended, Message
+from tuisim.runs.handle import RunHandle
 
 PATIENCE_S = 120.0
 """How long a test waits before it fails: what never comes must not pass, and what comes late on a busy machine must."""

@@ -65,7 +65,7 @@ def test_bad_choices_are_refused(choices: dict[str, Any], told: str) -> None:
 def test_import_loads_next_to_nothing() -> None:
     program = "import sys; before = set(sys.modules); import tuisim; print(*(set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.host"} & set(done.stdout.split())
+    assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.runs.handle"} & set(done.stdout.split())
 
 
 def test_the_readme_example_does_as_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from tests.running import Run
 from tuisim.core.profile import EARLIER_KEYS, PROFILES
-from tuisim.datalog.runfile import StoredRun, read_run
+from tuisim.runs.run_folder import StoredRun, read_run
 
 Earlier = Callable[[str], StoredRun]
 

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT, Command
-from tuisim.assets import programs
-from tuisim.datalog.face import ROW_BYTES, Face, face_after
-from tuisim.datalog.records import DISPLAY
-from tuisim.datalog.store import load_run
-from tuisim.programfile import read_program
+from tuisim.config.assets import programs
+from tuisim.config.program_file import read_program
+from tuisim.runs.brick_state import ROW_BYTES, BrickState, face_after
+from tuisim.runs.records import DISPLAY
+from tuisim.runs.store import load_run
 
 EXAMPLES: dict[str, dict[str, object]] = {
     "bumper.py": {"background": "Empty_Map", "lines": 2, "samples": 2},
@@ -116,7 +116,7 @@ def test_log_of_the_greys_has_the_plateaus_in_driving_order(here: Command) -> No
 
 def test_display_shows_the_light_as_a_bar(here: Command) -> None:
     run = load_run(json.loads(here("run", "draw_light", "--json").stdout)["id"])
-    pictures = [face_after(Face(), [row]).picture for row in run.output.all_rows() if row.stream == DISPLAY]
+    pictures = [face_after(BrickState(), [row]).picture for row in run.output.all_rows() if row.stream == DISPLAY]
     # One for each light on the mat, and those half way across an edge.
     assert len(pictures) > 5
     middle = slice(60 * ROW_BYTES, 61 * ROW_BYTES)

@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT, Command
+from tuisim.app.actions.table import ACTIONS
+from tuisim.app.analyser.actions.table import ACTIONS as ANALYSER_ACTIONS
+from tuisim.app.panels import PANELS
 from tuisim.cli import COMMANDS
 from tuisim.commands.log import SUBCOMMANDS
+from tuisim.config.options import SWITCHES
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import MOUNTS
-from tuisim.datalog.formats import EXPORTERS
-from tuisim.switches import SWITCHES
-from tuisim.ui.actions import ACTIONS
-from tuisim.ui.analyser.actions import ACTIONS as ANALYSER_ACTIONS
-from tuisim.ui.panels import PANELS
+from tuisim.logs.export import EXPORTERS
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 HOW_TO_ADD = README.partition("| to add | do |")[2].partition("\n\n")[0].splitlines()[2:]

@@ -59,7 +59,7 @@ def test_functions_are_small(path: Path) -> None:
     assert not long
 
 
-PRINTS = {"echo.py": "the one place", "follow.py": "passes on what a program prints"}
+PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
 """Files of the commands that may write to the terminal by themselves."""
 
 

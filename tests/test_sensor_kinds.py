@@ -11,24 +11,23 @@ from typing import Any
 import pytest
 
 from tests.runtime.debugging import Driver
-from tuisim.breaks import quantities
-from tuisim.config import load_robot, save_robot
+from tuisim.app.setup.fields import find
+from tuisim.app.setup.next_run import plan_of_spec
+from tuisim.app.snapshot import ENDED, further_readings, snapshot_of
+from tuisim.breakpoints import quantities
+from tuisim.config.robots import load_robot, save_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.sensors import SENSORS, SensorKind, with_kinds
 from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec, from_plain, to_plain
-from tuisim.datalog.frames import MOTION_COLUMNS, telemetry_frame
-from tuisim.datalog.mats import open_mat
-from tuisim.datalog.runfile import StoredRun
-from tuisim.datalog.store import RunStore
-from tuisim.datalog.views import instant_of
-from tuisim.host import Program, RunOptions, start_run
 from tuisim.protocol import Resume
-from tuisim.shim.building import DEVICES
-from tuisim.ui.edits import find
-from tuisim.ui.plan import plan_of_spec
-from tuisim.ui.readings import further_readings, snapshot_of
-from tuisim.ui.snapshot import ENDED
+from tuisim.runs.frames import MOTION_COLUMNS, telemetry_frame
+from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.mat import open_mat
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+from tuisim.runs.views import instant_of
+from tuisim.shim.brick import DEVICES
 
 each_kind = pytest.mark.parametrize("kind", SENSORS.values(), ids=SENSORS)
 each_mount = pytest.mark.parametrize("mount", MOUNTS, ids=lambda mount: mount.field)

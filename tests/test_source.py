@@ -8,11 +8,11 @@ import pytest
 
 from tests.conftest import Command
 from tests.running import Run
-from tuisim.child import stuck_line
+from tuisim.app.editor.text_file import read_text
+from tuisim.config.program_file import parse_program, read_program
 from tuisim.errors import ConfigError
-from tuisim.programfile import parse_program, read_program
+from tuisim.runs.process import stuck_line
 from tuisim.source import source_lines
-from tuisim.ui.editor.textfile import read_text
 
 NO_ENDS = "\x0b \x0c \x1c \x1d \x1e \x85 \u2028 \u2029"
 ODD = f"# \x0c\n\x0cx = '''{NO_ENDS}'''\nprint('A: 1')\nz = 1 / 0\n"

@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
     from tuisim.api import simulate
-    from tuisim.datalog.export import read_log
-    from tuisim.datalog.store import load_run
+    from tuisim.logs.export import read_log
+    from tuisim.runs.store import load_run
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "load_run", "read_log", "simulate"]
 
 _HOMES = {
-    "load_run": "tuisim.datalog.store",
-    "read_log": "tuisim.datalog.export",
+    "load_run": "tuisim.runs.store",
+    "read_log": "tuisim.logs.export",
     "simulate": "tuisim.api",
 }
 

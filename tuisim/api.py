@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim.config import build_run_spec
-from tuisim.datalog.records import STDOUT
-from tuisim.datalog.runfile import StoredRun
-from tuisim.datalog.store import RunStore
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import SWITCHES, Option, nearest, settings_of
+from tuisim.config.program_file import ProgramSource, program_of_text, read_program
 from tuisim.errors import ConfigError
-from tuisim.host import Program, RunOptions, start_run
-from tuisim.programfile import ProgramSource, program_of_text, read_program
-from tuisim.switches import SWITCHES, Switch, nearest, settings_of
+from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.records import STDOUT
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,14 +52,14 @@ class SimulatedRun:
     @property
     def samples(self) -> pd.DataFrame:
         """One row a printed `NAME: number`; columns as in `datalog.frames.SAMPLE_COLUMNS`."""
-        from tuisim.datalog.frames import samples_frame
+        from tuisim.runs.frames import samples_frame
 
         return samples_frame([self.stored])
 
     @property
     def telemetry(self) -> pd.DataFrame:
         """One row a tick; times in s, lengths in mm, angles in degrees."""
-        from tuisim.datalog.frames import telemetry_frame
+        from tuisim.runs.frames import telemetry_frame
 
         return telemetry_frame(self.stored)
 
@@ -74,9 +74,9 @@ def world_at_end(run: StoredRun) -> Image:
     Raises:
         LogError: the recording is damaged, or the mat cannot be found any more.
     """
-    from tuisim.datalog.mats import mat_files
-    from tuisim.fields import mat_pixels
-    from tuisim.figures import pen_trace, world_picture
+    from tuisim.charts.world_image import pen_trace, world_picture
+    from tuisim.config.mat_cache import mat_pixels
+    from tuisim.runs.mat import mat_files
 
     last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
     # A robot that a damaged record has nowhere is left out.
@@ -84,7 +84,7 @@ def world_at_end(run: StoredRun) -> Image:
     return world_picture(run.spec, mat_pixels(mat_files(run)), pose, (trace,))
 
 
-def _by_name() -> dict[str, Switch]:
+def _by_name() -> dict[str, Option]:
     """Every switch that takes part in a run, by its long names."""
     return {
         flag.lstrip("-").replace("-", "_"): switch
@@ -126,7 +126,7 @@ def _source(program: str | Path) -> ProgramSource:
         return program_of_text(program, None, "program")
     path = Path(program)
     if path.parent == Path() and not path.exists():
-        from tuisim.assets import programs_folder
+        from tuisim.config.assets import programs_folder
 
         for name in (path.name, f"{path.name}.py"):
             if (example := programs_folder() / name).is_file():

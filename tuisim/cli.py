@@ -16,8 +16,8 @@ from importlib import import_module
 from pathlib import Path
 
 from tuisim import __version__
+from tuisim.config.options import ARGUMENTS_FOLLOW, SwitchParser
 from tuisim.errors import ConfigError, HostError, TuisimError, printable
-from tuisim.switches import ARGUMENTS_FOLLOW, SwitchParser
 
 COMMANDS: Mapping[str, str] = {
     "open": "open the app (also without this word)",
@@ -82,7 +82,7 @@ def _parser(command: str) -> SwitchParser:
 def _open(arguments: Namespace) -> int:
     """Start the app."""
     from tuisim.commands.notebooks import print_list, to_list
-    from tuisim.commands.prepare import prepare_app, prepare_replay
+    from tuisim.commands.resolve import prepare_app, prepare_replay
 
     if listed := to_list(arguments.words):
         print_list(arguments.words[0], listed)
@@ -94,8 +94,8 @@ def _open(arguments: Namespace) -> int:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise ConfigError("the app needs a terminal", "use `tuisim run PROGRAM` where there is none")
-    from tuisim.ui.app import run_app
-    from tuisim.ui.session import AppSettings
+    from tuisim.app.app import run_app
+    from tuisim.app.start_options import AppSettings
 
     settings = prepared.settings
     app_settings = AppSettings(
@@ -125,13 +125,15 @@ def _analyse(arguments: Namespace) -> int:
     what = asked(arguments)
     if not sys.stdout.isatty():
         raise ConfigError("the analyser needs a terminal", "use `tuisim log` where there is none")
-    from tuisim.datalog.opening.loading import STDIN
-    from tuisim.ui.analyser.app import run_analyser
-    from tuisim.ui.analyser.subject import Wanted
+    from tuisim.analysis.source import LogRequest
+    from tuisim.app.analyser.app import run_analyser
+    from tuisim.logs.reader import STDIN
 
     if what.file == STDIN:
         _keys_from_terminal()
-    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit)
+    wanted = LogRequest(
+        what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
+    )
     with _drawing_on_stdout():
         return run_analyser(wanted)
 
@@ -164,7 +166,7 @@ def _check_command(word: str) -> None:
     close = get_close_matches(word, COMMANDS, 1)
     if not close or "." in word:
         return
-    from tuisim.commands.prepare import find_program
+    from tuisim.commands.resolve import find_program
 
     if not find_program(word).exists():
         raise ConfigError(f"{word}: there is no such command or program", f"did you mean `tuisim {close[0]}`?")
@@ -196,7 +198,7 @@ def _dispatch(words: Sequence[str]) -> int:
         given, ours = tuple(ours[at + 1 :]), ours[:at]
     arguments = _parser(command).parse_intermixed_args(ours)
     if given is not None:
-        from tuisim.commands.prepare import check_arguments
+        from tuisim.commands.resolve import check_arguments
 
         arguments.arguments = given
         check_arguments(arguments.words if command == "open" else arguments.programs, arguments)

@@ -1,10 +1,4 @@
-"""Messages between host and child: one JSON object a line, `kind` names the message.
-
-Commands go down a pipe to the child and are announced by a signal; events come up
-another pipe. What happens at 100 Hz does not come as a message: it is in the run
-folder (`datalog.records`). User actions are commands that change the run; the child
-stores each with the tick before which it was applied, so that a run can be repeated.
-"""
+"""Messages between host and child: one JSON object a line, `kind` names the message."""
 
 from __future__ import annotations
 
@@ -14,9 +8,67 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
-from tuisim.breaks import parse_breaks
+from tuisim.breakpoints import parse_breakpoints
 from tuisim.errors import ConfigError
-from tuisim.held import FrameState, MetLine, ThreadState, Variable, Watched
+
+
+@dataclass(frozen=True, slots=True)
+class ThreadState:
+    """One thread of a program that stands still."""
+
+    name: str
+    line: int
+    """Its line of the program, 0 if it is in none."""
+    waiting: str
+    """What it waits for and until when, empty if it could run on."""
+    held: bool
+    """Whether it is the one in which the run was held."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrameState:
+    """One call of the program's own code."""
+
+    function: str
+    line: int
+    file: str
+    """Empty for the program itself, otherwise the module beside it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A name and what it stands for."""
+
+    name: str
+    kind: str
+    """Name of its type."""
+    value: str
+    """Its value as text, cut to a length that can be shown."""
+    changed: bool
+    """Whether the text is another one than at the last look at this function; new names are changed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A watch and its value."""
+
+    text: str
+    value: str
+    """Empty if there is an error."""
+    error: str
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutedLine:
+    """A line of the program that was about to run."""
+
+    tick: int
+    ordinal: int
+    line: int
+    thread: str
+    depth: int
+    """How many calls of the program's own code were open, from 1."""
+
 
 PROTOCOL_VERSION = 3
 
@@ -114,17 +166,17 @@ class SetBreaks(Message):
 
     kind = "set_breaks"
     breaks: tuple[str, ...]
-    """Texts in the language of `tuisim.breaks`; switched-off ones are passed over."""
+    """Texts in the language of `tuisim.breakpoints`; switched-off ones are passed over."""
 
     def __post_init__(self) -> None:
         # A pipe brings a list. What cannot be read is refused where it is made, not in the child.
         object.__setattr__(self, "breaks", tuple(self.breaks))
-        parse_breaks(self.breaks)
+        parse_breakpoints(self.breaks)
 
 
 @dataclass(frozen=True, slots=True)
-class Look(Message):
-    """Ask a run that stands still for its state; `Looked` is the answer."""
+class Inspect(Message):
+    """Ask a run that stands still for its state; `Inspected` is the answer."""
 
     kind = "look"
     watches: tuple[str, ...] = ()
@@ -139,7 +191,7 @@ class Look(Message):
 
 
 @dataclass(frozen=True, slots=True)
-class WantHistory(Message):
+class RequestHistory(Message):
     """Ask for the lines that were met last; `LineHistory` is the answer."""
 
     kind = "want_history"
@@ -222,7 +274,7 @@ class Reply(Message):
 ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer, Reply)
 """The commands that are user actions."""
 _CONTROLS: tuple[type[Message], ...] = (
-    Stop, Pause, Resume, StepTicks, StepLine, RunToLine, RunToInstant, SetBreaks, Look, WantHistory, SetSpeed,
+    Stop, Pause, Resume, StepTicks, StepLine, RunToLine, RunToInstant, SetBreaks, Inspect, RequestHistory, SetSpeed,
 )  # fmt: skip
 COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CONTROLS, *ACTIONS)}
 
@@ -362,7 +414,7 @@ class Ended(Message):
 
 
 @dataclass(frozen=True, slots=True)
-class Looked(Message):
+class Inspected(Message):
     """The state of a run that stands still."""
 
     kind = "looked"
@@ -389,10 +441,10 @@ class LineHistory(Message):
     """The lines that were met last, oldest first; the last one is about to run."""
 
     kind = "line_history"
-    lines: tuple[MetLine, ...]
+    lines: tuple[ExecutedLine, ...]
 
 
-_EVENTS = (Started, Paused, Resumed, Looked, LineHistory, Spoke, InputWanted, ReplyWanted, Ended)
+_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, InputWanted, ReplyWanted, Ended)
 EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
 
 

@@ -22,7 +22,7 @@ from tests.bench.starts import first_line, first_paint, help_text, imports
 from tests.bench.stops import stop_latency
 from tests.bench.variables import variables
 from tests.bench.wire import wire
-from tuisim.host import RunOptions
+from tuisim.runs.handle import RunOptions
 
 BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "speed": speeds,

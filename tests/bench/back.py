@@ -10,9 +10,9 @@ from statistics import median
 from tests.bench.figures import Effort, Figure
 from tests.bench.running import LOG
 from tests.bench.terminal import Terminal
-from tuisim.config import build_run_spec
-from tuisim.host import Program, RunOptions, start_run
-from tuisim.switches import Settings
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs.handle import Program, RunOptions, start_run
 
 RUN_S = 600.0
 PANELS = ("-O", "-A", "-i", "-D", "-c")

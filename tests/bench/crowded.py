@@ -12,7 +12,7 @@ from tests.bench.running import EMPTY
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.host import Program, RunOptions, start_run
+from tuisim.runs.handle import Program, RunOptions, start_run
 
 SIMULATED_S = 600.0
 OBSTACLES = 200

@@ -9,8 +9,8 @@ from statistics import median
 from tests.bench.figures import Effort, Figure
 from tests.bench.processes import children_cpu_s
 from tests.bench.running import EMPTY, LINE, begin
-from tuisim.host import RunHandle, RunOptions
-from tuisim.protocol import Look, Looked, Message, Pause, Paused, Resume, StepLine
+from tuisim.protocol import Inspect, Inspected, Message, Pause, Paused, Resume, StepLine
+from tuisim.runs.handle import RunHandle, RunOptions
 
 SIMULATED_S = 600.0
 PATIENCE_S = 5.0
@@ -62,7 +62,7 @@ def _steps_s(count: int) -> tuple[list[float], list[float]]:
             handle.wait_for_event(PATIENCE_S)
             handle.pump()
         steps = [_answer_s(handle, StepLine(), Paused) for _ in range(count)]
-        looks = [_answer_s(handle, Look(), Looked) for _ in range(count)]
+        looks = [_answer_s(handle, Inspect(), Inspected) for _ in range(count)]
         handle.send(Resume())
         return steps, looks
     finally:

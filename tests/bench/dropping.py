@@ -9,7 +9,7 @@ import runpy
 import sys
 from pathlib import Path
 
-from tuisim.datalog import records
+from tuisim.runs import records
 
 
 class DroppingSink:

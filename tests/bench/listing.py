@@ -14,9 +14,9 @@ from pathlib import Path
 
 from tests.bench.figures import Effort, Figure
 from tests.bench.running import begin
-from tuisim.datalog.catalogue import CATALOGUE_FILE
-from tuisim.datalog.runfile import RUN_FILE
-from tuisim.host import RunOptions
+from tuisim.runs.catalogue import CATALOGUE_FILE
+from tuisim.runs.handle import RunOptions
+from tuisim.runs.run_folder import RUN_FILE
 
 RUNS = 2000
 FEW = "import time\nfor n in range(50):\n    print('n:', n)\n    time.sleep(0.1)\n"

@@ -15,14 +15,14 @@ from tests.bench.figures import Effort, Figure
 from tests.bench.processes import children_cpu_s
 from tests.bench.running import EMPTY, LINE, LOG, MOVES
 from tests.bench.speed import LOADS
-from tuisim.config import build_run_spec
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
 from tuisim.core.spec import RunSpec
-from tuisim.datalog.runfile import StoredRun
-from tuisim.datalog.store import RunStore, compact_run
-from tuisim.datalog.views import OutputView, TelemetryView
-from tuisim.host import Program, RunOptions, field_files, start_run
-from tuisim.rerun import rerun, same
-from tuisim.switches import Settings
+from tuisim.runs.handle import Program, RunOptions, field_files, start_run
+from tuisim.runs.rerun import rerun, same
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore, compact_run
+from tuisim.runs.views import OutputView, TelemetryView
 
 RUN_S = 600.0
 COST_RUN_S = 1800.0

@@ -9,8 +9,8 @@ from statistics import median
 
 import numpy as np
 
-from tuisim.ui.render.chart import ChartPainter, ChartState
-from tuisim.ui.render.traces import Traces
+from tuisim.charts.text_chart import ChartPainter, ChartState
+from tuisim.charts.traces import Traces
 
 WIDTH, HEIGHT = 100, 30
 TIMES = 21

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tuisim.config import build_run_spec
-from tuisim.host import Program, RunHandle, RunOptions, start_run
-from tuisim.switches import Settings
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs.handle import Program, RunHandle, RunOptions, start_run
 
 EMPTY = "pass\n"
 

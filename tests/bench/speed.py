@@ -10,7 +10,7 @@ from tests.bench.figures import Effort, Figure
 from tests.bench.processes import children_cpu_s
 from tests.bench.running import EMPTY, LINE, LOG, MOVES, begin
 from tuisim.core.profile import NBEV3DEVSIM, ROBOLAB
-from tuisim.host import RunOptions
+from tuisim.runs.handle import RunOptions
 
 SIMULATED_S = 600.0
 UNIT = "sim s / CPU s"

@@ -9,8 +9,8 @@ from tests.bench.figures import Effort, Figure
 from tests.bench.processes import command_cpu_s, cpu_s, wait_until_stopped
 from tests.bench.running import begin
 from tests.bench.terminal import Terminal
-from tuisim.host import RunOptions
 from tuisim.protocol import Started
+from tuisim.runs.handle import RunOptions
 
 STOPS_ITSELF = "import os, signal; os.kill(os.getpid(), signal.SIGSTOP)\n"
 """A program that stands still in its first line, so that the CPU used until then can be read at leisure."""

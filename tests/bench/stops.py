@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 from tests.bench.figures import Effort, Figure
 from tests.bench.running import begin
-from tuisim.host import RunOptions
 from tuisim.protocol import Started
+from tuisim.runs.handle import RunOptions
 
 SPIN = "while True:\n    pass\n"
 SLEEP = "import time\nwhile True:\n    time.sleep(0.1)\n"

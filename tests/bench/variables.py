@@ -9,13 +9,13 @@ from statistics import median
 
 from tests.bench.figures import Effort, Figure
 from tests.bench.running import LOG
-from tuisim.config import build_run_spec
-from tuisim.datalog.store import load_run
-from tuisim.host import Program, RunOptions, start_run
-from tuisim.protocol import Look, Looked, Paused
-from tuisim.switches import Settings
-from tuisim.ui.recording import Recording
-from tuisim.ui.stands import Position, StandIn
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.protocol import Inspect, Inspected, Paused
+from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.recording import Recording
+from tuisim.runs.replay_debugger import Position, ReplayDebugger
+from tuisim.runs.store import load_run
 
 RUN_S = 600.0
 PLACES_A_REPEAT = 5
@@ -34,10 +34,10 @@ class Asking:
         run = start_run(Program("bench.py", LOG, "preloaded"), spec, RunOptions(time_limit_s=RUN_S))
         run.wait()
         self.recording = Recording(load_run(run.run_id))
-        self.stand_in = StandIn(self._arrived, self._failed, self._passed)
+        self.stand_in = ReplayDebugger(self._arrived, self._failed, self._passed)
         self._there = False
 
-    def _arrived(self, paused: Paused, looked: Looked) -> None:
+    def _arrived(self, paused: Paused, looked: Inspected) -> None:
         self._there = True
 
     def _failed(self, why: str) -> None:
@@ -62,11 +62,11 @@ class Asking:
 
     def look_s(self, at: Position) -> float:
         """Return how long it takes to know the variables of an instant."""
-        return self.took_s(lambda: self.stand_in.go(self.recording, at, Look()))
+        return self.took_s(lambda: self.stand_in.go(self.recording, at, Inspect()))
 
     def back_s(self, at: Position) -> float:
         """Return how long it takes to go a line back from an instant."""
-        return self.took_s(lambda: self.stand_in.lines_back(self.recording, at, 1, Look()))
+        return self.took_s(lambda: self.stand_in.lines_back(self.recording, at, 1, Inspect()))
 
 
 def variables(effort: Effort) -> Iterator[Figure]:

@@ -6,7 +6,7 @@ fork, with the runtime, the shim and the genuine library in it as in a real run;
 
 from __future__ import annotations
 
-from tuisim.runtime import real  # isort: skip - must come first: it keeps the real clock
+from tuisim.runtime import wallclock  # isort: skip - must come first: it keeps the real clock
 
 import json
 import os
@@ -19,24 +19,24 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from tests.core.memory_sink import MemorySink
-from tuisim.core import laws
+from tuisim.config.mat_cache import FieldFiles, open_field
+from tuisim.core import motor_laws
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.drive import EvenGlide
 from tuisim.core.profile import NBEV3DEVSIM
 from tuisim.core.simulation import NS_PER_S, Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
 from tuisim.core.state import TICK_RECORD
-from tuisim.fields import FieldFiles, open_field
-from tuisim.host import field_files
-from tuisim.runtime.baton import Baton
+from tuisim.runs.handle import field_files
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.clock import loop_hook, patch_time
-from tuisim.runtime.config import RunConfig
+from tuisim.runtime.control import RunControl
 from tuisim.runtime.output import Output
 from tuisim.runtime.program import Outcome, ProgramRunner
+from tuisim.runtime.replacement import replace as put_in_place
+from tuisim.runtime.run_config import RunConfig
+from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Limits, Session
-from tuisim.runtime.standin import replace as put_in_place
-from tuisim.runtime.steering import Steering
 from tuisim.runtime.threads import patch_threads
 from tuisim.shim.install import install
 
@@ -140,11 +140,11 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     sim, lines = Simulation(spec, MemorySink()), Lines()
     output = Output(lines)  # type: ignore[arg-type]
     channel = Channel(*os.pipe())
-    steering = Steering(channel, Path(), False, 0.0, False, ())
+    steering = RunControl(channel, Path(), False, 0.0, False, ())
     session = Session(sim, open_field(files), output, channel, steering, Limits(60 * NS_PER_S), "program.py")
     output.place = lambda: (sim.tick, session.now, 0)
     turn = loop_hook(session, 500, 5_000_000)
-    baton = Baton(session, lambda parked: None)
+    baton = Scheduler(session, lambda parked: None)
     patch_time(session)
     # The program's own is to be made anew, with locks that are on the baton.
     del sys.modules["threading"]
@@ -178,7 +178,7 @@ def courses(jobs: Iterable[Job], folder: Path) -> list[Course]:
 
 def main(folder: Path) -> None:
     """Run the programs of a folder, each in a fork."""
-    vars(laws)["BrowserMotor"] = Watched
+    vars(motor_laws)["BrowserMotor"] = Watched
     for at, job in enumerate(json.loads((folder / "jobs.json").read_text())):
         spec = from_plain(job["spec"])
         files = field_files(spec)
@@ -187,7 +187,7 @@ def main(folder: Path) -> None:
             signal.alarm(60)
             done = carry_out(spec, job["text"], job["prelude"], files)
             (folder / f"{at}.json").write_text(json.dumps(done))
-            real.exit_process(0)
+            wallclock.exit_process(0)
         os.waitpid(child, 0)
 
 

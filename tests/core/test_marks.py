@@ -9,7 +9,7 @@ import pytest
 from tests.core.memory_sink import MemorySink
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.marks import PenMarks
+from tuisim.core.pen_marks import PenMarks
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.sensors.color import pixel_array, reading
 from tuisim.core.simulation import Simulation

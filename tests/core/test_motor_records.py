@@ -14,7 +14,7 @@ from tests.core.motor_lab import Course, Job, courses
 from tests.core.motor_programs import PROGRAMS
 from tests.core.tick_model import Lab
 from tuisim.config.presets import ROBOTS
-from tuisim.config.reading import Section
+from tuisim.config.reader import Section
 from tuisim.config.robot_json import robot_from_json
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec, WorldSpec

@@ -11,10 +11,10 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
+from tuisim.core.collision import Solids, outline
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
-from tuisim.core.solid import Solids, outline
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
 
 ALLOWED_MM = 0.01

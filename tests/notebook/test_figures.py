@@ -11,13 +11,14 @@ import pytest
 from PIL import Image
 
 from tests.running import Run
-from tuisim.config import ROBOTS, build_run_spec
+from tuisim.charts.robot_image import COLORED, shape_of
+from tuisim.charts.world_image import CHART_SIZE, chart_picture, pen_trace, world_picture, world_view
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.presets import ROBOTS
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
-from tuisim.datalog.samples import Sample
-from tuisim.figures import CHART_SIZE, chart_picture, pen_trace, world_picture, world_view
-from tuisim.robotpaint import COLORED, shape_of
-from tuisim.switches import Settings
+from tuisim.runs.samples import Sample
 
 BLUE = (31, 119, 180)
 

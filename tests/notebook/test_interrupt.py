@@ -10,8 +10,8 @@ import pytest
 from IPython.core.interactiveshell import InteractiveShell
 
 from tests.notebook.conftest import Cell, Kernel
-from tuisim.notebook import running
-from tuisim.notebook.showing import Stage
+from tuisim.notebook import cell_run
+from tuisim.notebook.display import Stage
 
 ENDLESS = "%%sim_magic_preloaded -RW --speed 1\nprint('Colour: 1')\nwhile True:\n    pass\n"
 
@@ -45,8 +45,8 @@ def check_that_all_is_well(cell: Cell) -> None:
 @pytest.mark.parametrize(
     ("holder", "name"),
     [
-        pytest.param(running, "start_run", id="as it starts"),
-        pytest.param(running, "show_rows", id="among its lines", marks=pytest.mark.slow),
+        pytest.param(cell_run, "start_run", id="as it starts"),
+        pytest.param(cell_run, "show_rows", id="among its lines", marks=pytest.mark.slow),
         pytest.param(Stage, "show", id="in the display"),
     ],
 )
@@ -76,12 +76,12 @@ def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
 
 
 def test_an_interrupt_before_the_run_leaves_everything_as_it_was(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
-    import tuisim.host
+    import tuisim.runs.handle
 
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell("%%sim_magic -RW\nprint('Colour: 1')\n")
     with monkeypatch.context() as patch:
-        patch.setattr(tuisim.host, "field_files", striking(tuisim.host.field_files))
+        patch.setattr(tuisim.runs.handle, "field_files", striking(tuisim.runs.handle.field_files))
         shown = cell("%%sim_magic -RW -x 900\nprint('never')\n")
     assert (shown.out, shown.err) == ("", "tuisim: interrupted; no program was running\n")
     check_that_all_is_well(cell)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from tests.running import PATIENCE_S
-from tuisim.host import RunHandle
-from tuisim.protocol import Ended, LineHistory, Look, Looked, Message, Paused, WantHistory
+from tuisim.protocol import Ended, Inspect, Inspected, LineHistory, Message, Paused, RequestHistory
+from tuisim.runs.handle import RunHandle
 
 Kind = TypeVar("Kind", bound=Message)
 
@@ -51,11 +51,11 @@ class Driver:
         assert isinstance(event, Paused | Ended)
         return event
 
-    def look(self, *watches: str, thread: str = "", frame: int = 0) -> Looked:
+    def look(self, *watches: str, thread: str = "", frame: int = 0) -> Inspected:
         """Look at the run."""
-        self.run.send(Look(watches, thread, frame))
-        event = self.wait_for(Looked)
-        assert isinstance(event, Looked)
+        self.run.send(Inspect(watches, thread, frame))
+        event = self.wait_for(Inspected)
+        assert isinstance(event, Inspected)
         return event
 
     def values(self, frame: int = 0) -> dict[str, str]:
@@ -64,7 +64,7 @@ class Driver:
 
     def history(self, count: int = 100) -> LineHistory:
         """Return the lines that were met last."""
-        self.run.send(WantHistory(count))
+        self.run.send(RequestHistory(count))
         event = self.wait_for(LineHistory)
         assert isinstance(event, LineHistory)
         return event

@@ -9,7 +9,7 @@ import pytest
 from tests.running import PATIENCE_S, Run
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.host import Program, RunOptions, start_run
+from tuisim.runs.handle import Program, RunOptions, start_run
 
 ENDS = {
     "nothing to do": ("pass", "finished", 0),

@@ -183,7 +183,7 @@ def test_driving_off_the_field(run: Run, profile: str, beyond: bool) -> None:
 
     from tuisim.core.profile import PROFILES
     from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-    from tuisim.host import Program, RunOptions, start_run
+    from tuisim.runs.handle import Program, RunOptions, start_run
 
     world = WorldSpec(background="Empty_Map", solid=PROFILES[profile].solid)
     spec = RunSpec(RobotSpec(), replace(world), PROFILES[profile])
@@ -233,8 +233,8 @@ def test_old_ultrasonic_measures_every_third_tick(run: Run) -> None:
 
 def test_viewers_and_programs_read_the_same(run: Run) -> None:
     """What a program reads is what the recording gives back, sensor by sensor."""
-    from tuisim.datalog.frames import telemetry_frame
-    from tuisim.datalog.store import load_run
+    from tuisim.runs.frames import telemetry_frame
+    from tuisim.runs.store import load_run
 
     text = (
         "tank_drive.on(40, 30)\nfor i in range(20):\n"

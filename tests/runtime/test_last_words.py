@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.running import PATIENCE_S, Start
-from tuisim.host import RunHandle
 from tuisim.protocol import Message
+from tuisim.runs.handle import RunHandle
 
 
 def test_a_child_that_goes_while_its_events_are_read_has_not_crashed(

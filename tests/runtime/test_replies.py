@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 
 from tests.running import Done, Run, Start, over, until
-from tuisim.datalog.store import RunStore
-from tuisim.host import RunHandle
 from tuisim.protocol import Answer, Message, Reply, ScriptedAction
-from tuisim.rerun import rerun, same
+from tuisim.runs.handle import RunHandle
+from tuisim.runs.rerun import rerun, same
+from tuisim.runs.store import RunStore
 
 GLUE = "from ev3dev2_glue import pyState, get_clock\n"
 TALKS = f"""{GLUE}

@@ -8,16 +8,7 @@ from typing import Any
 import pytest
 
 from tests.running import Run, Start, over, until_tick
-from tuisim.protocol import (
-    Answer,
-    Message,
-    ScriptedAction,
-    SetButtons,
-    SetNoise,
-    SetPen,
-    SetPose,
-    SetSpeed,
-)
+from tuisim.protocol import Answer, Message, ScriptedAction, SetButtons, SetNoise, SetPen, SetPose, SetSpeed
 
 LOGGER = """
 import time

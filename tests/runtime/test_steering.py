@@ -13,9 +13,9 @@ import pytest
 
 from tests.running import PATIENCE_S, Run, Start, until
 from tuisim.core.state import TICK_RECORD
-from tuisim.decoding import decode_event
 from tuisim.errors import HostError
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, StepTicks
+from tuisim.runs.process import decode_event
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -125,7 +125,7 @@ def test_a_child_that_is_killed_leaves_every_row(start: Start) -> None:
 HOST = """
 import sys, time
 from tests.runtime.test_steering import spec
-from tuisim.host import Program, RunOptions, start_run
+from tuisim.runs.handle import Program, RunOptions, start_run
 run = start_run(Program("p.py", sys.argv[1], "preloaded"), spec(), RunOptions(live=True))
 while run.output.length == 0:
     run.pump()

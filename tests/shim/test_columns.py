@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.shim.conftest import RunOn
-from tuisim.datalog.sensor_columns import sensor_columns
-from tuisim.fields import open_field
+from tuisim.config.mat_cache import open_field
+from tuisim.runs.sensor_columns import sensor_columns
 
 PROGRAM = """
 from ev3dev2.motor import *

@@ -12,9 +12,9 @@ from tests.shim.conftest import FAR_WALL, PLAIN, RunOn
 from tests.shim.table_sound import FILE
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RunSpec
-from tuisim.datalog.records import CONSOLE, SPEECH, STDERR, STDOUT
-from tuisim.host import Program, RunOptions, start_run
-from tuisim.shim.commandline import NotUnderstood, read_line
+from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.records import CONSOLE, SPEECH, STDERR, STDOUT
+from tuisim.shim.shell.syntax import NotUnderstood, read_line
 
 SETUP = """
 import asyncio, concurrent.futures, contextlib, io, multiprocessing, os, subprocess, time

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from tests.running import Done
 from tests.shim.conftest import RunOn
-from tuisim.datalog.face import Face, face_after
-from tuisim.datalog.records import LED, OutputRow
+from tuisim.runs.brick_state import BrickState, face_after
+from tuisim.runs.records import LED, OutputRow
 
 STEPS = """\
 from ev3dev2.led import Leds
@@ -37,7 +37,7 @@ def rows(done: Done) -> list[OutputRow]:
 
 def lights(row: OutputRow) -> tuple[int, ...]:
     """Return left red, left green, right red, right green."""
-    return tuple(face_after(Face(), [row]).leds.values())
+    return tuple(face_after(BrickState(), [row]).leds.values())
 
 
 def test_each_change_is_written_down_once_with_its_line(run_on: RunOn) -> None:
@@ -45,7 +45,7 @@ def test_each_change_is_written_down_once_with_its_line(run_on: RunOn) -> None:
     assert [(row.line, lights(row)) for row in rows(done)] == [(5, (255, 255, 0, 255)), (8, (255, 255, 0, 0))]
     first, last = rows(done)
     assert last.time_ns - first.time_ns == 1_000_000_000
-    assert list(face_after(Face(), [first]).leds) == ["left red", "left green", "right red", "right green"]
+    assert list(face_after(BrickState(), [first]).leds) == ["left red", "left green", "right red", "right green"]
 
 
 def test_a_blinking_light_is_written_down_each_time(run_on: RunOn) -> None:

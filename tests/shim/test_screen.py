@@ -7,8 +7,8 @@ import pytest
 from tests.running import Done
 from tests.shim.conftest import RunOn
 from tests.shim.table_console import SCREENS
-from tuisim.datalog.face import BLANK, DISPLAY_WIDTH, ROW_BYTES, Face, face_after
-from tuisim.datalog.records import CONSOLE, DISPLAY, OutputRow
+from tuisim.runs.brick_state import BLANK, DISPLAY_WIDTH, ROW_BYTES, BrickState, face_after
+from tuisim.runs.records import CONSOLE, DISPLAY, OutputRow
 
 EXERCISED = {
     "ev3dev2.console:Console.text_at",
@@ -39,7 +39,7 @@ def shown(done: Done) -> list[OutputRow]:
 
 def dark(row: OutputRow) -> set[tuple[int, int]]:
     """Return the dark pixels of a picture's row."""
-    picture = face_after(Face(), [row]).picture
+    picture = face_after(BrickState(), [row]).picture
     assert len(picture) == len(BLANK)
     bits = ((at, bit) for at, byte in enumerate(picture) for bit in range(8) if byte << bit & 0x80)
     return {(at % ROW_BYTES * 8 + bit, at // ROW_BYTES) for at, bit in bits}
@@ -58,7 +58,7 @@ def test_an_update_is_written_down_once_it_is_done(run_on: RunOn) -> None:
 def test_the_text_screen_after_each_call(run_on: RunOn) -> None:
     lines = ["from ev3dev2.console import Console", "c = Console()", *SCREENS]
     done = run_on("\n".join([*lines, "print('done')"]))
-    faces = {row.line: face_after(Face(), [row]).text for row in shown(done)}
+    faces = {row.line: face_after(BrickState(), [row]).text for row in shown(done)}
     found = {}
     for number, statement in enumerate(lines[1:], 2):
         # What leaves the screen as it was is not written down.

@@ -10,9 +10,9 @@ from tests.shim.conftest import FAR_WALL, PLAIN, RunOn
 from tests.shim.table_sound import FILE, HEARD
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RunSpec
-from tuisim.datalog.records import SPEECH
-from tuisim.host import Program, RunOptions, start_run
 from tuisim.protocol import Spoke
+from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.records import SPEECH
 from tuisim.shim.tones import Tone, parse_beep
 
 

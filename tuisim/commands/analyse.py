@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from tuisim.commands.logs.columns import add_columns
 from tuisim.commands.logs.sources import is_file
+from tuisim.config.options import SwitchParser
 from tuisim.errors import ConfigError
-from tuisim.switches import SwitchParser
 
 
 @dataclass(frozen=True, slots=True)

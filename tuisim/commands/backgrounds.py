@@ -6,13 +6,13 @@ from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
-from tuisim.assets import Background
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
 from tuisim.commands.tables import table
+from tuisim.config.assets import Background
+from tuisim.config.options import SwitchParser
+from tuisim.config.own_mats import Taken, import_originals, mats, own_folder
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import listed
-from tuisim.own_mats import Taken, import_originals, mats, own_folder
-from tuisim.switches import SwitchParser
 
 
 def add_arguments(parser: SwitchParser) -> None:

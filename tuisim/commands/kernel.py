@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, assert_never
 from tuisim.atomic import replacing
 from tuisim.commands.echo import echo, echo_json, echo_lines
 from tuisim.commands.tables import table
+from tuisim.config.options import SwitchParser, nearest
 from tuisim.errors import ConfigError
-from tuisim.switches import SwitchParser, nearest
 
 if TYPE_CHECKING:
     from jupyter_client.kernelspec import KernelSpecManager

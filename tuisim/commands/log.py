@@ -13,9 +13,9 @@ from typing import Any, cast
 
 from tuisim.commands.logs.columns import add_columns
 from tuisim.commands.progress import Progress
-from tuisim.datalog.formats import LISTED
+from tuisim.config.options import SwitchParser, nearest
 from tuisim.errors import ConfigError
-from tuisim.switches import SwitchParser, nearest
+from tuisim.logs.export import LISTED
 
 COMMON = ("time", "unit", "value", "variable", "telemetry", "json", "out")
 _CHART = ("facets", "marks", "from", "to", "against", "size")
@@ -47,9 +47,9 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
     "resample": Subcommand("all variables every --period seconds", "signals:even", ("period", "between")),
     "calc": Subcommand("--expression over the columns", "signals:calculate", ("expression",)),
     "reckon": Subcommand("dead reckoning from the wheels, and its error", "signals:reckon"),
-    "diff": Subcommand("where two runs part; exit code 1 if they do", "comparing:diff"),
+    "diff": Subcommand("where two runs part; exit code 1 if they do", "diff:diff"),
     "export": Subcommand("the log in another format", "signals:export"),
-    "plot": Subcommand("the chart, as text, SVG or PNG", "plotting:plot", _CHART),
+    "plot": Subcommand("the chart, as text, SVG or PNG", "plot:plot", _CHART),
     "report": Subcommand("program, world, chart, bands, statistics and notes on one page", "report:report"),
 }
 """What `tuisim log` does, by name."""

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.commands import outcome
+from tuisim.commands import exit_status
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.datalog.runfile import StoredRun
 from tuisim.errors import ConfigError
-from tuisim.notebook.reading import NotebookProgram, chosen_programs, is_notebook, notebook_programs, notebooks_in
+from tuisim.notebook.cells import NotebookProgram, chosen_programs, is_notebook, notebook_programs, notebooks_in
+from tuisim.runs.run_folder import StoredRun
 
 NOT_RUN = "not_run"
 
@@ -82,7 +82,7 @@ class NotRun:
         """Tell why it is not run."""
         if as_json:
             facts = {"program": self.label, "state": NOT_RUN, "error": str(self.error)}
-            echo_json({**facts, "exit_code": outcome.EXIT_BAD_OUTPUT}, flush=True)
+            echo_json({**facts, "exit_code": exit_status.EXIT_BAD_OUTPUT}, flush=True)
         else:
             echo_error(f"tuisim: {self.label} is not run: {self.error}")
 
@@ -115,5 +115,5 @@ def print_results(results: Sequence[tuple[str, StoredRun | None]]) -> None:
 def _row(label: str, run: StoredRun | None) -> tuple[object, ...]:
     if run is None:
         return label, NOT_RUN, "", "", ""
-    facts = outcome.describe(run)
+    facts = exit_status.describe(run)
     return label, facts["state"], facts["samples"], f"{facts['time_s']:.3f}", facts["run"]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from tuisim.config.options import nearest, number
 from tuisim.errors import ConfigError
 from tuisim.protocol import BUTTONS, ScriptedAction, SetButtons
-from tuisim.switches import nearest, number
 
 FLAG = "--press"
 DEFAULT_PRESS_S = 0.1

@@ -7,10 +7,9 @@ from dataclasses import asdict
 
 from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.config import load_profile
-from tuisim.config.profiles import SOURCES
+from tuisim.config.options import SwitchParser
+from tuisim.config.profiles import SOURCES, load_profile
 from tuisim.core.profile import MS, PROFILES
-from tuisim.switches import SwitchParser
 
 _APART = ("name", "title")
 

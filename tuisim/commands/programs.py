@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from tuisim.assets import programs, programs_folder
 from tuisim.commands.echo import echo, echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.switches import SwitchParser
+from tuisim.config.assets import programs, programs_folder
+from tuisim.config.options import SwitchParser
 
 
 def add_arguments(parser: SwitchParser) -> None:

@@ -7,10 +7,10 @@ from dataclasses import asdict
 
 from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.config import ROBOTS, load_robot
-from tuisim.config.robots import robot_file
+from tuisim.config.options import SwitchParser
+from tuisim.config.presets import ROBOTS
+from tuisim.config.robots import load_robot, robot_file
 from tuisim.core.spec import RobotSpec
-from tuisim.switches import SwitchParser
 
 
 def add_arguments(parser: SwitchParser) -> None:

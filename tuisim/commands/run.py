@@ -6,21 +6,21 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Sequence
 
-from tuisim.commands import outcome
-from tuisim.commands.breaks import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
+from tuisim.commands import exit_status
+from tuisim.commands.breakpoints import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
 from tuisim.commands.echo import echo_error
-from tuisim.commands.follow import Follower, Interrupts
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
-from tuisim.commands.prepare import Prepared, prepare_runs
+from tuisim.commands.outputs import check_targets
 from tuisim.commands.press import parse_press, press_actions
 from tuisim.commands.progress import Progress, is_watched, tell
-from tuisim.commands.targets import check_targets
-from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
-from tuisim.datalog.runfile import StoredRun
-from tuisim.datalog.store import RunStore
+from tuisim.commands.relay import Follower, Interrupts
+from tuisim.commands.resolve import Prepared, prepare_runs
+from tuisim.config.options import SwitchParser, number
 from tuisim.errors import ConfigError, ExportError, LogError, TuisimError
-from tuisim.host import RunHandle, RunOptions, start_run
-from tuisim.switches import SwitchParser, number
+from tuisim.logs.export import EXPORTERS, export_samples, export_telemetry
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
 
 MAX_TIME_LIMIT_S = 1e6
 DEFAULT_TIME_LIMIT_S = 600.0
@@ -116,18 +116,18 @@ def _run_all(
         if isinstance(one, NotRun):
             one.report(as_json=arguments.json)
             results.append((one.label, None))
-            code = max(code, outcome.EXIT_BAD_OUTPUT)
+            code = max(code, exit_status.EXIT_BAD_OUTPUT)
             continue
         how_far = _how_far(at, len(prepared))
         exit_code, handle = _run_one(one, arguments, store, interrupts, how_far)
         if handle.folder.is_dir():
             run = handle.stored()
             results.append((one.label or run.program.name, run))
-            outcome.report(run, exit_code, as_json=arguments.json)
+            exit_status.report(run, exit_code, as_json=arguments.json)
         else:
             echo_error(f"tuisim: {handle.program.name}: nothing of run {handle.number} is kept: {handle.unstored}")
         code = max(code, exit_code)
-        if exit_code > outcome.SIGNALLED:
+        if exit_code > exit_status.SIGNALLED:
             break
     return code, results
 
@@ -170,7 +170,6 @@ def _run_one(
         handle.close()
     if follower.lost:
         echo_error(f"tuisim: {follower.lost} (run {handle.number} has every line)")
-    code = (
-        interrupts.exit_code or follower.cut or (outcome.EXIT_LIMIT if teller.stopped else outcome.exit_code_of(ended))
-    )
-    return max(code, outcome.EXIT_BAD_OUTPUT) if follower.lost or handle.unstored else code, handle
+    ended_code = exit_status.EXIT_LIMIT if teller.stopped else exit_status.exit_code_of(ended)
+    code = interrupts.exit_code or follower.cut or ended_code
+    return max(code, exit_status.EXIT_BAD_OUTPUT) if follower.lost or handle.unstored else code, handle

@@ -13,20 +13,20 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_json_head, echo_lines
-from tuisim.commands.logs.comparing import diff_text
-from tuisim.commands.outcome import describe, last_state
+from tuisim.commands.exit_status import describe, last_state
+from tuisim.commands.logs.diff import diff_text
+from tuisim.commands.outputs import check_targets
 from tuisim.commands.progress import Progress, tell
 from tuisim.commands.tables import table
-from tuisim.commands.targets import check_targets
-from tuisim.datalog.export import EXPORTERS, export_samples, export_telemetry
-from tuisim.datalog.frames import damage_note
-from tuisim.datalog.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
-from tuisim.datalog.runfile import RUNNING, StoredRun
-from tuisim.datalog.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
+from tuisim.config.options import SwitchParser, nearest
 from tuisim.errors import ConfigError, LogError
-from tuisim.host import ASK_AGAIN_S
-from tuisim.rerun import rerun, same
-from tuisim.switches import SwitchParser, nearest
+from tuisim.logs.export import EXPORTERS, export_samples, export_telemetry
+from tuisim.runs.frames import damage_note
+from tuisim.runs.handle import ASK_AGAIN_S
+from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.runs.rerun import rerun, same
+from tuisim.runs.run_folder import RUNNING, StoredRun
+from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 
 ACTIONS = ("list", "show", "rm", "rerun", "export", "compact")
 QUICK_BYTES = 8 << 20

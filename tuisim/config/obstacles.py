@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from tuisim.config.options import nearest
 from tuisim.config.presets import OBSTACLES
-from tuisim.config.reading import Section, means_file, read_file, shown
-from tuisim.config.writing import toml_lines, write_toml
+from tuisim.config.reader import Section, means_file, read_file, shown
+from tuisim.config.toml_writer import toml_lines, write_toml
 from tuisim.core.spec import Obstacle
 from tuisim.errors import ObstacleError
-from tuisim.switches import nearest
 
 MAX_OBSTACLES = 1000
 OBSTACLE_KEYS = ("x_mm", "y_mm", "width_mm", "height_mm")

@@ -7,11 +7,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.reading import Section, means_file, name_of, read_file
-from tuisim.config.writing import Scalar, toml_lines
+from tuisim.config.options import nearest
+from tuisim.config.reader import Section, means_file, name_of, read_file
+from tuisim.config.toml_writer import Scalar, toml_lines
 from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, MotorLaw, ProfileSpec, law_of_earlier
 from tuisim.errors import ProfileError
-from tuisim.switches import nearest
 
 DEFAULT_PROFILE = "robolab"
 MAX_COST_MS = 60_000.0

@@ -9,11 +9,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tuisim.config.reading import Section, relocated, shown
+from tuisim.config.options import RobotChoice
+from tuisim.config.reader import Section, shown, with_location
 from tuisim.config.robot_table import robot_from_table
 from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
 from tuisim.errors import ConfigError
-from tuisim.switches import RobotChoice
 
 _COLOR_SENSOR = {"x": "x_mm", "y": "y_mm", "diameter": "diameter_mm"}
 _PLACES: Mapping[str, tuple[str, Mapping[str, str]]] = {
@@ -76,7 +76,7 @@ def robot_from_json(table: Section, name: str) -> RobotChoice:
     try:
         choice = robot_from_table(table.instead(ours), name)
     except ConfigError as error:
-        raise relocated(error, table.file, theirs.get(error.key, error.key)) from None
+        raise with_location(error, table.file, theirs.get(error.key, error.key)) from None
     notes = (f"{table.file}: left aside what means nothing here: {shown_keys(unknown)}",) if unknown else ()
     return replace(choice, motor_noise=_NOISE_UNSAID if motor is None else motor, light_noise=light, notes=notes)
 

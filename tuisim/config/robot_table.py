@@ -1,20 +1,135 @@
-"""A robot as a table of keys and values, in a file of its own or inside a world.
-
-A table may say only what differs from its `base`. Sensors that the base has and the table does not name
-stay; `false` in the place of a sensor takes it away.
-"""
+"""A robot, its sensors and further motors as a table of keys and values, in a file or inside a world."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, fields, replace
 from typing import Any
 
+from tuisim.config.options import RobotChoice, pen_color
 from tuisim.config.presets import ROBOTS
-from tuisim.config.reading import MAX_NAME, Section
-from tuisim.config.robot_parts import PART_KEYS, parts_from_table
-from tuisim.core.spec import ROBOT_WEIGHTS, PenSpec
-from tuisim.switches import RobotChoice, pen_color
+from tuisim.config.reader import MAX_NAME, Section
+from tuisim.core.parts import MOTOR_KINDS, MotorSpec
+from tuisim.core.spec import MOUNTS, OUTPUT_PORTS, ROBOT_WEIGHTS, Mount, PenSpec, RobotSpec, SensorSpec
+from tuisim.errors import RobotError
+
+MAX_WHOLE = 10**9
+MAX_ITEMS = 1000
+SENSOR_KEYS = tuple(mount.key for mount in MOUNTS)
+PART_KEYS = ("motors", *SENSOR_KEYS)
+"""Keys of a robot's file for what is mounted on it besides its wheels and the pen."""
+_SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
+
+
+def keys_of(spec: type) -> tuple[str, ...]:
+    """Return what a file may say of a sensor, by its class: each of its fields but the name."""
+    return tuple(field.name for field in fields(spec) if field.name != "name")
+
+
+def parts_from_table(table: Section, base: RobotSpec) -> dict[str, Any]:
+    """Return the parts that a robot's table names, by field of `RobotSpec`; others stay as in `base`.
+
+    Raises:
+        RobotError: a key or a value is wrong.
+    """
+    found: dict[str, Any] = {}
+    if "motors" in table:
+        wheels = {table.text(key) if key in table else getattr(base, key): key for key in ("left_port", "right_port")}
+        found |= _motors(table.section("motors"), base.extra_motors, wheels)
+    for mount in MOUNTS:
+        if mount.key in table:
+            found[mount.field] = _named(table, mount, base) if mount.many else _single(table, mount, base)
+    return found
+
+
+def _motors(table: Section, base: Iterable[MotorSpec], wheels: Mapping[str, str]) -> dict[str, Any]:
+    """Kinds by port, as fields of `RobotSpec`; `false` takes a motor of the base away.
+
+    Args:
+        table: The table.
+        base: The motors of the base that do not drive it.
+        wheels: `left_port` and `right_port`, by the port that they name.
+    """
+    kinds = {motor.port: motor.kind for motor in base}
+    found: dict[str, Any] = {}
+    table.allow(OUTPUT_PORTS)
+    for port in table:
+        if port in wheels and table.raw(port) is False:
+            raise table.wrong(port, "drives a wheel", f"it stays; {wheels[port]} names the port")
+        if port in wheels:
+            found[wheels[port].replace("port", "motor")] = table.one_of(port, MOTOR_KINDS)
+        elif table.raw(port) is False:
+            kinds.pop(port, None)
+        else:
+            kinds[port] = table.one_of(port, MOTOR_KINDS)
+    return {**found, "extra_motors": tuple(MotorSpec(port, kind) for port, kind in kinds.items())}
+
+
+def _single(table: Section, mount: Mount, base: RobotSpec) -> SensorSpec | None:
+    """The one sensor of its kind; `false` takes it away."""
+    if table.raw(mount.key) is False:
+        return None
+    with table.telling():
+        sensor: SensorSpec = _sensor(table.section(mount.key), getattr(base, mount.field) or mount.spec())
+    return sensor
+
+
+def _named(robot: Section, mount: Mount, base: RobotSpec) -> tuple[SensorSpec, ...]:
+    """The sensors of the base as the table changes them, and the table's own; `false` takes one away."""
+    table = robot.section(mount.key)
+    found = {sensor.name: sensor for sensor in base.sensors_in(mount)}
+    for name in table:
+        if table.raw(name) is False:
+            found.pop(name, None)
+            continue
+        if not _SENSOR_NAME.fullmatch(name):
+            raise table.wrong(name, "is no name for a sensor", "letters, digits and _, a letter first, at most 31")
+        section = table.section(name)
+        with table.telling():
+            found[name] = _sensor(section, found[name]) if name in found else _fresh(section, mount, name)
+    # A file that names them all also says their order.
+    order = [name for name in table if name in found]
+    return tuple(found[name] for name in (order if len(order) == len(found) else found))
+
+
+def _fresh(table: Section, mount: Mount, name: str) -> Any:
+    """A sensor that only the file has; its port is not its own by custom, so that it must be said."""
+    table.allow(keys_of(mount.spec))
+    for field in fields(mount.spec):
+        if field.name == "port" or (field.default is MISSING and field.name != "name"):
+            table.raw(field.name)
+    return mount.spec(name=name, **_values(table, mount.spec))
+
+
+def _sensor(table: Section, base: Any) -> Any:
+    """A sensor of a table; what that leaves out is as in `base`."""
+    table.allow(keys_of(type(base)))
+    return replace(base, **_values(table, type(base)))
+
+
+def _values(table: Section, spec: type) -> dict[str, Any]:
+    """What a table says of a sensor, by field."""
+    return {field.name: _value(table, field.name, field.type) for field in fields(spec) if field.name in table}
+
+
+def _value(table: Section, key: str, kind: object) -> Any:
+    """A value of the type that a field is declared with."""
+    match kind:
+        case "bool":
+            return table.flag(key)
+        case "str":
+            return table.text(key)
+        case "int":
+            return table.whole(key, -MAX_WHOLE, MAX_WHOLE)
+        case "float":
+            return table.number(key)
+    items = table.items(key)
+    if len(items) > MAX_ITEMS:
+        raise table.wrong(key, f"must be at most {MAX_ITEMS} numbers, got {len(items)}")
+    numbered = Section({f"{key}[{at}]": item for at, item in enumerate(items, 1)}, table.file, RobotError, table.key)
+    return tuple(numbered.number(each) for each in numbered)
+
 
 DEFAULT_ROBOT = "Default_Robot"
 LENGTH_KEYS = ("wheel_diameter_mm", "wheel_spacing_mm", "wheel_width_mm", "back_mm")

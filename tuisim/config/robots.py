@@ -5,22 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from tuisim.config.options import RobotChoice, nearest
 from tuisim.config.presets import ROBOTS
-from tuisim.config.reading import Section, means_file, name_of, parse_toml, read_file
+from tuisim.config.reader import Section, means_file, name_of, parse_toml, read_file
 from tuisim.config.robot_json import robot_from_json
-from tuisim.config.robot_parts import keys_of
-from tuisim.config.robot_table import (
-    DEFAULT_ROBOT,
-    LENGTH_KEYS,
-    PEN_KEYS,
-    PORT_KEYS,
-    robot_from_table,
-)
-from tuisim.config.writing import Scalar, toml_key, toml_lines, write_toml
+from tuisim.config.robot_table import DEFAULT_ROBOT, LENGTH_KEYS, PEN_KEYS, PORT_KEYS, keys_of, robot_from_table
+from tuisim.config.toml_writer import Scalar, toml_key, toml_lines, write_toml
 from tuisim.core.parts import TouchSpec
 from tuisim.core.spec import MOUNTS, ROBOT_WEIGHTS, RobotSpec
 from tuisim.errors import RobotError
-from tuisim.switches import RobotChoice, nearest
 
 COMMENTS = {
     "wheel_spacing_mm": "between the middles of the wheels",

@@ -1,33 +1,26 @@
-"""World files: one TOML that holds mat, obstacles, robot, noise, start pose, pen and profile, to be shared."""
+"""World files: one TOML with mat, obstacles, robot, noise, start pose, pen, profile and infrared beacon."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tuisim.assets import programs_folder
+from tuisim.config.assets import programs_folder
 from tuisim.config.obstacles import load_obstacles, obstacles_from_table
+from tuisim.config.options import MAX_ANGLE_DEG, MAX_PEN_MM, MAX_POSITION_MM, MAX_SEED, MIN_PEN_MM, PANELS, pen_color
+from tuisim.config.own_mats import find_mat
 from tuisim.config.profiles import load_profile, profile_from_table
-from tuisim.config.reading import Section, means_file, name_of, read_file, shown
+from tuisim.config.reader import Section, means_file, name_of, read_file, shown
 from tuisim.config.robot_table import robot_from_table
 from tuisim.config.robots import load_robot
-from tuisim.config.world_infrared import infrared_from_table
+from tuisim.config.toml_writer import Scalar, toml_lines
+from tuisim.core.parts import REMOTE_BUTTONS, BeaconSpec, RemotePress
 from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
-from tuisim.errors import ConfigError, ProfileError, RobotError
-from tuisim.own_mats import find_mat
-from tuisim.switches import (
-    MAX_ANGLE_DEG,
-    MAX_PEN_MM,
-    MAX_POSITION_MM,
-    MAX_SEED,
-    MIN_PEN_MM,
-    PANELS,
-    pen_color,
-)
+from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
 WORLD_SUFFIX = ".toml"
 FLAGS = {"walls": "walls", "solid": "solid", "pen_marks": "pen_marks", "rays": "rays", "autorun": "autorun"}
@@ -210,3 +203,56 @@ def _panels(table: Section) -> dict[str, Any]:
             named = table.instead({f"{key}[{at}]": panel for at, panel in enumerate(table.items(key), start=1)})
             found[field] = tuple(named.one_of(each, PANELS) for each in named)
     return found
+
+
+MAX_PRESSES = 10_000
+
+_COMMENTS = {
+    "channel": "1 to 4",
+    "buttons": f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
+    "from_s": "simulated seconds",
+}
+
+
+def infrared_from_table(table: Section) -> dict[str, Any]:
+    """Return what a world file says of beacon and remote control, by field of `Settings`.
+
+    Raises:
+        ObstacleError: a key or a value is wrong.
+    """
+    found: dict[str, Any] = {}
+    if "beacon" in table:
+        beacon = table.section("beacon", ObstacleError)
+        beacon.allow(("x_mm", "y_mm", "channel"))
+        with table.telling(""):
+            found["beacon"] = BeaconSpec(beacon.number("x_mm"), beacon.number("y_mm"), _channel(beacon))
+    if "remote" in table:
+        entries = table.entries("remote", ObstacleError)
+        if len(entries) > MAX_PRESSES:
+            raise table.wrong("remote", f"{len(entries)} presses are too many", f"at most {MAX_PRESSES}")
+        found["remote"] = tuple(_press(entry) for entry in entries)
+    return found
+
+
+def _channel(table: Section) -> int:
+    return table.whole("channel", 1, 4) if "channel" in table else 1
+
+
+def _press(table: Section) -> RemotePress:
+    table.allow(("buttons", "from_s", "until_s", "channel"))
+    named = table.instead({f"buttons[{at}]": name for at, name in enumerate(table.items("buttons"), start=1)})
+    buttons = tuple(named.one_of(key, REMOTE_BUTTONS) for key in named)
+    times = {key: table.number(key, 0.0, 1e9) for key in ("from_s", "until_s") if key in table}
+    with table.telling(table.key):
+        return RemotePress(buttons, channel=_channel(table), **times)
+
+
+def infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
+    """Return beacon and presses as lines of a world file."""
+    lines: list[str] = []
+    if beacon is not None:
+        lines += ["", "[beacon]", *toml_lines(asdict(beacon), _COMMENTS)]
+    for press in remote:
+        values: dict[str, Scalar] = {**asdict(press), "buttons": list(press.buttons)}
+        lines += ["", "[[remote]]", *toml_lines(values, _COMMENTS)]
+    return lines

@@ -14,9 +14,8 @@ from struct import Struct
 from typing import NamedTuple, Protocol
 
 from tuisim.core.geometry import Pose
-from tuisim.core.sink import Buffer
 from tuisim.core.spec import RobotSpec
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.state import TICK_RECORD, Buffer
 
 _FLOAT32 = Struct("<f")
 _WHOLE_TURN = 2 * math.pi

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tuisim.core.laws import motor_of
+from tuisim.core.motor_laws import motor_of
 from tuisim.core.motors import Motor
 from tuisim.core.simulation import Simulation
-from tuisim.core.sink import TickSink
 from tuisim.core.spec import RunSpec
+from tuisim.core.state import TickSink
 
 Turn = tuple[float, float]
 """Position in degrees and speed in degrees per second, both of the axle."""

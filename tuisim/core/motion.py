@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from math import degrees
 
+from tuisim.core.collision import Solids
 from tuisim.core.drive import Records, mm_per_degree
-from tuisim.core.laws import drive_of, motor_of
+from tuisim.core.motor_laws import drive_of, motor_of
 from tuisim.core.motors import MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise
-from tuisim.core.sink import Buffer, TickSink
-from tuisim.core.solid import Solids
 from tuisim.core.spec import RunSpec
-from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD
+from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
 
 STALL_MS = 100
 """A running motor that stands still for longer is stalled (EV3 motor driver)."""

@@ -1,9 +1,11 @@
-"""The state of the world at one tick, as far as sensors and viewers need it."""
+"""The state of the world at one tick, and where the simulation puts its tick records."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from mmap import mmap
 from struct import Struct
+from typing import Protocol, TypeAlias
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
@@ -36,3 +38,19 @@ class Instant:
     """Heading at which the gyro shows 0."""
     noise: NoiseSpec = NoiseSpec()
     seed: int = 0
+
+
+Buffer: TypeAlias = mmap | bytearray
+"""Bytes that can be set: of a mapped file, or in memory."""
+
+
+class TickSink(Protocol):
+    """Where tick records go."""
+
+    count: int
+
+    def room(self, records: int) -> Buffer:
+        """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k; it holds until the next call."""
+
+    def publish(self, count: int) -> None:
+        """Tell readers how many records are whole."""

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from tuisim.core.field import Field
     from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
-    from tuisim.datalog.runfile import StoredRun
-    from tuisim.datalog.views import TickRecord
+    from tuisim.runs.run_folder import StoredRun
+    from tuisim.runs.views import TickRecord
 
 _IMAGE_LINE = re.compile(r"(?:IMG_DATA|image_data):?\s+(left|right|both)\s*")
 
@@ -28,7 +28,7 @@ IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 
 def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     """Return the samples of runs as one long frame, see `datalog.frames.samples_frame`."""
-    from tuisim.datalog.frames import samples_frame
+    from tuisim.runs.frames import samples_frame
 
     return samples_frame(log)
 
@@ -53,8 +53,8 @@ def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
 
 
 def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, float]]:
-    from tuisim.datalog.mats import open_mat
-    from tuisim.datalog.records import STDOUT
+    from tuisim.runs.mat import open_mat
+    from tuisim.runs.records import STDOUT
 
     field: Field | None = None
     for row in run.output.rows():
@@ -71,7 +71,7 @@ def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, flo
 def arrays_at(spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return what the colour sensors saw at a tick: RGB bytes, row by row."""
     from tuisim.core.sensors.color import pixel_array
-    from tuisim.datalog.views import instant_of
+    from tuisim.runs.views import instant_of
 
     instant = instant_of(record, spec, noise)
     return [(sensor, pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors]

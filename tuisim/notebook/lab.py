@@ -15,14 +15,14 @@ from tuisim.errors import ConfigError
 if TYPE_CHECKING:
     import pandas as pd
 
+    from tuisim.charts.world_image import PenTrace
+    from tuisim.config.mat_cache import FieldFiles
+    from tuisim.config.options import Settings
     from tuisim.core.spec import RunSpec
-    from tuisim.datalog.runfile import StoredRun
-    from tuisim.fields import FieldFiles
-    from tuisim.figures import PenTrace
-    from tuisim.host import Program
-    from tuisim.notebook.showing import Scene, Stage
-    from tuisim.notebook.words import MagicWords
-    from tuisim.switches import Settings
+    from tuisim.notebook.display import Scene, Stage
+    from tuisim.notebook.magic_line import MagicWords
+    from tuisim.runs.handle import Program
+    from tuisim.runs.run_folder import StoredRun
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +95,8 @@ class Lab:
     @property
     def spec(self) -> RunSpec:
         """Robot, world, profile and seed as the cells have set them."""
-        from tuisim.config import build_run_spec
-        from tuisim.switches import settings_of
+        from tuisim.config.build import build_run_spec
+        from tuisim.config.options import settings_of
 
         return self._spec or build_run_spec(settings_of(self._lasting))
 
@@ -136,7 +136,7 @@ class Lab:
         Raises:
             ConfigError: a mat, robot, value or so is wrong, or there is no program to run.
         """
-        from tuisim.notebook.showing import Stage
+        from tuisim.notebook.display import Stage
 
         plan = self._checked(words, text, prelude)
         runs = plan.settings.autorun or (self.autorun and text is not None)
@@ -159,11 +159,11 @@ class Lab:
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
 
     def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _Plan:
-        from tuisim.config import build_run_spec
+        from tuisim.config.build import build_run_spec
+        from tuisim.config.options import settings_of
         from tuisim.config.robots import choose_robot
-        from tuisim.host import Program, field_files
-        from tuisim.notebook.words import lasting_after
-        from tuisim.switches import settings_of
+        from tuisim.notebook.magic_line import lasting_after
+        from tuisim.runs.handle import Program, field_files
 
         if isinstance(robot := words.settings.get("robot"), str):
             for note in choose_robot(robot, "-r").notes:
@@ -178,8 +178,8 @@ class Lab:
         return _Plan(lasting, settings, spec, field_files(spec), program)
 
     def _run(self, plan: _Plan, stage: Stage, words: MagicWords) -> None:
-        from tuisim.figures import pen_trace
-        from tuisim.notebook.running import CellRun, run_cell
+        from tuisim.charts.world_image import pen_trace
+        from tuisim.notebook.cell_run import CellRun, run_cell
 
         assert plan.program is not None
         responder = self.responder if words.collaborative else None
@@ -202,10 +202,10 @@ class Lab:
 
     def _scene(self, plan: _Plan) -> tuple[Scene, str]:
         """What there is to show while nothing runs, and the line about it."""
-        from tuisim.datalog.records import TEXT_STREAMS, line_of
-        from tuisim.datalog.samples import samples_of
-        from tuisim.notebook.running import told_end
-        from tuisim.notebook.showing import Scene, start_record
+        from tuisim.notebook.cell_run import told_end
+        from tuisim.notebook.display import Scene, start_record
+        from tuisim.runs.records import TEXT_STREAMS, line_of
+        from tuisim.runs.samples import samples_of
 
         text, start = plan.program.text if plan.program else "", start_record(plan.spec)
         if self._last is None:

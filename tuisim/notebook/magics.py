@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 from IPython.core.interactiveshell import InteractiveShell
 
+from tuisim.config.program_file import PRELUDES
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds
 from tuisim.notebook.lab import Lab, roboSim
-from tuisim.programfile import PRELUDES
 
 if TYPE_CHECKING:
-    from tuisim.switches import SwitchParser
+    from tuisim.config.options import SwitchParser
 
 MAX_INDEX = 1_000_000
 
@@ -56,8 +56,8 @@ def _lab(shell: InteractiveShell, name: str | None) -> Lab:
 
 def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
     def act(line: str, cell: str | None) -> str | None:
-        from tuisim.notebook.words import parse_line
-        from tuisim.preludes import PRELUDE_TEXTS
+        from tuisim.config.preludes import PRELUDE_TEXTS
+        from tuisim.notebook.magic_line import parse_line
 
         words = parse_line(line, magic)
         ready = PRELUDE_TEXTS[words.settings.get("preload", PRELUDES[magic])]
@@ -81,7 +81,7 @@ Log = Callable[[Lab, Namespace], Any]
 
 
 def _whole(flag: str, low: int, high: int) -> Callable[[str], int]:
-    from tuisim.switches import whole
+    from tuisim.config.options import whole
 
     return lambda text: whole(low, high)(text, flag)
 
@@ -95,7 +95,7 @@ def _corners(text: str) -> tuple[int, ...]:
 
 def _log_parser(magic: str) -> SwitchParser:
     """The parser of a magic that reads the log."""
-    from tuisim.switches import SwitchParser
+    from tuisim.config.options import SwitchParser
 
     parser = SwitchParser(prog=f"%{magic}", add_help=False, allow_abbrev=False)
     add = parser.add_argument
@@ -142,7 +142,7 @@ def _sim_data(lab: Lab, found: Namespace) -> Any:
 def _sim_robot_state(lab: Lab, found: Namespace) -> dict[str, Any]:
     from IPython.display import display
 
-    from tuisim.notebook.showing import table_bundle
+    from tuisim.notebook.display import table_bundle
 
     state = lab.state
     display(table_bundle("Robot", [(name, str(value)) for name, value in state.items()]), raw=True)
@@ -152,7 +152,7 @@ def _sim_robot_state(lab: Lab, found: Namespace) -> dict[str, Any]:
 def _sim_image_pair(lab: Lab, found: Namespace) -> None:
     from IPython.display import display
 
-    from tuisim.notebook.showing import picture_bundle
+    from tuisim.notebook.display import picture_bundle
 
     for picture in eds.image_pair(lab.image_data(), found.index):
         display(picture_bundle(picture.resize((160, 160), 0), "sensor"), raw=True)

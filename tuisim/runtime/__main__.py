@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tuisim.runtime import real  # isort: skip - must come first: it keeps the real clock
+from tuisim.runtime import wallclock  # isort: skip - must come first: it keeps the real clock
 from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - its import is all that is wanted
 
 import os
@@ -11,13 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from tuisim import protocol
+from tuisim.config.mat_cache import open_field
 from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.simulation import NS_PER_S
-from tuisim.datalog.face import motors_row
-from tuisim.datalog.lock import hold
-from tuisim.datalog.records import MOTORS, OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, TelemetryWriter, is_full
-from tuisim.fields import open_field
-from tuisim.runtime.chance import finish_random, finish_uuid, patch_urandom
+from tuisim.runs.brick_state import motors_row
+from tuisim.runs.lock import hold
+from tuisim.runs.records import MOTORS, OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, TelemetryWriter, is_full
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.clock import (
     finish_pandas,
@@ -27,22 +26,23 @@ from tuisim.runtime.clock import (
     patch_process_times,
     patch_time,
 )
-from tuisim.runtime.config import RunConfig, read_config
+from tuisim.runtime.control import RunControl
 from tuisim.runtime.file_waits import FileWaits
-from tuisim.runtime.frames import finish_inspect, finish_traceback
-from tuisim.runtime.guard import STACK_BYTES, limit_memory, refuse_processes
-from tuisim.runtime.halt import DISK_FULL
 from tuisim.runtime.interrupts import Interrupts, die_with_host
+from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
 from tuisim.runtime.output import Output
-from tuisim.runtime.report import own_files, remember_source
+from tuisim.runtime.randomness import finish_random, finish_uuid, patch_urandom
+from tuisim.runtime.replacement import replace
+from tuisim.runtime.run_config import RunConfig, read_config
 from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
-from tuisim.runtime.standin import replace
-from tuisim.runtime.steering import Steering
+from tuisim.runtime.stack import finish_inspect, finish_traceback
+from tuisim.runtime.stop import DISK_FULL
+from tuisim.runtime.tracebacks import own_files, remember_source
 
 if TYPE_CHECKING:
-    from tuisim.runtime.baton import Baton
     from tuisim.runtime.debugger.debugger import Debugger
     from tuisim.runtime.program import ProgramRunner
+    from tuisim.runtime.scheduler import Scheduler
 
 LOOP_TURNS = 500
 LOOP_COST_NS = 5_000_000
@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> NoReturn:
         for name in (TELEMETRY_FILE, OUTPUT_FILE):
             (folder / name).unlink(missing_ok=True)
         channel.send(protocol.Ended(DISK_FULL, 0, 0, 1, _no_room(error)))
-        real.exit_process(0)
+        wallclock.exit_process(0)
     child.run()
 
 
@@ -83,12 +83,12 @@ class Child:
 
     def __init__(self, folder: Path, config: RunConfig, channel: Channel) -> None:
         self._folder, self._config, self._channel = folder, config, channel
-        self._pid = real.getpid()
+        self._pid = wallclock.getpid()
         self._telemetry = TelemetryWriter(folder)
         self._sim = simulation_of(config.spec, self._telemetry)
         writer = OutputWriter(folder)
         self._output = Output(writer)
-        steering = Steering(channel, folder, config.live, config.speed, config.start_paused, config.actions)
+        steering = RunControl(channel, folder, config.live, config.speed, config.start_paused, config.actions)
         limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
         file = config.path or config.name
         self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)
@@ -112,15 +112,15 @@ class Child:
     def run(self) -> NoReturn:
         """Run the program and end the process."""
         # Imported here: threads must be on the baton before anything else imports `threading`.
-        from tuisim.runtime.baton import Baton
         from tuisim.runtime.program import Outcome, ProgramRunner
+        from tuisim.runtime.scheduler import Scheduler
         from tuisim.runtime.threads import patch_threads
         from tuisim.shim.install import install
 
         session = self._session
         turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
         interrupts = Interrupts(session, frozenset({turn.__code__}))
-        baton = Baton(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
+        baton = Scheduler(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
         patch_time(session)
         patch_datetime(session, self._config.own_folder)
         patch_process_times(session)
@@ -129,7 +129,7 @@ class Child:
         waits.patch_select()
         refuse_processes()
         patch_threads(baton)
-        real.stack_size(STACK_BYTES)
+        wallclock.stack_size(STACK_BYTES)
         limit_memory()
         install(
             session,
@@ -159,18 +159,18 @@ class Child:
         leave(runner.run())
 
     def _end(self, end: str, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
-        if real.getpid() != self._pid:
+        if wallclock.getpid() != self._pid:
             # A copy that the program has made below Python: what is recorded and told is the original's.
-            real.exit_process(0)
+            wallclock.exit_process(0)
         self._telemetry.close()
         self._output.close()
         self._channel.send(
             protocol.Ended(end, self._sim.tick, self._session.now, exit_code, summary, error, error_line)
         )
-        real.exit_process(0)
+        wallclock.exit_process(0)
 
 
-def _debugger(session: Session, baton: Baton, runner: ProgramRunner) -> Debugger:
+def _debugger(session: Session, baton: Scheduler, runner: ProgramRunner) -> Debugger:
     from tuisim.runtime.debugger.debugger import Debugger
 
     return Debugger(session, baton, runner.names, runner.prepared, runner.code)

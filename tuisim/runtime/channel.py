@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from tuisim.protocol import Message, parse_command
-from tuisim.runtime import real
+from tuisim.runtime import wallclock
 
 
 class Channel:
@@ -41,4 +41,4 @@ class Channel:
 
     def wait(self, timeout_s: float) -> bool:
         """Wait for a command in real time; return whether one has come."""
-        return bool(real.select_files([self.command_fd], [], [], max(0.0, timeout_s))[0])
+        return bool(wallclock.select_files([self.command_fd], [], [], max(0.0, timeout_s))[0])

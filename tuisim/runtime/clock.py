@@ -13,10 +13,10 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.simulation import NS_PER_S
-from tuisim.runtime import real
+from tuisim.runtime import wallclock as real
 from tuisim.runtime.modules import OWN_FILES
+from tuisim.runtime.replacement import replace
 from tuisim.runtime.session import Session
-from tuisim.runtime.standin import replace
 
 EPOCH_S = 1_577_836_800
 """Every run begins on 1 January 2020, 00:00 UTC."""

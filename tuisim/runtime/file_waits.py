@@ -11,8 +11,8 @@ from functools import partial, wraps
 from typing import Any, TypeVar
 
 from tuisim.core.simulation import NS_PER_S
+from tuisim.runtime.replacement import replace
 from tuisim.runtime.session import THREADS, Session
-from tuisim.runtime.standin import replace
 
 Found = TypeVar("Found")
 

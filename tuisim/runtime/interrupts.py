@@ -14,7 +14,7 @@ import types
 from pathlib import Path
 
 from tuisim.atomic import private
-from tuisim.runtime import real
+from tuisim.runtime import wallclock
 from tuisim.runtime.session import ATTENTION, Session
 
 PACKAGE_FOLDER = str(Path(__file__).parent.parent) + os.sep
@@ -32,9 +32,9 @@ def die_with_host(lifeline_fd: int) -> None:
     """
     fcntl.fcntl(lifeline_fd, fcntl.F_SETOWN, -os.getpgrp())
     fcntl.fcntl(lifeline_fd, fcntl.F_SETFL, fcntl.fcntl(lifeline_fd, fcntl.F_GETFL) | os.O_ASYNC)
-    if real.select_files([lifeline_fd], [], [], 0)[0]:
+    if wallclock.select_files([lifeline_fd], [], [], 0)[0]:
         # The host went before the signal was asked for.
-        real.exit_process(1)
+        wallclock.exit_process(1)
 
 
 class Interrupts:

@@ -1,12 +1,40 @@
-"""From source text to code: loop hooks, prelude, and tracebacks that show the program only."""
+"""From source text to code: loop hooks, prelude, and what a prelude lacks on this robot."""
 
 from __future__ import annotations
 
 import ast
 import types
 from collections.abc import Iterator
+from typing import Any, NoReturn
 
-from tuisim.preludes import PRELUDE_TEXTS
+from tuisim.config.preludes import PRELUDE_TEXTS
+
+
+class MissingPart:
+    """What a name of the prelude stands for when the robot has no such part.
+
+    Args:
+        name: The name.
+        error: Why it could not be made; raised again by whatever uses it.
+    """
+
+    __slots__ = ("_error", "_name")
+    _name: str
+    _error: Exception
+
+    def __init__(self, name: str, error: Exception) -> None:
+        error.add_note(f"`{name}` is a name that the program found ready: it stands for parts of Default_Robot.")
+        object.__setattr__(self, "_name", name)
+        object.__setattr__(self, "_error", error.with_traceback(None))
+
+    def __repr__(self) -> str:
+        return f"<{self._name}: this robot has no such part>"
+
+    def _used(self, *_: Any, **__: Any) -> NoReturn:
+        raise self._error.with_traceback(None)
+
+    __getattr__ = __setattr__ = __delattr__ = __call__ = __str__ = _used
+
 
 PRELUDE_FILE = "<prelude>"
 LOOP_HOOK = "__loop_turn__"

@@ -11,7 +11,7 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from pathlib import Path
 from typing import Any, NoReturn
 
-from tuisim.datalog.own_modules import OwnModule, note_module, read_modules
+from tuisim.runs.own_modules import OwnModule, note_module, read_modules
 from tuisim.runtime.interrupts import PACKAGE_FOLDER
 
 _FOREIGN = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
@@ -115,7 +115,7 @@ def _spec_of(module: OwnModule) -> ModuleSpec | None:
         return spec
     from importlib.util import spec_from_file_location
 
-    from tuisim.runtime.report import remember_source
+    from tuisim.runtime.tracebacks import remember_source
 
     OWN_FILES.add(module.file)
     remember_source(module.file, module.text)

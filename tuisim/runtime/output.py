@@ -6,7 +6,7 @@ import io
 from collections.abc import Callable
 from typing import Any
 
-from tuisim.datalog.records import MAX_OUTPUT_BYTES, STDOUT, OutputWriter
+from tuisim.runs.records import MAX_OUTPUT_BYTES, STDOUT, OutputWriter
 
 
 class Output:

@@ -17,20 +17,19 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from tuisim.core.simulation import NS_PER_S
-from tuisim.datalog.records import INPUT, STDERR
 from tuisim.errors import LogError
 from tuisim.protocol import NO_ANSWER, Answer, InputWanted
-from tuisim.runtime.baton import Baton
-from tuisim.runtime.config import RunConfig
-from tuisim.runtime.frames import patch_faulthandler
-from tuisim.runtime.halt import Deadlock, StopProgram
-from tuisim.runtime.loader import LOOP_HOOK, compile_prelude, compile_program, point_at_prelude
-from tuisim.runtime.missing import MissingPart
+from tuisim.runs.records import INPUT, STDERR
+from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program, point_at_prelude
 from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, Output
-from tuisim.runtime.report import point_at_namesake, report_error
+from tuisim.runtime.replacement import replace
+from tuisim.runtime.run_config import RunConfig
+from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Session
-from tuisim.runtime.standin import replace
+from tuisim.runtime.stack import patch_faulthandler
+from tuisim.runtime.stop import Deadlock, StopProgram
+from tuisim.runtime.tracebacks import point_at_namesake, report_error
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +82,7 @@ class ProgramRunner:
         config: RunConfig,
         session: Session,
         output: Output,
-        baton: Baton,
+        baton: Scheduler,
         loop_hook: Callable[[], None],
         leave: Callable[[Outcome], NoReturn],
     ) -> None:

@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.field import Field
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S, Simulation
-from tuisim.datalog.records import SPEECH
 from tuisim.protocol import Reply, ReplyWanted, Spoke
+from tuisim.runs.records import SPEECH
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.halt import StopProgram
+from tuisim.runtime.control import LIVE, STOPPED, RunControl
 from tuisim.runtime.output import Output
-from tuisim.runtime.steering import LIVE, STOPPED, Steering
+from tuisim.runtime.stop import StopProgram
 
 if TYPE_CHECKING:
-    from tuisim.core.marks import PenMarks
+    from tuisim.core.pen_marks import PenMarks
     from tuisim.runtime.debugger.debugger import Debugger
 
 ATTENTION, THREADS, STOPPING, DEBUG = 2, 4, 8, 16
@@ -72,7 +72,7 @@ class Session:
         field: Field,
         output: Output,
         channel: Channel,
-        steering: Steering,
+        steering: RunControl,
         limits: Limits,
         program_file: str,
     ) -> None:
@@ -81,7 +81,7 @@ class Session:
         self._pen: PenMarks | None = None
         if sim.spec.world.pen_marks:
             # Imported where it is wanted: most programs start sooner without it.
-            from tuisim.core.marks import PenMarks
+            from tuisim.core.pen_marks import PenMarks
 
             self._pen = PenMarks(field, sim.spec)
         self.limits = limits

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from tuisim.runtime.baton import FOREVER, Baton, SimulatedLock, Task
-from tuisim.runtime.standin import replace
+from tuisim.runtime.replacement import replace
+from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler, SimulatedLock
 
 
-def patch_threads(baton: Baton) -> None:
+def patch_threads(baton: Scheduler) -> None:
     """Replace the lock and start functions, then import `threading` over them.
 
     Must run before anything imports `threading`.
@@ -74,8 +74,8 @@ def _run_bare(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any) 
         sys.excepthook(type(error), error, error.__traceback__)
 
 
-def _patch_thread_class(baton: Baton, thread: Any) -> None:
-    tasks: dict[int, Task] = {}
+def _patch_thread_class(baton: Scheduler, thread: Any) -> None:
+    tasks: dict[int, ScheduledThread] = {}
 
     @wraps(thread.start)
     def start(self: Any) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S
 from tuisim.protocol import BUTTONS
-from tuisim.shim.rebinding import rebind
+from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
 
 POLL_NS = 10 * MS

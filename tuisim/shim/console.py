@@ -6,12 +6,12 @@ import re
 import types
 from typing import Any
 
-from tuisim.datalog.face import DISPLAY_HEIGHT, DISPLAY_WIDTH, console_row
-from tuisim.datalog.records import CONSOLE
-from tuisim.shim.rebinding import rebind
+from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, console_row
+from tuisim.runs.records import CONSOLE
+from tuisim.shim.method_globals import rebind
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
-from tuisim.shim.textgrid import TextGrid
+from tuisim.shim.text_grid import TextGrid
 
 FONT_WIDTH, FONT_HEIGHT = 12, 24
 """Pixels of a letter of the font that the library begins with."""

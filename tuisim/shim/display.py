@@ -7,8 +7,8 @@ import types
 from functools import cache, wraps
 from typing import Any
 
-from tuisim.datalog.face import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
-from tuisim.datalog.records import DISPLAY
+from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
+from tuisim.runs.records import DISPLAY
 from tuisim.shim.fonts import plain_font
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session

@@ -17,10 +17,10 @@ from typing import Any
 
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S
-from tuisim.datalog.face import LED_NAMES, led_row
-from tuisim.datalog.records import LED
+from tuisim.runs.brick_state import LED_NAMES, led_row
+from tuisim.runs.records import LED
 from tuisim.shim.devices import Brick, SimDevice, refuse
-from tuisim.shim.rebinding import rebind
+from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
 
 LED_CLASS = "leds"

@@ -10,8 +10,8 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS, MotorLaw
+from tuisim.shim.brick import ports_hint
 from tuisim.shim.browser_library import speak_as_browser
-from tuisim.shim.building import ports_hint
 from tuisim.shim.devices import Brick
 from tuisim.shim.session import Session
 

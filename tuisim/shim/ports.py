@@ -13,8 +13,8 @@ from tuisim.core.sensors import mounted
 from tuisim.core.spec import INPUT_PORTS, OUTPUT_PORTS, RobotSpec
 from tuisim.errors import NotSimulated
 from tuisim.shim.devices import SimDevice, refuse
+from tuisim.shim.motor import KINDS
 from tuisim.shim.session import Session
-from tuisim.shim.tacho import KINDS
 
 PORT_CLASS = "lego-port"
 """The kernel's class of ports."""

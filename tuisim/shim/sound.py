@@ -9,7 +9,7 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS
-from tuisim.shim.rebinding import rebind
+from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
 from tuisim.shim.tones import Heard, Tone, heard_of, song_of
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tuisim.datalog.units import SECONDS
-from tuisim.switches import SwitchParser
+from tuisim.config.options import SwitchParser
+from tuisim.logs.units import SECONDS
 
 
 def add_columns(parser: SwitchParser) -> None:

@@ -6,13 +6,13 @@ from argparse import Namespace
 from dataclasses import asdict
 from typing import Any
 
+from tuisim.analysis.events import crossings
 from tuisim.commands.echo import echo_lines
 from tuisim.commands.logs.results import show_rows
 from tuisim.commands.logs.sources import names_of, open_sources
-from tuisim.datalog.analysis.crossings import crossings
-from tuisim.datalog.analysis.logbands import band_report, in_words
-from tuisim.datalog.analysis.statistics import QUANTILES, summary_of
 from tuisim.errors import ConfigError
+from tuisim.logs.bands import band_report, in_words
+from tuisim.logs.statistics import QUANTILES, summary_of
 
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
 

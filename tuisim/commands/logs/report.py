@@ -5,12 +5,12 @@ from __future__ import annotations
 from argparse import Namespace
 from pathlib import Path
 
+from tuisim.analysis.source import LogRequest, opening
 from tuisim.commands.analyse import asked
 from tuisim.commands.echo import echo
 from tuisim.commands.logs.sources import names_of
 from tuisim.errors import ConfigError
-from tuisim.ui.analyser.subject import Wanted, opening
-from tuisim.ui.paper.report import check_report, default_name, write_report
+from tuisim.report.report import check_report, default_name, write_report
 
 
 def report(arguments: Namespace) -> int:
@@ -32,7 +32,9 @@ def report(arguments: Namespace) -> int:
         raise ConfigError("takes one run", f"got {len(what.runs)}", key="--telemetry")
     if what.runs and (arguments.time is not None or arguments.value):
         raise ConfigError("are for files", "what a run recorded is known", key="--time and --value")
-    wanted = Wanted(what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit)
+    wanted = LogRequest(
+        what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
+    )
     *_, subject = opening(wanted)
     names = names_of(subject.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or default_name(subject))

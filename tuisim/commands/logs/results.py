@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.commands.echo import CsvOut, echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.datalog.export import check_target, export_frame
+from tuisim.logs.export import check_target, export_frame
 
 if TYPE_CHECKING:
     import pandas as pd

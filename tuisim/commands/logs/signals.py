@@ -10,26 +10,17 @@ import numpy as np
 
 from tuisim.commands.logs.results import show_frame
 from tuisim.commands.logs.sources import names_of, the_source
-from tuisim.datalog.analysis.expressions import evaluate
-from tuisim.datalog.analysis.logreckon import reckoned_series
-from tuisim.datalog.analysis.signals import (
-    HOLD,
-    Between,
-    derivative,
-    even_moments,
-    integral,
-    known_at,
-    moving_average,
-)
-from tuisim.datalog.arrays import FloatArray
-from tuisim.datalog.export import check_target
-from tuisim.datalog.opening import Log, Series
-from tuisim.datalog.opening.exporting import export_log
-from tuisim.datalog.opening.headings import unique_names
-from tuisim.datalog.opening.layout import is_numeric
-from tuisim.datalog.opening.notes import Notes
-from tuisim.datalog.opening.plain import numbers_of
 from tuisim.errors import ConfigError
+from tuisim.logs.arrow import numbers_of, unique_names
+from tuisim.logs.columns import is_numeric
+from tuisim.logs.dead_reckoning import reckoned_series
+from tuisim.logs.export import check_target
+from tuisim.logs.expressions import evaluate
+from tuisim.logs.log import Log, Series
+from tuisim.logs.log_export import export_log
+from tuisim.logs.signals import HOLD, Between, derivative, even_moments, integral, known_at, moving_average
+from tuisim.logs.warnings import Notes
+from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
     import pandas as pd

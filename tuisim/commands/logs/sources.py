@@ -9,12 +9,12 @@ from pathlib import Path
 
 from tuisim.commands.echo import echo_error
 from tuisim.commands.progress import tell
-from tuisim.datalog.opening import Log, loading
-from tuisim.datalog.opening.layout import chosen, time_in_words
-from tuisim.datalog.opening.loading import STDIN
-from tuisim.datalog.opening.runs import log_of_runs, telemetry_log
-from tuisim.datalog.store import RunStore
 from tuisim.errors import ConfigError, LogError, listed
+from tuisim.logs.columns import choose_columns, time_in_words
+from tuisim.logs.log import Log
+from tuisim.logs.reader import STDIN, read_pieces
+from tuisim.logs.stored_runs import log_of_runs, telemetry_log
+from tuisim.runs.store import RunStore
 
 
 def is_file(word: str) -> bool:
@@ -73,13 +73,13 @@ def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
                 raise LogError("no ticks: its recording is empty or cut off", file=log.title)
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry takes every tick instead"
             raise LogError("no samples", hint, file=log.title)
-        layout = chosen(log.table, arguments.time, arguments.value, arguments.unit)
+        layout = choose_columns(log.table, arguments.time, arguments.value, arguments.unit)
         yield _with_notes(log.with_layout(layout))
 
 
 def _open_file(word: str, arguments: Namespace) -> Log:
     log = None
-    for loaded in loading(word, arguments.time, arguments.value, arguments.unit):
+    for loaded in read_pieces(word, arguments.time, arguments.value, arguments.unit):
         log = loaded.log or log
         if loaded.part == loaded.part:
             tell(f"reading {word}", loaded.part, 1.0)

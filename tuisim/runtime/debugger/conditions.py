@@ -7,7 +7,7 @@ import types
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tuisim.runtime.debugger.rendering import evaluate_truth
+from tuisim.runtime.debugger.value_text import evaluate_truth
 
 _SCALARS = (bool, int, float, str, types.NoneType)
 _PLAIN_NODES = (

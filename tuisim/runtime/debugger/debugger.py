@@ -8,22 +8,22 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from tuisim import protocol
-from tuisim.breaks import Break, LineBreak, parse_breaks
+from tuisim.breakpoints import Breakpoint, LineBreak, parse_breakpoints
 from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused
-from tuisim.runtime.baton import Baton
-from tuisim.runtime.debugger.apart import apart
-from tuisim.runtime.debugger.codelines import CodeLines
+from tuisim.runtime.control import LIVE
+from tuisim.runtime.debugger.code_lines import CodeLines
 from tuisim.runtime.debugger.conditions import Condition
-from tuisim.runtime.debugger.looking import Looker
-from tuisim.runtime.debugger.stepping import NEXT_LINE, Step, step_from
+from tuisim.runtime.debugger.data_breakpoints import Watcher
+from tuisim.runtime.debugger.fork import apart
+from tuisim.runtime.debugger.inspection import Looker
+from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
 from tuisim.runtime.debugger.tracer import Tracer
-from tuisim.runtime.debugger.watching import Watcher
-from tuisim.runtime.halt import StopProgram
+from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import ATTENTION, DEBUG, Session
-from tuisim.runtime.steering import LIVE
+from tuisim.runtime.stop import StopProgram
 
 if TYPE_CHECKING:
-    from tuisim.runtime.config import RunConfig
+    from tuisim.runtime.run_config import RunConfig
 
 CONDITION_LIMIT_S = 0.2
 """Real seconds that a condition gets."""
@@ -46,7 +46,7 @@ class Debugger:
     def __init__(
         self,
         session: Session,
-        baton: Baton,
+        baton: Scheduler,
         module: Mapping[str, Any],
         prepared: Mapping[str, int],
         code: types.CodeType | None,
@@ -56,7 +56,7 @@ class Debugger:
         self._tracer = Tracer(session, baton, self._at_line)
         self._looker = Looker(session, baton, self._tracer, module, prepared)
         self._watcher = Watcher(session)
-        self._by_line: dict[int, list[tuple[Break, Condition | None]]] = {}
+        self._by_line: dict[int, list[tuple[Breakpoint, Condition | None]]] = {}
         self._step: Step | None = None
         self._step_reason = "step"
         self._line = 0
@@ -66,7 +66,7 @@ class Debugger:
 
     def begin(self, config: RunConfig) -> None:
         """Take over what is known before the program's first line."""
-        self._set_breaks(parse_breaks(config.breaks))
+        self._set_breaks(parse_breakpoints(config.breaks))
         self._trace_from = config.trace_from_tick
         if config.hold_at is not None:
             self._set_instant(*config.hold_at)
@@ -97,8 +97,8 @@ class Debugger:
                 self._set_instant(tick, ordinal)
                 steering.let_on(at_full_speed=True)
             case protocol.SetBreaks(breaks=texts):
-                self._set_breaks(parse_breaks(texts))
-            case protocol.Look() | protocol.WantHistory():
+                self._set_breaks(parse_breakpoints(texts))
+            case protocol.Inspect() | protocol.RequestHistory():
                 if steering.holding:
                     self._looks.append(command)
         if not steering.holding:
@@ -115,9 +115,9 @@ class Debugger:
         """Answer what was asked while the run stands still."""
         looks, self._looks = self._looks, []
         for asked in looks:
-            if isinstance(asked, protocol.Look):
+            if isinstance(asked, protocol.Inspect):
                 self._session.channel.send(self._looker.look(asked, self._take_more))
-            elif isinstance(asked, protocol.WantHistory):
+            elif isinstance(asked, protocol.RequestHistory):
                 lines = self._tracer.history(max(0, asked.count), self._looker.name_of)
                 self._session.channel.send(protocol.LineHistory(lines))
 
@@ -148,7 +148,7 @@ class Debugger:
         if ordinal > AFTER_TICK:
             self._trace_from = tick if self._trace_from is None else min(tick, self._trace_from)
 
-    def _set_breaks(self, breaks: Iterable[Break]) -> None:
+    def _set_breaks(self, breaks: Iterable[Breakpoint]) -> None:
         wanted = [one for one in breaks if not one.disabled]
         before = {one.text: condition for found in self._by_line.values() for one, condition in found}
         self._by_line = {}

@@ -13,13 +13,12 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from tuisim.held import MetLine
-from tuisim.protocol import UNKNOWN_ORDINAL
-from tuisim.runtime import real
-from tuisim.runtime.baton import Baton, Task
+from tuisim.protocol import UNKNOWN_ORDINAL, ExecutedLine
+from tuisim.runtime import wallclock
 from tuisim.runtime.modules import OWN_FILES
-from tuisim.runtime.report import own_files
+from tuisim.runtime.scheduler import ScheduledThread, Scheduler
 from tuisim.runtime.session import Session
+from tuisim.runtime.tracebacks import own_files
 
 HISTORY_LINES = 2000
 
@@ -35,7 +34,7 @@ class Tracer:
         check: Called for each line that `closely` or `lines` ask for; may hold the run.
     """
 
-    def __init__(self, session: Session, baton: Baton, check: LineCheck) -> None:
+    def __init__(self, session: Session, baton: Scheduler, check: LineCheck) -> None:
         self._session, self._baton, self._check = session, baton, check
         self._sim = session.sim
         self._own = own_files(session.program_file)
@@ -49,7 +48,7 @@ class Tracer:
         self._uncounted_tick = -1
         """The tick in which counting began too late."""
         self._frame_id, self._depth = 0, 0
-        self._met: deque[tuple[int, int, int, Task, int]] = deque(maxlen=HISTORY_LINES)
+        self._met: deque[tuple[int, int, int, ScheduledThread, int]] = deque(maxlen=HISTORY_LINES)
         baton.entered = self.enter
 
     # On and off
@@ -72,14 +71,14 @@ class Tracer:
 
     def enter(self) -> None:
         """Let the thread that begins to run be traced, or not, as is wanted."""
-        found = real.gettrace()
+        found = wallclock.gettrace()
         if found is not None and getattr(found, "__self__", None) is not self:
             # The program traces itself: it keeps what it has set.
             return
         self._frame_id = 0
         if not self.on:
             if found is not None:
-                real.settrace(None)
+                wallclock.settrace(None)
             return
         frame: types.FrameType | None = sys._getframe(1)
         while frame is not None:
@@ -87,7 +86,7 @@ class Tracer:
                 frame.f_trace = self._on_event
             frame = frame.f_back
         if found is None:
-            real.settrace(self._on_call)
+            wallclock.settrace(self._on_call)
 
     def is_own(self, frame: types.FrameType) -> bool:
         """Whether a frame is of the program's own files."""
@@ -154,10 +153,10 @@ class Tracer:
             frame = frame.f_back
         return found
 
-    def history(self, count: int, name_of: Callable[[Task], str]) -> tuple[MetLine, ...]:
+    def history(self, count: int, name_of: Callable[[ScheduledThread], str]) -> tuple[ExecutedLine, ...]:
         """Return the lines that were met last and whose place in their tick is known."""
         met = [row for row in self._met if row[0] != self._uncounted_tick]
         return tuple(
-            MetLine(tick, ordinal, line, name_of(task), depth)
+            ExecutedLine(tick, ordinal, line, name_of(task), depth)
             for tick, ordinal, line, task, depth in met[max(0, len(met) - count) :]
         )

@@ -1,0 +1,108 @@
+"""Variables that are reckoned from others: in the chart, the statistics and the table like any other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.app.analyser.logs import long_log, model_of, wide_log
+from tuisim.analysis.model import derive
+from tuisim.app.analyser.panes import PANES
+from tuisim.app.analyser.prompt import completed
+from tuisim.errors import LogError
+from tuisim.logs.derived import definition_of, derived
+
+FALLING = 90.0 - 10.0 * np.arange(10)
+DEFINED = {
+    "slope": ("v = slope(Colour)", np.full(10, -10.0)),
+    "integral": ("v = integral(Left)", np.arange(10) ** 2 / 2),
+    "average": ("v = average(Colour, 3)", np.array([85.0, *FALLING[1:-1], 5.0])),
+    "columns": ("v = Colour + x_mm", FALLING + 100.0 * np.arange(10)),
+    "two variables": ("v = Colour - 2 * Left", FALLING - 2 * np.arange(10)),
+    "nested": ("v = abs(slope(Colour)) > 5", np.ones(10)),
+    "time": ("v = Colour * 0 + time", np.arange(10.0)),
+    "resample": ("v = resample(Colour, 2)", FALLING[::2]),
+    "no variable": ("v = 5", np.full(10, 5.0)),
+}
+
+
+@pytest.mark.parametrize(("text", "values"), DEFINED.values(), ids=DEFINED)
+def test_what_is_reckoned(text: str, values: np.ndarray) -> None:
+    model = model_of(long_log())
+    derive(model, text)
+    assert model.log.series("v").values.tolist() == pytest.approx(values.tolist())
+    assert model.selected == "v" and model.trace.on
+
+
+REFUSED = {
+    "nothing": ("", "nothing to reckon"),
+    "an unknown name": ("v = Colur", "no variable 'Colur'"),
+    "an unknown function": ("v = open(Colour)", "no function 'open'"),
+    "a name that is taken": ("x_mm = Colour", "a column 'x_mm' already"),
+    "resample within": ("v = 2 * resample(Colour, 1)", "around all else"),
+    "no period": ("v = resample(Colour, 0)", "period must be above 0"),
+    "a period below nothing": ("v = resample(Colour, -1)", "period must be above 0"),
+    "half a sample": ("v = average(Colour, 2.5)", "whole number"),
+    "an even number of samples": ("v = average(Colour, 4)", "odd number"),
+    "what was never derived": ("w =", "no derived variable 'w'"),
+    "no wheels": ("reckoning", "no column 'left_position_deg'"),
+}
+
+
+@pytest.mark.parametrize(("text", "said"), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_reckoned_changes_nothing(text: str, said: str) -> None:
+    model = model_of(long_log())
+    before = model.log
+    with pytest.raises(LogError, match=said):
+        derive(model, text)
+    assert model.log is before
+
+
+def test_each_run_has_its_own() -> None:
+    log = long_log(runs=2)
+    first, second = derived(log, definition_of("slope(Colour)"), "Left #1")
+    assert (first.name, second.name) == ("slope(Colour) #1", "slope(Colour) #2")
+    assert (first.values[0], second.values[0]) == (-10.0, -5.0)
+    (apart,) = derived(log, definition_of("`Colour #1` - `Colour #2`"), "Left #1")
+    assert apart.values.tolist() == [0.0, -10.0, -10.0, -20.0, -20.0, -30.0, -30.0, -40.0, -40.0, -50.0]
+
+
+def test_it_is_a_variable_like_any_other() -> None:
+    model = model_of(long_log())
+    derive(model, "v = slope(Colour)")
+    assert [row[0] for row in PANES["statistics"].rows(model)] == ["Colour", "Left", "v"]
+    assert model.rows.columns[-1] == "v"
+    assert model.rows.text(0, "v") == "-10" and model.rows.text(1, "v") == ""
+    assert model.rows.shown().column_names[-1] == "v"
+    model.find_bands(["v"])
+    assert [band.level for band in model.bands()] == [-10.0]
+
+
+def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
+    model = model_of(wide_log(100))
+    derive(model, "v = wave + 1")
+    derive(model, "v = wave + 2")
+    assert model.trace.at(0.0) == pytest.approx(3.0)
+    grown = model_of(wide_log(200))
+    grown.take_over(model)
+    assert len(grown.log.series("v").values) == 200
+    other = model_of(long_log())
+    other.take_over(model)
+    assert [trace.name for trace in other.traces] == ["Colour", "Left"]
+    model.rows.sort("v", True)
+    derive(model, "v =")
+    assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == ["time", "wave"]
+    assert model.selected == "wave" and len(model.rows) == 100
+
+
+def test_the_word_that_is_typed_is_ended() -> None:
+    words = ("Colour", "Left", "slope(", "`a b`")
+    lines = {"slope(Co": "slope(Colour", "2 * sl": "2 * slope(", "`a": "`a b`", "2 + 3": None, "Colour": None}
+    assert {line: completed(line, words) for line in lines} == lines
+
+
+def test_columns_that_mean_something_else_have_nothing_derived() -> None:
+    model = model_of(wide_log(100))
+    derive(model, "v = wave + 1")
+    other = model.log.with_layout(model.log.layout)
+    assert other.names == ("wave",) and other.table.column_names == ["time", "wave"]

@@ -1,0 +1,89 @@
+"""What leaves the analyser: rows, chart and report, on a real run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pandas as pd
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input, Static
+
+from tests.app.app_help import LOGS, program, until
+from tuisim.analysis.source import LogRequest
+from tuisim.app.analyser.app import AnalyserApp
+from tuisim.app.analyser.prompt import LinePrompt
+from tuisim.app.analyser.screen import Analyser
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.logs.export import log_metadata, read_log, read_metadata
+from tuisim.runs.frames import samples_frame
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+
+@pytest.fixture(scope="module")
+def run() -> StoredRun:
+    """A run over the grey bands."""
+    handle = start_run(program(LOGS), build_run_spec(Settings(background="Grey_bands")), RunOptions(speed=0.0))
+    handle.wait()
+    return RunStore().load_run(handle.run_id)
+
+
+async def answered(pilot: Pilot[Any], key: str, text: object) -> str:
+    """Press a key and answer what it asks; return what is wrong with the answer, empty if it was taken."""
+    await pilot.press(key)
+    await until(pilot, lambda: isinstance(pilot.app.screen, LinePrompt))
+    asking = pilot.app.screen
+    asking.query_one(Input).value = str(text)
+    message = asking.query_one("#message", Static)
+    await pilot.press("enter")
+    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) or str(message.content) != "")
+    return str(message.content) if pilot.app.screen is asking else ""
+
+
+async def ready(pilot: Pilot[Any]) -> Analyser:
+    """Wait until the log is there."""
+    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.model is not None)
+    assert isinstance(pilot.app.screen, Analyser)
+    return pilot.app.screen
+
+
+BAD = (
+    ("S", "c.gif", "a chart ends in .svg, .png, .txt"),
+    ("E", "gone/r.html", "there is no folder"),
+)
+
+
+async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) -> None:
+    svg, text, page, rows = (tmp_path / name for name in ("c.svg", "c.txt", "r.html", "rows.jsonl"))
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        screen = await ready(pilot)
+        for key, name, wrong in BAD:
+            assert wrong in await answered(pilot, key, tmp_path / name)
+            await pilot.press("escape")
+            await ready(pilot)
+        assert list(tmp_path.iterdir()) == []
+        await answered(pilot, "E", page)
+        await answered(pilot, "e", rows)
+        # Earlier halves of the time are zoomed away: the chart as shown begins later.
+        await pilot.press("end", "z", "z")
+        for target in (svg, text):
+            await answered(pilot, "S", target)
+        assert screen.model is not None and screen.model.limits is not None
+        first_s = screen.model.limits[0]
+        await until(pilot, lambda: page.exists() and rows.exists())
+        await until(pilot, lambda: "The report is in" in "".join(note.message for note in pilot.app._notifications))
+    frame = samples_frame([run])
+    pd.testing.assert_frame_equal(read_log(rows), frame, check_exact=True)
+    assert read_metadata(rows) == json.loads(json.dumps(log_metadata("samples", frame, [run])))
+    ticks = [float(node.text or "nan") for node in ElementTree.parse(svg).iter("{http://www.w3.org/2000/svg}text")
+             if (node.text or "").replace(".", "").isdigit() and float(node.attrib["y"]) > 370]  # fmt: skip
+    assert ticks and min(ticks) >= first_s > 1.0
+    lines = text.read_text().splitlines()
+    assert max(map(len, lines)) <= 80 and any("Colour" in line for line in lines)
+    assert "100.00 white" in page.read_text() and "<h2>Program prog.py</h2>" in page.read_text()

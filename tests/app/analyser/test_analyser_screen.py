@@ -1,0 +1,307 @@
+"""The analyser and its keys, on a real run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+from textual.command import CommandPalette
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from tests.app.app_help import LOGS, program, ready, until
+from tuisim.analysis.model import Model
+from tuisim.analysis.source import LogRequest
+from tuisim.app.analyser.actions.table import ACTIONS
+from tuisim.app.analyser.app import AnalyserApp
+from tuisim.app.analyser.screen import Analyser
+from tuisim.app.app import LabApp
+from tuisim.app.start_options import AppSettings
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.program_file import parse_program
+from tuisim.core.spec import NoiseSpec
+from tuisim.errors import LogError
+from tuisim.logs.annotations import NOTES_FILE, read_notes
+from tuisim.logs.export import read_log
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+SIZES = [(80, 24), (120, 40), (200, 60)]
+
+
+@pytest.fixture(scope="module")
+def run() -> StoredRun:
+    """A run over the grey bands."""
+    spec = build_run_spec(Settings(background="Grey_bands"))
+    assert spec.world.noise == NoiseSpec()
+    handle = start_run(program(LOGS), spec, RunOptions(speed=0.0))
+    handle.wait()
+    return RunStore().load_run(handle.run_id)
+
+
+async def opened(pilot: Pilot[Any]) -> tuple[Analyser, Model]:
+    """Wait until the log is there."""
+    screen = pilot.app.screen
+    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.model is not None)
+    screen = pilot.app.screen
+    assert isinstance(screen, Analyser) and screen.model is not None
+    await pilot.pause()
+    return screen, screen.model
+
+
+def text_of(pilot: Pilot[Any]) -> str:
+    return "\n".join("".join(part.text for part in strip) for strip in pilot.app.screen._compositor.render_strips())
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+async def test_everything_is_on_the_first_screen(run: StoredRun, size: tuple[int, int]) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=size) as pilot:
+        await opened(pilot)
+        await until(pilot, lambda: "print('Colour" in text_of(pilot))
+        text = text_of(pilot)
+        assert all(word in text for word in ("Chart", "[x] Colour", "[Table]", "World", "variable", "? help"))
+        assert ("Sensor arrays" in text) is (size[1] > 30)
+
+
+async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
+        screen, model = await opened(pilot)
+        await pilot.press("b", "down")
+        text = text_of(pilot)
+        assert "82.75 light grey" in text
+        assert model.rows.text(model.row, "value") == "86.2745"
+        await pilot.press("m")
+        field = pilot.app.screen.query_one(Input)
+        assert field.value == "band 2: 86.27 pale grey"
+        # What is typed takes the place of what is proposed.
+        await pilot.press(*"white", "enter")
+        await pilot.press("n")
+        assert "white" in text_of(pilot)
+        (note,) = read_notes(run.folder / NOTES_FILE)
+        assert (note.variable, note.text) == ("Colour", "white")
+        assert note.start_s < model.time_of(model.row) < note.stop_s
+        await pilot.press("home", "delete")
+        assert not read_notes(run.folder / NOTES_FILE)
+        assert screen.model is model
+
+
+async def test_the_mouse_reads_the_chart_without_a_press(run: StoredRun) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
+        screen, model = await opened(pilot)
+        before = model.row
+        await pilot.hover(screen.chart, offset=(40, 5))
+        await until(pilot, lambda: " s  Colour " in str(screen.chart.border_subtitle))
+        assert model.row == before
+        await pilot.hover(screen.pane, offset=(5, 5))
+        await until(pilot, lambda: not screen.chart.border_subtitle)
+
+
+async def test_a_long_note_goes_on_in_further_lines(run: StoredRun) -> None:
+    words = " ".join(f"word{at}" for at in range(40))
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 30)) as pilot:
+        _, model = await opened(pilot)
+        await typed(pilot, "m", f"={words}", "enter", "n")
+        await until(pilot, lambda: "word39" in text_of(pilot))
+        assert all(word in text_of(pilot) for word in words.split())
+        await pilot.press("delete")
+        assert not model.notes
+
+
+async def test_tab_takes_the_word_that_is_offered(run: StoredRun) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        await opened(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: isinstance(pilot.app.focused, Input))
+        field = pilot.app.screen.query_one(Input)
+        await pilot.press("v", "=", "s", "l")
+        await until(pilot, lambda: bool(field._suggestion))
+        await pilot.press("tab")
+        assert field.value == "v=slope("
+
+
+async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
+    target = tmp_path / "bands.csv"
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
+        _, model = await opened(pilot)
+        await pilot.press("b")
+        await until(pilot, lambda: bool(model.bands()))
+        await typed(pilot, "e", f"={target}", "enter")
+        await until(pilot, target.exists)
+        frame = pd.read_csv(target)
+        assert frame["level"].tolist() == pytest.approx([band.level for band in model.bands()])
+        assert frame["variable"].unique().tolist() == ["Colour"]
+
+
+async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun) -> None:
+    handle = start_run(program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))
+    handle.wait()
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        screen, _ = await opened(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: "of" in text_of(pilot) and " runs" in text_of(pilot) and "prog.py" in text_of(pilot))
+        await pilot.press("space", "space", "enter")
+        await until(pilot, lambda: pilot.app.screen is screen and len(screen.wanted.runs) == 2)
+        assert screen.wanted.runs[0] == handle.run_id
+        await typed(pilot, "R")
+        await until(pilot, lambda: " runs" in text_of(pilot) and "prog.py" in text_of(pilot))
+        await typed(pilot, "=last", "tab")
+        pilot.app.screen.query_one(Input).focus()
+        await pilot.press("enter")
+        await until(pilot, lambda: screen.wanted.runs == (handle.run_id,))
+
+
+async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
+    text = parse_program("%%sim_magic_preloaded -b Grey_bands\nprint('Colour: 7')\n", "prog.py").text
+    handle = start_run(program(text), build_run_spec(Settings()), RunOptions(speed=0.0))
+    handle.wait()
+    async with AnalyserApp(LogRequest(runs=(handle.run_id,))).run_test(size=(120, 40)) as pilot:
+        await opened(pilot)
+        await until(pilot, lambda: "%%sim_magic_preloaded -b Grey" in text_of(pilot))
+
+
+async def test_one_cursor_moves_all(run: StoredRun) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
+        _, model = await opened(pilot)
+        await until(pilot, lambda: "print('Colour" in text_of(pilot))
+        before = text_of(pilot)
+        await pilot.press("end")
+        assert model.row == model.log.rows - 1
+        assert f"row {model.log.rows} of" in text_of(pilot)
+        assert text_of(pilot) != before
+        await pilot.press("left")
+        assert model.row == model.log.rows - 2
+        await typed(pilot, "g", "=2s", "enter")
+        assert model.time_of(model.row) == pytest.approx(2.0, abs=0.06)
+        await pilot.press("a", "shift+right")
+        assert "Δt" in text_of(pilot)
+
+
+async def typed(pilot: Pilot[Any], *keys: str) -> None:
+    """Press keys; `=text` puts a text into the field that has been opened."""
+    for key in keys:
+        if key.startswith("="):
+            pilot.app.screen.query_one(Input).value = key[1:]
+        else:
+            await pilot.press({"<": "less_than_sign", ">": "greater_than_sign"}.get(key, key))
+
+
+def filtered(model: Model) -> bool:
+    return 0 < len(model.rows) < model.log.rows
+
+
+STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
+    (["z", "z", "right_square_bracket"], lambda _, model: model.limits is not None),
+    (["f"], lambda _, model: model.limits is None),
+    (["F", "=value<90", "enter"], lambda _, model: filtered(model)),
+    (["U"], lambda _, model: len(model.rows) == model.log.rows),
+    (["F", "=x", "enter", "escape"], lambda _, model: len(model.rows) == model.log.rows),
+    ([">", "o", "o"], lambda _, model: (model.rows.sorted_by, model.rows.descending) == ("variable", True)),
+    (["U", "slash", "=82.7", "enter"], lambda _, model: model.rows.text(model.row, "value").startswith("82.7")),
+    (["space"], lambda _, model: not model.traces.ticked()),
+    (["space", "x", "X", "H"], lambda screen, _: screen.chart.look.facets and screen.chart.look.hold),
+    (["k", "=y_mm against x_mm", "enter"], lambda screen, _: screen.chart.look.against == ("x_mm", "y_mm")),
+    (["k", "=q", "enter", "escape"], lambda screen, _: screen.chart.look.against == ("x_mm", "y_mm")),
+    (["k", "=", "enter"], lambda screen, _: screen.chart.look.against is None),
+    (["A", "=distance", "enter"], lambda _, model: model.alignment == "distance"),
+    (["home", ">", ">", "y"], lambda screen, _: screen.app.clipboard == "100"),
+    (["ctrl+y"], lambda screen, model: screen.app.clipboard.count("\n") == model.log.rows),
+    (["b", "ctrl+y"], lambda screen, _: "pale grey" in screen.app.clipboard),
+    (["plus", "plus"], lambda screen, _: screen.pane.display and not screen.chart.display),
+    (["plus"], lambda screen, _: screen.chart.display and screen.pane.display),
+    (["w"], lambda screen, _: not screen.beside.display),
+]
+
+
+async def test_what_the_keys_do(run: StoredRun) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
+        screen, model = await opened(pilot)
+        for keys, so in STEPS:
+            await typed(pilot, *keys)
+            assert so(screen, model), keys
+
+
+async def test_every_action_does_no_harm_to_an_empty_log(tmp_path: Path) -> None:
+    spec = build_run_spec(Settings())
+    handle = start_run(program("print('no sample')"), spec, RunOptions(speed=0.0))
+    handle.wait()
+    async with AnalyserApp(LogRequest(runs=(handle.run_id,))).run_test(size=(80, 24)) as pilot:
+        screen, _ = await opened(pilot)
+        assert "Run again; T shows what every tick recorded." in text_of(pilot)
+        for name in ACTIONS:
+            if name not in ("leave", "telemetry"):
+                screen.action_act(name)
+                if pilot.app.screen is not screen:
+                    await pilot.pause()
+                while pilot.app.screen is not screen:
+                    await pilot.press("escape")
+        await pilot.press("T")
+        await until(pilot, lambda: "telemetry" in text_of(pilot))
+
+
+async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
+    file = tmp_path / "log.txt"
+    file.write_text("Colour: 1\nColour: 2\n")
+    async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(80, 24)) as pilot:
+        screen, model = await opened(pilot)
+        await pilot.press("end", "d")
+        with file.open("a") as handle:
+            handle.write("Colour: 3\n")
+
+        def has_grown() -> bool:
+            screen.look_again()
+            return screen.model is not None and screen.model.log.rows == 3
+
+        await until(pilot, has_grown)
+        assert screen.model is not None and screen.model.row == 2
+        assert screen.model is not model
+        # What was asked about the shorter log holds for what there is of it now.
+        await typed(pilot, "=v = Colour + 1", "enter")
+        assert screen.model.log.series("v").values.tolist() == [2.0, 3.0, 4.0]
+
+
+async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:
+    app = AnalyserApp(LogRequest(file=str(tmp_path / "none.csv")))
+    async with app.run_test() as pilot:
+        await until(pilot, lambda: app.failure is not None)
+    assert isinstance(app.failure, LogError)
+
+
+async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
+    spec = build_run_spec(Settings(background="Grey_bands"))
+    async with LabApp(AppSettings(spec=spec, program=program(LOGS))).run_test(size=(120, 40)) as pilot:
+        lab = await ready(pilot)
+        below, pose = lab.screen, lab.bridge.snapshot().instant.pose
+        analyser = Analyser(LogRequest(runs=(run.id,)))
+        await lab.push_screen(analyser)
+        await until(pilot, lambda: analyser.model is not None)
+        await pilot.press("d", "escape", "B", "i", "left", "shift+up")
+        assert lab.screen is analyser
+        assert lab.bridge.snapshot().instant.pose == pose
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(lab.screen, CommandPalette))
+        await pilot.press("escape")
+        await until(pilot, lambda: lab.screen is analyser)
+        await pilot.press("q")
+        await until(pilot, lambda: lab.screen is below)
+
+
+async def test_the_rows_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
+    file = tmp_path / "rows.parquet"
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        _, model = await opened(pilot)
+        await typed(pilot, "F", "=value<60", "enter", "h", "e", f"={file}", "enter")
+        await until(pilot, file.exists)
+        frame = read_log(file)
+        assert len(frame) == len(model.rows) < model.log.rows
+        assert list(frame.columns) == model.rows.columns
+        assert frame["value"].max() < 60
+
+
+def test_keys_are_told_apart() -> None:
+    keys = [key for action in ACTIONS.values() for key in action.key.split(",")]
+    assert len(keys) == len(set(keys))

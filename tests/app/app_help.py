@@ -1,0 +1,83 @@
+"""What the tests of the app share: settings, and waiting for something to come about."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from textual.pilot import Pilot
+
+from tests.running import PATIENCE_S
+from tuisim.app.app import LabApp
+from tuisim.app.start_options import AppSettings
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs.handle import Program
+
+LOGS = """\
+sensor_val = colorLeft.reflected_light_intensity_pc
+print('Colour: ' + str(sensor_val))
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+import time
+while sensor_val > 0:
+    sensor_val = colorLeft.reflected_light_intensity_pc
+    print('Colour: ' + str(sensor_val))
+    time.sleep(0.1)
+tank_drive.off()
+"""
+ENDLESS = "tank_drive.on(SpeedPercent(10), SpeedPercent(10))\nwhile True:\n    pass\n"
+
+
+def program(text: str) -> Program:
+    return Program(name="prog.py", text=text, prelude="preloaded", path=str(Path("prog.py").absolute()))
+
+
+def settings(text: str | None = None, background: str = "Grey_bands", **more: Any) -> AppSettings:
+    spec = build_run_spec(Settings(background=background))
+    return AppSettings(spec=spec, program=program(text) if text else None, background=background, **more)
+
+
+async def until(pilot: Pilot[Any], condition: Callable[[], bool]) -> None:
+    """Let the app go on until something is so."""
+    give_up = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < give_up, "it did not come about"
+        await pilot.pause(0.01)
+
+
+def lab(pilot: Pilot[Any]) -> LabApp:
+    app = pilot.app
+    assert isinstance(app, LabApp)
+    return app
+
+
+async def ready(pilot: Pilot[Any]) -> LabApp:
+    """Wait until the mat lies there."""
+    app = lab(pilot)
+    await until(pilot, lambda: app.bridge.mat is not None)
+    await pilot.pause()
+    return app
+
+
+def notices(app: LabApp) -> list[str]:
+    return [str(notice.message) for notice in app._notifications]
+
+
+def screen_text(app: LabApp) -> str:
+    """What is on the screen, as lines of text."""
+    return "\n".join("".join(s.text for s in strip) for strip in app.screen._compositor.render_strips())
+
+
+async def until_shown(pilot: Pilot[Any], text: str) -> None:
+    """Wait until words stand on the screen."""
+    await until(pilot, lambda: text in screen_text(lab(pilot)))
+
+
+async def press_and_stand(pilot: Pilot[Any], key: str) -> None:
+    """Press a key that lets the program stand anew."""
+    debugging = lab(pilot).debugging
+    before = debugging.standing
+    await pilot.press(key)
+    await until(pilot, lambda: debugging.standing not in (None, before))

@@ -1,0 +1,109 @@
+"""Axes and reduction of points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tuisim.charts import axes
+from tuisim.charts.decimation import min_max
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "limits"),
+    [
+        pytest.param(0.0, 100.0, (0.0, 100.0), id="percent"),
+        pytest.param(50.2, 100.0, (40.0, 100.0), id="part of it"),
+        pytest.param(5.0, 5.0, (4.0, 6.0), id="one value"),
+        pytest.param(-90.0, 3.0, (-100.0, 25.0), id="negative"),
+        pytest.param(0.0, 2550.0, (0.0, 3000.0), id="millimetres"),
+    ],
+)
+def test_value_limits(low: float, high: float, limits: tuple[float, float]) -> None:
+    assert axes.value_limits(low, high) == pytest.approx(limits)
+
+
+@given(st.floats(-1e6, 1e6), st.floats(0, 1e6))
+def test_value_limits_hold_the_values(low: float, span: float) -> None:
+    bottom, top = axes.value_limits(low, low + span)
+
+    slack = 1e-6 * max(abs(low), span, 1)
+    assert bottom <= low + slack
+    assert top >= low + span - slack
+    assert bottom < top
+
+
+@pytest.mark.parametrize("value", [1e16, -1e17, 1e149, 5e-324])
+def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
+    bottom, top = axes.value_limits(value, value)
+    assert bottom < value < top
+
+
+@pytest.mark.parametrize(("end_s", "upper_s"), [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)])
+def test_time_limits(end_s: float, upper_s: float) -> None:
+    assert axes.time_limits(end_s) == (0, upper_s)
+
+
+@given(st.integers(4, 300), st.floats(0.1, 5000))
+def test_time_axis_has_the_width_and_a_unit(columns: int, end_s: float) -> None:
+    line, below = axes.time_axis(axes.time_limits(end_s), columns)
+
+    assert len(line) == len(below) == columns
+
+
+@pytest.mark.parametrize("columns", [2, 40, 117])
+def test_columns_and_times_agree(columns: int) -> None:
+    limits = (0.0, 30.0)
+
+    back = [axes.column_of(axes.at_column(column, limits, columns), limits, columns) for column in range(columns)]
+
+    assert back == list(range(columns))
+
+
+@pytest.mark.parametrize(
+    ("value", "step", "text"), [(2.5, 2.5, "2.5"), (10.0, 5.0, "10"), (0.25, 0.05, "0.25"), (-0.0, 1.0, "0")]
+)
+def test_labels(value: float, step: float, text: str) -> None:
+    assert axes.label(value, step) == text
+
+
+@pytest.mark.parametrize(
+    ("limits", "rows", "labels"),
+    [
+        pytest.param((40.0, 100.0), 4, {0: "100", 3: "40"}, id="few rows"),
+        pytest.param((0.0, 100.0), 1, {0: "100"}, id="one row"),
+        pytest.param((0.0, 100.0), 12, {0: "100", 2: "80", 4: "60", 7: "40", 9: "20", 11: "0"}, id="many rows"),
+        pytest.param((-1.0, 1.0), 4, {0: "1.0", 3: "-1.0"}, id="fractions"),
+    ],
+)
+def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, str]) -> None:
+    assert axes.row_labels(limits, rows) == labels
+
+
+def test_reduction_keeps_extremes_and_order() -> None:
+    times = np.linspace(0, 60, 100_000)
+    values = np.sin(times)
+    values[54_321] = 9.0
+    values[12_345] = -7.0
+
+    when, reduced = min_max(times, values, (0.0, 60.0), 100)
+
+    assert len(when) <= 202
+    assert (np.diff(when) >= 0).all()
+    assert (reduced.max(), reduced.min()) == (9.0, -7.0)
+
+
+def test_reduction_leaves_few_points_alone_and_keeps_neighbours_of_the_window() -> None:
+    times = np.arange(10.0)
+
+    when, _ = min_max(times, times, (3.5, 6.5), 50)
+
+    assert when.tolist() == [3.0, 4.0, 5.0, 6.0, 7.0]
+
+
+def test_reduction_of_nothing() -> None:
+    when, values = min_max(np.empty(0), np.empty(0), (0.0, 1.0), 10)
+
+    assert len(when) == len(values) == 0

@@ -1,0 +1,179 @@
+"""The chart as text."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from tuisim.charts.canvas import TextRun, canvas
+from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState
+from tuisim.charts.traces import Traces
+
+
+def traces(*names: str) -> Traces:
+    made = Traces()
+    for at, name in enumerate(names):
+        made.append(name, [0.0, 1.0, 2.0, 3.0], [at + 0.0, at + 100.0, at + 50.0, at + 50.0])
+    return made
+
+
+def text(picture: ChartPicture) -> list[str]:
+    return ["".join(part for part, _ in line) for line in picture.lines]
+
+
+SIZES = [(20, 6), (38, 8), (72, 16), (160, 20)]
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES, ids=str)
+@pytest.mark.parametrize("cursor_s", [None, 1.5], ids=["no cursor", "cursor"])
+@pytest.mark.parametrize("grey", [False, True], ids=["colours", "grey"])
+def test_it_fits(width: int, height: int, cursor_s: float | None, grey: bool) -> None:
+    made = traces("Colour", "Light_left", "Ultrasonic", "left red %", "gyro °", "a_very_long_name_of_a_trace")
+
+    picture = ChartPainter().paint(made, ChartState("Colour", cursor_s, grey=grey), width, height)
+
+    rows = text(picture)
+    assert len(rows) <= height
+    assert max(map(len, rows)) <= width
+    assert any("0" in row for row in rows)
+    for box in picture.boxes:
+        assert rows[box.row][box.first] == "["
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES, ids=str)
+def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
+    rows = text(ChartPainter().paint(traces(), ChartState(), width, height))
+
+    assert max(map(len, rows)) <= width
+    assert len(rows) <= height
+    assert "print('Colour: '" in "\n".join(rows)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "state", "lowest"),
+    [
+        ("Colour", [60.0, 98.8], ChartState(), "0"),
+        ("Light_left", [180.0, 255.0], ChartState(), "0"),
+        ("left red %", [60.0, 98.8], ChartState(), "0"),
+        ("right_green #2", [180.0, 200.0], ChartState(), "0"),
+        ("Colour", [60.0, 98.8], ChartState(zoomed=True), "60"),
+        ("Light", [600.0, 980.0], ChartState(), "600"),
+        ("Distance", [60.0, 98.8], ChartState(), "60"),
+        ("Light_slope", [-20.0, 40.0], ChartState(), "-20"),
+    ],
+    ids=["percent", "level", "telemetry", "column", "zoomed", "out of range", "other reading", "below zero"],
+)
+def test_readings_with_a_known_range_begin_at_zero(
+    name: str, values: list[float], state: ChartState, lowest: str
+) -> None:
+    made = Traces()
+    made.append(name, [0.0, 1.0], values)
+    next(iter(made)).on = True
+    rows = text(ChartPainter().paint(made, state, 60, 8))
+    assert [row.split("┤")[0].strip() for row in rows if "┤" in row][-1] == lowest
+
+
+@pytest.mark.parametrize("end_s", [0.7, 5.41, 61.3, 723.0])
+@pytest.mark.parametrize("grows", [False, True], ids=["over", "live"])
+def test_the_horizontal_axis_ends_at_the_data(end_s: float, grows: bool) -> None:
+    made = Traces()
+    made.append("Colour", [0.0, end_s], [1.0, 2.0])
+    limits = ChartPainter().paint(made, ChartState(grows=grows), 60, 12).x_limits
+    # While more is to come, there is a little room for it.
+    assert limits[0] == 0
+    assert limits[1] == end_s if not grows else end_s <= limits[1] <= max(1.3 * end_s, 1)
+
+
+@pytest.mark.parametrize("height", [6, 9, 12, 16, 24, 40])
+def test_tick_boxes_leave_most_of_a_chart_to_the_curves(height: int) -> None:
+    made = traces(*(f"a_long_name_of_trace_{at}" for at in range(8)))
+    picture = ChartPainter().paint(made, ChartState(), 30, height)
+    assert picture.top <= height / 6
+
+
+def test_a_name_that_does_not_fit_ends_in_an_ellipsis() -> None:
+    rows = text(ChartPainter().paint(traces("a_name_that_is_much_too_long"), ChartState(), 20, 8))
+    assert rows[0].rstrip() == "[x] a_name_that_i…"
+
+
+def test_telemetry_is_not_ticked_at_first() -> None:
+    rows = text(ChartPainter().paint(traces("gyro °", "Colour"), ChartState(), 80, 16))
+
+    assert rows[0].startswith("[x] Colour  [ ] gyro °")
+
+
+def test_the_selected_box_is_in_sight() -> None:
+    names = [f"Trace_number_{number}" for number in range(9)]
+
+    picture = ChartPainter().paint(traces(*names), ChartState("Trace_number_8"), 40, 8)
+
+    assert "Trace_number_8" in [box.name for box in picture.boxes]
+
+
+def test_values_at_the_cursor() -> None:
+    rows = text(ChartPainter().paint(traces("Colour", "Gyro"), ChartState(cursor_s=1.25), 80, 16))
+
+    assert rows[-1] == "1.25 s  Colour 100  Gyro 101"
+
+
+def test_values_that_do_not_fit_are_counted() -> None:
+    rows = text(ChartPainter().paint(traces("Colour", "Light_left", "Light_right"), ChartState(cursor_s=1.0), 24, 9))
+
+    assert rows[-1] == "1.00 s  Colour 100 +2"
+
+
+def test_two_scales() -> None:
+    made = traces("Colour")
+    made.append("Ultrasonic", [0.0, 3.0], [2000.0, 0.0])
+
+    rows = text(ChartPainter().paint(made, ChartState(), 80, 16))
+
+    assert any(row.startswith("100┤") and row.rstrip().endswith("├2000") for row in rows)
+
+
+def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[object] = []
+
+    def counted(*words: Any) -> list[list[TextRun]]:
+        calls.append(words)
+        return canvas(*words)
+
+    monkeypatch.setattr("tuisim.charts.text_chart.canvas", counted)
+    painter, made, state = ChartPainter(), traces("Colour"), ChartState(cursor_s=1.0)
+
+    painter.paint(made, state, 80, 16)
+    painter.paint(made, replace(state, cursor_s=2.0), 80, 16)
+    made.append("Colour", [4.0], [7.0])
+    painter.paint(made, state, 80, 16)
+
+    assert len(calls) == 2
+
+
+def test_limits_stay_while_frozen() -> None:
+    made = traces("Colour")
+    made.append("Colour", [100.0], [1.0])
+
+    assert ChartPainter().paint(made, ChartState(x_limits=(0.0, 5.0)), 80, 16).x_limits == (0.0, 5.0)
+    assert ChartPainter().paint(made, ChartState(), 80, 16).x_limits == (0.0, 100.0)
+
+
+def test_points_out_of_order_and_numbers_that_are_none() -> None:
+    made = Traces()
+    made.append("t", [3.0, 1.0, float("nan")], [30.0, 10.0, 5.0])
+    made.append("t", [2.0], [float("inf")])
+    made.append("t", [2.0], [20.0])
+    (trace,) = made
+
+    assert trace.times_s.tolist() == [1.0, 2.0, 3.0]
+    assert [trace.at(time_s) for time_s in (0.5, 1.0, 2.9)] == [None, 10.0, 20.0]
+
+
+def test_many_points() -> None:
+    made = Traces()
+    for at in range(100):
+        made.append("t", [at * 10.0 + step for step in range(10)], [float(step) for step in range(10)])
+
+    assert len(next(iter(made)).times_s) == 1000
+    assert made.end_s() == 999.0

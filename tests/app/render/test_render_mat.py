@@ -1,0 +1,76 @@
+"""The small picture of the mat."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.app.render.mat import MatPictures, Pixels, shrink
+from tuisim.app.render.viewport import Viewport, whole_field
+
+OUTSIDE = (1, 2, 3)
+
+
+def mat(ground: int = 255) -> Pixels:
+    return np.full((1143, 2362, 3), ground, np.uint8)
+
+
+def middle_row(pixels: Pixels, width: int = 76) -> list[int]:
+    picture = shrink(pixels, whole_field(width, 54), OUTSIDE)
+    return [int(value) for value in picture[27, :, 0]]
+
+
+def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
+    picture = shrink(mat(211), whole_field(76, 54), OUTSIDE)
+
+    assert set(map(tuple, picture.reshape(-1, 3).tolist())) == {(211, 211, 211), OUTSIDE}
+    assert tuple(picture[0, 0]) == OUTSIDE
+
+
+@pytest.mark.parametrize("width_mm", [4, 10, 20])
+@pytest.mark.parametrize(("ground", "ink"), [(255, 0), (0, 255), (211, 80)], ids=["black on white", "white", "grey"])
+def test_a_thin_line_is_kept(width_mm: int, ground: int, ink: int) -> None:
+    pixels = mat(ground)
+    pixels[:, 1000 : 1000 + width_mm] = ink
+
+    strongest = max(abs(value - ground) for value in middle_row(pixels))
+
+    # The mean alone would leave 4 of 31 parts of the contrast.
+    assert strongest > 0.24 * abs(ink - ground)
+
+
+def test_bands_keep_their_grey() -> None:
+    pixels = mat()
+    pixels[150:901, 250:451] = 220
+    pixels[150:901, 650:851] = 211
+
+    row = middle_row(pixels)
+
+    assert row[11] == 220
+    assert row[24] == 211
+
+
+def test_a_gradient_stays_in_order() -> None:
+    pixels = mat()
+    pixels[:] = np.linspace(255, 0, 2362).astype(np.uint8)[None, :, None]
+
+    row = middle_row(pixels)
+
+    assert row == sorted(row, reverse=True)
+
+
+def test_a_view_finer_than_the_mat_repeats_pixels() -> None:
+    pixels = mat()
+    pixels[600, 1000] = 0
+    view = Viewport(8, 8, 0.5, 999.0, 1143 - 599.0)
+
+    picture = shrink(pixels, view, OUTSIDE)
+
+    assert (picture[..., 0] == 0).sum() == 4
+
+
+def test_pictures_are_remembered() -> None:
+    pictures = MatPictures(mat(), OUTSIDE)
+    view = whole_field(40, 20)
+
+    assert pictures.picture(view) is pictures.picture(view)

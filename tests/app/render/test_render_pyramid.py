@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+from dataclasses import astuple
+
+import numpy as np
+import pytest
+
+from tuisim.charts.canvas import seen_points, xy_lines
+from tuisim.charts.decimation import Pyramid
+from tuisim.logs.statistics import summary_of
+
+TIMES = np.arange(200_000) / 1000.0
+
+
+@pytest.mark.parametrize("limits", [(0.0, 200.0), (50.0, 150.0), (10.0, 10.05), (-5.0, 500.0)], ids=str)
+def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
+    values = np.sin(TIMES)
+    values[123_456] = 9.0
+    times_s, drawn = Pyramid(TIMES, values).points(limits, 100)
+    inside = (limits[0] <= TIMES) & (limits[1] >= TIMES)
+    assert len(times_s) <= 2 * 16 * 4 * 100 + 4
+    assert drawn.max() >= values[inside].max()
+    assert drawn.min() <= values[inside].min()
+    assert (np.diff(times_s) >= 0).all()
+
+
+def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
+    pyramid = Pyramid(np.array([3.0, 1.0, 2.0, 5.0]), np.array([30.0, 10.0, np.nan, 50.0]))
+    assert pyramid.times_s.tolist() == [1.0, 3.0, 5.0]
+    assert [pyramid.nearest(time_s) for time_s in (-9.0, 1.9, 2.1, 4.1, 99.0)] == [1, 1, 0, 3, 3]
+    assert pyramid.between(1.0, 3.0)[1].tolist() == [10.0, 30.0]
+
+
+@pytest.mark.parametrize("span", [(0.0, 200.0), (3.0011, 171.9), (5.008, 5.02), (90.0, 80.0)], ids=str)
+def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
+    values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
+    inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]
+    found, expected = Pyramid(TIMES, values).figures(*span), summary_of(inside, quantiles=())
+    assert astuple(found)[:6] == pytest.approx(astuple(expected)[:6], rel=1e-9, nan_ok=True)
+
+
+def test_equal_values_have_no_spread() -> None:
+    found = Pyramid(TIMES, np.full(len(TIMES), 0.1)).figures(0.0, 150.0)
+    assert (found.mean, found.std) == (0.1, 0.0)
+
+
+def test_no_points_at_all() -> None:
+    assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).points((0.0, 1.0), 10)[0])
+
+
+def test_a_path_keeps_one_point_a_dot() -> None:
+    angles = np.linspace(0.0, 2000 * np.pi, 500_000)
+    xs, ys = seen_points(np.cos(angles), np.sin(angles), ((-1.0, 1.0), (-1.0, 1.0)), 40, 20)
+    assert len(xs) < 2000
+    assert xs.max() > 0.9 and ys.min() < -0.9
+
+
+def test_the_place_that_is_looked_at_is_marked() -> None:
+    xs, ys = np.array([0.0, 5.0, 10.0]), np.array([0.0, 5.0, 10.0])
+    lines = xy_lines(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)
+    text = ["".join(part for part, _ in line) for line in lines]
+    assert len(text) == 12
+    assert "●" in text[1]
+    assert text[0].endswith("x 10  y 10")

@@ -1,0 +1,300 @@
+"""World files in the app, and files that change on the disk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until, until_shown
+from tuisim.app.app import LabApp
+from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.app.start_options import AppSettings
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings, settings_of
+from tuisim.config.worlds import load_world
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec
+from tuisim.runs.handle import Program
+
+LAB = """\
+program = "mine.py"
+background = "Square"
+robot = "mine.toml"
+seed = 5
+[noise]
+light = 7
+[start]
+x_mm = 600
+"""
+MINE = "# %%sim_magic_preloaded -b Loop\nprint('A: 1')\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a world, its robot and its program, to be in."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "lab.toml").write_text(LAB)
+    (tmp_path / "mine.py").write_text(MINE)
+    (tmp_path / "mine.toml").write_text("wheel_diameter_mm = 40\n")
+    return tmp_path
+
+
+def with_file(path: Path, **changes: Any) -> AppSettings:
+    """What the command makes of `tuisim PROGRAM`."""
+    chosen = Settings(background="Grey_bands", **changes)
+    given = Program(path.name, path.read_text(), "preloaded", str(path))
+    return AppSettings(spec=build_run_spec(chosen), settings=chosen, program=given, background="Grey_bands")
+
+
+async def open_path(pilot: Pilot[Any], path: str) -> LabApp:
+    app = await ready(pilot)
+    await pilot.press("o")
+    entry = app.screen.query_one(Input)
+    entry.focus()
+    entry.value = path
+    await pilot.press("enter")
+    await until(pilot, lambda: len(app.screen_stack) == 1 and app.loading.mat_is_ready)
+    return app
+
+
+def look(app: LabApp) -> None:
+    """As the timer does, without waiting for it."""
+    app.loading.look()
+
+
+async def test_a_world_is_opened_whole(folder: Path) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.bridge.set_noise(NoiseSpec(1, 99))
+        await open_path(pilot, "lab.toml")
+        spec = app.bridge.plan.spec
+        assert spec.world.background == "Square"
+        assert spec.world.start.x_mm == 600
+        assert spec.world.noise == NoiseSpec(7, 0)
+        assert (spec.robot.wheel_diameter_mm, spec.seed) == (40, 5)
+        assert app.bridge.program is not None
+        assert app.bridge.program.name == "mine.py"
+        await pilot.press("m")
+        assert app.bridge.pose.x_mm == 600
+
+
+async def test_worlds_of_the_folder_are_offered_and_robots_are_not(folder: Path) -> None:
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o")
+        await pilot.pause()
+        text = screen_text(app)
+        assert "lab.toml" in text
+        assert "mine.toml" not in text
+
+
+async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
+    (folder / "lab.toml").write_text(LAB + "[pen]\nwidth_mm = 'thick'\n")
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        before = app.bridge.plan, app.bridge.program
+        await open_path(pilot, "lab.toml")
+        await until(pilot, lambda: any("pen.width_mm: must be a number" in notice for notice in notices(app)))
+        assert (app.bridge.plan, app.bridge.program) == before
+        assert app.loading.world_file is None
+
+
+def with_magic(words: str) -> str:
+    return f"# %%sim_magic_preloaded -b Loop{words}\nprint('A: 1')\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "panel", "shown"),
+    [(" -c", "chart", True), (" -X", "positioning", True), (" -W", "world", False), (" -O", "output", True)],
+    ids=["chart", "positioning", "no world", "shown anyway"],
+)
+async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
+    folder: Path, words: str, panel: str, shown: bool
+) -> None:
+    path = folder / "mine.py"
+    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        before = app.desk.shown(panel)
+        path.write_text(with_magic(words))
+        look(app)
+        await until(pilot, lambda: app.desk.shown(panel) is shown)
+        path.write_text(with_magic(""))
+        look(app)
+        await until(pilot, lambda: app.desk.shown(panel) is before)
+
+
+async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) -> None:
+    (folder / "mine.py").write_text(with_magic(" -cu --speed 2"))
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await open_path(pilot, "mine.py")
+        assert app.desk.shown("chart")
+        assert app.desk.world is not None
+        assert app.desk.world.show_rays
+        assert app.bridge.speed == 2
+
+
+async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Path) -> None:
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.loading.open_file(str(folder / "mine.py"))
+        app.bridge.place(Pose(321, 432, 10))
+        app.bridge.set_noise(NoiseSpec(3, 4))
+        spec = app.bridge.plan.spec
+        await pilot.press("ctrl+s")
+        assert app.screen.query_one(Input).value == "lab.toml"
+        await pilot.press("enter")
+        await until(pilot, lambda: "is there already" in screen_text(app))
+        assert (folder / "lab.toml").read_text() == LAB
+        await pilot.press("enter")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        saved = load_world("lab.toml")
+        assert build_run_spec(settings_of(saved.settings)) == spec
+        assert saved.program == "mine.py"
+        assert app.loading.world_file == Path("lab.toml")
+        look(app)
+        await pilot.pause()
+        assert not any("changed on disk" in notice for notice in notices(app))
+
+
+async def test_what_cannot_be_written_is_told(folder: Path) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("ctrl+s")
+        for typed, said in (
+            ("lab.txt", "must end in .toml"),
+            ("no/such/folder/lab.toml", "cannot be written: No such file or directory"),
+            (".", "is a folder, not a file"),
+            ("", "Type the name of a file that ends in .toml"),
+        ):
+            app.screen.query_one(Input).value = typed
+            await pilot.press("enter")
+            await until_shown(pilot, said)
+        assert sorted(path.name for path in folder.iterdir()) == ["lab.toml", "mine.py", "mine.toml"]
+
+
+async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
+    path = folder / "mine.py"
+    path.write_text("print('A: 1')\n")
+    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.bridge.place(Pose(500, 500, 0))
+        path.write_text("print('Better: 2')\n")
+        look(app)
+        await until(pilot, lambda: "Better: 2" in screen_text(app))
+        await until(pilot, lambda: "mine.py changed on disk: reloaded" in notices(app))
+        assert app.bridge.program is not None
+        assert app.bridge.program.text == "print('Better: 2')\n"
+        # The world is as the user left it.
+        assert app.bridge.pose == Pose(500, 500, 0)
+
+
+async def test_the_timer_looks_by_itself(folder: Path) -> None:
+    path = folder / "mine.py"
+    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        path.write_text("print('By itself: 2')\n")
+        await until(pilot, lambda: "By itself: 2" in screen_text(app))
+
+
+async def test_a_changed_magic_line_applies_what_is_new_in_it(folder: Path) -> None:
+    path = folder / "mine.py"
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await open_path(pilot, "mine.py")
+        app.bridge.set_noise(NoiseSpec(9, 0))
+        path.write_text(MINE.replace("-b Loop", "-b Loop -M 30 -r Small_Robot"))
+        look(app)
+        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Small_Robot")
+        assert app.bridge.plan.spec.world.noise == NoiseSpec(9, 30)
+        path.write_text(MINE.replace("Loop", "Square"))
+        look(app)
+        spec = app.bridge.plan.spec
+        assert (spec.world.background, spec.robot.name, spec.world.noise.motor) == ("Square", "Default_Robot", 0)
+        await until(pilot, lambda: app.loading.mat_is_ready)
+
+
+async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) -> None:
+    path = folder / "mine.py"
+    path.write_text(ENDLESS)
+    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == RUNNING)
+        path.write_text("print('Later: 2')\n")
+        look(app)
+        await until(pilot, lambda: notices(app) == ["mine.py changed on disk: reloaded when the run ends"])
+        assert app.bridge.program is not None
+        assert app.bridge.program.text == ENDLESS
+        await pilot.press("S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.bridge.program is not None and "Later" in app.bridge.program.text)
+
+
+# The file, what it says then, the notice, and a fact that stays as it was.
+WRONG = [
+    ("mine.py", "# %%sim_magic_preloaded -N 999\n", "must be a whole number from 0 to 128"),
+    ("mine.toml", "wheel_diameter_mm = 'x'\n", "wheel_diameter_mm: must be a number"),
+    ("lab.toml", "[[[", "lab.toml: is not TOML"),
+]
+
+
+@pytest.mark.parametrize(("name", "text", "said"), WRONG, ids=[name for name, _, _ in WRONG])
+async def test_a_file_that_became_wrong_is_told_and_the_former_stays(
+    name: str, text: str, said: str, folder: Path
+) -> None:
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await open_path(pilot, "lab.toml")
+        before = app.bridge.plan, app.bridge.program
+        good = (folder / name).read_text()
+        (folder / name).write_text(text)
+        look(app)
+        await until(pilot, lambda: any(said in notice for notice in notices(app)))
+        assert (app.bridge.plan, app.bridge.program) == before
+        (folder / name).write_text(good + "\n")
+        look(app)
+        await until(pilot, lambda: f"{name} changed on disk: reloaded" in notices(app))
+        assert app.bridge.plan.spec == before[0].spec
+
+
+async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
+    (folder / "boxes.toml").write_text("obstacle = []\n")
+    (folder / "lab.toml").write_text(LAB.replace("seed = 5", 'seed = 5\nobstacles = "boxes.toml"'))
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await open_path(pilot, "lab.toml")
+        (folder / "mine.toml").write_text("wheel_diameter_mm = 44\n")
+        box = "[[obstacle]]\nx_mm = 1\ny_mm = 2\nwidth_mm = 3\nheight_mm = 4\n"
+        (folder / "boxes.toml").write_text(box)
+        look(app)
+        spec = app.bridge.plan.spec
+        assert (spec.robot.wheel_diameter_mm, len(spec.world.obstacles)) == (44, 1)
+        (folder / "lab.toml").write_text((folder / "lab.toml").read_text().replace("light = 7", "light = 8"))
+        look(app)
+        assert app.bridge.plan.spec.world.noise.light == 8
+        assert app.bridge.plan.spec.robot.wheel_diameter_mm == 44
+
+
+async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
+    from tuisim.commands.resolve import prepare_app
+    from tuisim.config.options import SwitchParser
+
+    parser = SwitchParser(prog="tuisim")
+    parser.add_programs("words")
+    parser.add_switches()
+    prepared = prepare_app(["lab.toml"], parser.parse_args([]))
+    assert prepared.world is not None
+    opened = AppSettings(
+        spec=prepared.spec,
+        settings=prepared.settings,
+        world_file=prepared.world.path,
+        program=prepared.program,
+        background=prepared.spec.world.background,
+    )
+    async with LabApp(opened).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        assert app.bridge.plan.spec == prepared.spec
+        (folder / "lab.toml").write_text(LAB.replace("seed = 5", "seed = 6"))
+        look(app)
+        assert app.bridge.plan.spec.seed == 6

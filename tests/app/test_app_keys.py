@@ -1,0 +1,321 @@
+"""Keys, panels, dialogs and sizes, in the app without a terminal."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from textual.widgets import Input, OptionList, Static
+
+from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
+from tuisim.app.actions.table import ACTIONS, Action, Situation, working
+from tuisim.app.app import LabApp
+from tuisim.app.keys.app_help import HelpScreen
+from tuisim.app.keys.footer import fitting
+from tuisim.app.panels import LARGE, PANELS
+from tuisim.app.panels.position import parse_field
+from tuisim.app.snapshot import IDLE, PAUSED, RUNNING
+from tuisim.core.geometry import Pose
+
+SIZES = [(80, 24), (120, 40), (200, 60)]
+
+
+@pytest.mark.parametrize("size", SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
+async def test_first_picture(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        text = screen_text(app)
+        assert "World" in text
+        assert "Instrumentation" in text
+        assert "R run" in text
+        assert text.count("\n") == size[1] - 1
+
+
+@pytest.mark.slow
+async def test_every_panels_key_shows_and_hides_it() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(200, 60)) as pilot:
+        app = await ready(pilot)
+        for panel in PANELS.values():
+            at_first = LARGE in panel.sizes
+            assert app.desk.shown(panel.id) is at_first, panel.id
+            for shown in (not at_first, at_first):
+                await pilot.press(panel.key)
+                assert app.desk.shown(panel.id) is shown, panel.id
+                await pilot.pause()
+                assert (f"─ {panel.title}" in screen_text(app)) is shown, panel.id
+
+
+@pytest.mark.parametrize("panel", [panel for panel in PANELS if panel not in ("world", "output")])
+async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back(panel: str) -> None:
+    off = frozenset({panel})
+    async with LabApp(settings(LOGS, panels_off=off)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press(PANELS[panel].key)
+        # Those that hear no keys leave the focus where it is.
+        deaf = ("instrumentation", "arrays", "controls")
+        wanted = app.desk.panels["world" if panel in deaf else panel]
+        await until(pilot, lambda: app.focused is not None and wanted in app.focused.ancestors_with_self)
+        await pilot.press(PANELS[panel].key)
+        await until(pilot, lambda: not app.desk.shown(panel) and app.focused is app.desk.world)
+
+
+async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
+    app = LabApp(settings(LOGS, panels_on=frozenset({"chart", "output"}), autorun=True, speed=0.0))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await until(pilot, lambda: "— finished" in screen_text(app) and "[x] Colour" in screen_text(app))
+        await pilot.press("ctrl+l")
+        await until(pilot, lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app))
+        recording = app.bridge.timeline.recording
+        assert recording is not None
+        assert any("Colour" in row.text for row in recording.rows.rows(0))
+
+
+@pytest.mark.parametrize(("size", "columns"), [((80, 24), 1), ((120, 40), 2), ((200, 60), 3)], ids=str)
+async def test_help_has_as_many_columns_as_there_is_room_for(size: tuple[int, int], columns: int) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await pilot.press("question_mark")
+        groups = {"In the code", *(action.group for action in ACTIONS.values())}
+
+        def top() -> str:
+            """The row in which each column begins with the name of a group."""
+            return next((row for row in screen_text(app).split("\n") if re.search(r"│ +Program  ", row)), "")
+
+        await until(pilot, lambda: sum(f" {group}  " in top() for group in groups) == columns)
+
+
+async def test_a_panel_without_room_takes_the_place_of_another() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("A", "H")
+        assert app.desk.shown("arrays")
+        assert app.desk.shown("controls")
+        assert not app.desk.shown("instrumentation")
+        assert "Simulator controls takes the room of Instrumentation (i)" in notices(app)
+        await pilot.press("H")
+        assert app.desk.shown("instrumentation")
+
+
+async def test_resize_there_and_back() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "White" in screen_text(app))
+        before = screen_text(app)
+        await pilot.resize_terminal(200, 60)
+        await until(pilot, lambda: app.desk.shown("positioning"))
+        assert all(app.desk.shown(panel.id) for panel in PANELS.values() if panel.sizes)
+        await pilot.resize_terminal(80, 24)
+        await until(pilot, lambda: not app.desk.shown("chart"))
+        await until(pilot, lambda: screen_text(app) == before)
+
+
+async def test_switched_off_stays_off_in_every_size() -> None:
+    off = settings(LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"}))
+    async with LabApp(off).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        assert app.desk.shown("arrays")
+        await pilot.resize_terminal(200, 60)
+        await until(pilot, lambda: app.desk.shown("chart"))
+        assert not app.desk.shown("world")
+
+
+async def test_a_key_that_does_nothing_says_why() -> None:
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for key, reason in (
+            ("R", "No program yet: o opens one"),
+            ("S", "Nothing is running: R runs the program"),
+            ("space", "Nothing is running: R runs the program"),
+            ("full_stop", "Nothing is running: R runs the program"),
+            ("e", "No log yet: R runs the program"),
+        ):
+            app.clear_notifications()
+            await pilot.press(key)
+            assert notices(app) == [reason], key
+
+
+@pytest.mark.slow
+async def test_nudge() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for key, pose in (
+            ("left", Pose(140, 500, 0)),
+            ("up", Pose(150, 510, 0)),
+            ("shift+right", Pose(151, 500, 0)),
+            ("shift+down", Pose(150, 499, 0)),
+            ("ctrl+left", Pose(150, 500, 5)),
+            ("ctrl+right", Pose(150, 500, -5)),
+            ("a", Pose(150, 500, 5)),
+            ("f", Pose(150, 500, -5)),
+        ):
+            await pilot.press(key)
+            assert app.bridge.pose == pose, key
+            assert app.bridge.snapshot().gyro_deg == 0, key
+            await pilot.press("m")
+            assert app.bridge.pose == Pose(150, 500, 0), key
+
+
+async def test_readings_follow_the_robot_at_rest() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        assert app.bridge.snapshot().colors["left"].red == 255
+        app.bridge.place(Pose(300, 500, 0))
+        assert app.bridge.snapshot().colors["left"].red == 220
+
+
+async def test_speed_steps_and_ends() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("left_square_bracket", "left_square_bracket")
+        assert app.bridge.speed == 0.25
+        await pilot.press("left_square_bracket")
+        assert notices(app) == ["Speed is ¼× already: that is the slowest"]
+        await pilot.press(*["right_square_bracket"] * 6)
+        assert app.bridge.speed == 0
+
+
+async def test_pen_is_p_and_not_shift_p() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("P", "escape")
+        after_shift_p = app.bridge.pen_down
+        await pilot.press("p")
+        assert (after_shift_p, app.bridge.pen_down) == (False, True)
+        await pilot.press("x")
+        assert not app.desk.shown("positioning")
+        await pilot.press("X")
+        assert app.desk.shown("positioning")
+
+
+async def test_help_lists_every_key() -> None:
+    async with LabApp(settings()).run_test(size=(100, 170)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("question_mark")
+        assert isinstance(app.screen, HelpScreen)
+        await pilot.pause()
+        text = screen_text(app)
+        for action in ACTIONS.values():
+            assert action.id.startswith("nudge") or action.title in text
+        await pilot.press("escape")
+        assert not isinstance(app.screen, HelpScreen)
+
+
+async def test_bad_position_is_refused_with_a_reason() -> None:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
+        for field, typed, message in (
+            ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
+            ("x", "nan", "X: a number from -10000 to 10000, not 'nan'"),
+            ("x", "150", "Enter places the robot"),
+            ("y", "1e9", "Y: a number from -10000 to 10000, not '1e9'"),
+            ("y", "500", "Enter places the robot"),
+            ("angle", "", "Angle: a number from -36000 to 36000, not 'nothing'"),
+        ):
+            entry = app.query_one(f"#{field}", Input)
+            entry.focus()
+            entry.value = typed
+            await pilot.press("enter")
+            await pilot.pause()
+            assert str(app.query_one("Positioning #message", Static).render()) == message
+            assert app.bridge.pose == Pose(150, 500, 0)
+
+
+async def test_good_position_is_applied() -> None:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
+        app.query_one("#x", Input).focus()
+        await pilot.press("4", "0", "0", "comma", "5", "enter")
+        await until(pilot, lambda: app.bridge.pose == Pose(400.5, 500, 0))
+
+
+@pytest.mark.parametrize("text", ["1", " -2.5 ", "3,5", "+4e2"])
+def test_numbers_that_may_be_typed(text: str) -> None:
+    assert parse_field("x", text) == float(text.replace(",", "."))
+
+
+@pytest.mark.slow
+async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("b")
+        mats = app.screen.query_one(OptionList)
+        mats.highlighted = mats.get_option_index("Lollipop")
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.mat is not None and app.bridge.mat.name == "Lollipop")
+        assert app.bridge.pose.heading_deg == -180
+        assert app.bridge.program is not None
+
+
+async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text("# %%sim_magic_preloaded -b Square -x 500\nprint(1)\n")
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o")
+        entry = app.screen.query_one(Input)
+        entry.focus()
+        entry.value = str(path)
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.mat is not None and app.bridge.mat.name == "Square")
+        assert app.bridge.program is not None
+        assert app.bridge.program.name == "mine.py"
+        assert app.bridge.pose.x_mm == 500
+        assert app.bridge.state == IDLE
+
+
+async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.loading.open_file(str(tmp_path / "none.py"))
+        await pilot.pause()
+        assert "there is no such program" in notices(app)[0]
+        assert app.bridge.program is None
+
+
+async def test_quit_without_a_run_asks_nothing() -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("q")
+        assert not lab(pilot).is_running or lab(pilot)._exit
+
+
+@pytest.mark.parametrize("width", [60, 80, 120, 200])
+@pytest.mark.parametrize("state", [IDLE, RUNNING, PAUSED])
+def test_footer_fits_and_always_shows_help_and_quit(width: int, state: str) -> None:
+    now = Situation(state, has_program=True, has_run=state != IDLE)
+    shown = fitting([action for action in ACTIONS.values() if not action.why_not(now)], width)
+    assert [action.id for action in shown[-2:]] == ["help", "quit"]
+    assert sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) <= width
+
+
+@pytest.mark.parametrize("action", ACTIONS.values(), ids=list(ACTIONS))
+def test_each_line_of_the_table_is_an_action(action: Action) -> None:
+    assert action.title
+    assert callable(action.do)
+    for state in (IDLE, RUNNING, PAUSED):
+        for yes in (True, False):
+            assert isinstance(action.why_not(Situation(state, yes, yes)), str)
+
+
+def test_keys_differ() -> None:
+    keys = [key for action in ACTIONS.values() for key in action.key.split(",")]
+    assert sorted(keys) == sorted(set(keys))
+
+
+def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
+    shown = fitting(working(Situation(PAUSED, True, True, in_past=True, looks_back=True)), 80)
+    assert [action.id for action in shown[:2]] == ["now", "branch"]
+
+
+async def test_nothing_is_opened_while_the_app_ends() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.exit()
+        # What was typed quickly after q, and what was to be done soon after the start.
+        for action in ("open", "runs", "panel-settings", "breaks", "analyse"):
+            app.action_act(action)
+        app._begin()
+        assert len(app.screen_stack) == 1

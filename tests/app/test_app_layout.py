@@ -1,0 +1,81 @@
+"""Where panels go: every size of terminal is filled without overlap."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from tuisim.app.layout import PanelBox, arrange, size_class
+from tuisim.app.panels import LARGE, MEDIUM, PANELS, SMALL, PanelInfo
+
+SIZES = [(80, 23), (80, 40), (100, 30), (120, 39), (132, 43), (200, 59), (237, 70), (60, 18)]
+
+
+def defaults(width: int, height: int) -> list[str]:
+    size = size_class(width, height + 1)
+    return [panel.id for panel in PANELS.values() if size in panel.sizes]
+
+
+def assert_fills(boxes: dict[str, PanelBox], width: int, height: int) -> None:
+    covered = np.zeros((height, width), dtype=int)
+    for box in boxes.values():
+        assert 0 <= box.x and box.x + box.width <= width and 0 <= box.y and box.y + box.height <= height
+        covered[box.y : box.y + box.height, box.x : box.x + box.width] += 1
+    assert (covered == 1).all()
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
+@pytest.mark.parametrize("count", range(1, len(PANELS) + 1))
+def test_any_panels_fill_the_screen(width: int, height: int, count: int) -> None:
+    for panels in itertools.islice(itertools.combinations(PANELS, count), 40):
+        placed = arrange(panels, width, height)
+        assert set(placed.boxes) | set(placed.left_out) == set(panels)
+        assert_fills(placed.boxes, width, height)
+        for panel, box in placed.boxes.items():
+            assert box.height >= PANELS[panel].min_rows
+
+
+@pytest.mark.parametrize(
+    ("size", "expected"),
+    [
+        ((80, 24), {"world", "instrumentation", "output"}),
+        ((120, 40), {"world", "instrumentation", "output", "arrays", "code", "controls"}),
+        ((200, 60), {panel.id for panel in PANELS.values() if panel.sizes}),
+    ],
+    ids=["80x24", "120x40", "200x60"],
+)
+def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: set[str]) -> None:
+    width, height = size[0], size[1] - 1
+    placed = arrange(defaults(width, height), width, height)
+    assert set(placed.boxes) == expected
+    assert not placed.left_out
+
+
+@pytest.mark.parametrize(
+    ("size", "name"), [((80, 24), SMALL), ((111, 40), SMALL), ((120, 40), MEDIUM), ((200, 60), LARGE)]
+)
+def test_size_class(size: tuple[int, int], name: str) -> None:
+    assert size_class(*size) == name
+
+
+def test_the_most_wanted_panel_gets_the_room() -> None:
+    placed = arrange(["arrays", "controls", "instrumentation", "world"], 80, 23)
+    assert {"arrays", "controls"} <= set(placed.boxes)
+    assert placed.left_out == ("instrumentation",)
+
+
+def test_no_panels_no_boxes() -> None:
+    assert arrange([], 80, 23).boxes == {}
+
+
+@pytest.mark.parametrize("panel", PANELS.values(), ids=list(PANELS))
+def test_each_line_of_the_table_is_a_panel(panel: PanelInfo) -> None:
+    kind = panel.load()
+    assert kind.TITLE == panel.title
+    assert callable(kind.show)
+
+
+def test_panel_keys_differ() -> None:
+    assert len({panel.key for panel in PANELS.values()}) == len(PANELS)

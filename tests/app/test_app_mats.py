@@ -1,0 +1,117 @@
+"""The mat picker: pictures, and images of one's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from textual.pilot import Pilot
+from textual.widgets import Input, OptionList, Static
+
+from tests.app.app_help import LOGS, notices, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.start_options import AppSettings
+from tuisim.app.terminal.cell_view import PixelView
+from tuisim.config.options import Settings
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
+async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await pilot.press("b")
+        view = app.screen.query_one(PixelView)
+        await until(pilot, lambda: view._cells.size > 0)
+        bands = view._cells.copy()
+        assert view.region.bottom < size[1]
+        mats = app.screen.query_one(OptionList)
+        mats.highlighted = mats.get_option_index("Rainbow_bands")
+        await until(pilot, lambda: view._cells.shape == bands.shape and bool((view._cells != bands).any()))
+        assert "Seven coloured bands" in str(app.screen.query_one("#title", Static).render())
+        # All of the dialog can be seen: the field is its last row.
+        field = app.screen.query_one(Input)
+        assert field.region.height == 1
+        assert app.screen.query_one(".dialog").region.contains_region(field.region)
+
+
+async def enter_path(pilot: Pilot[None], path: Path) -> None:
+    """Begin to type a path, which turns to the field, and give the rest at once."""
+    await pilot.press("slash")
+    pilot.app.screen.query_one(Input).value = str(path)
+    await pilot.press("enter")
+
+
+async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
+    path = tmp_path / "red.png"
+    Image.new("RGB", (300, 200), (200, 0, 0)).save(path)
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("b")
+        await pilot.pause()
+        await enter_path(pilot, path)
+        await until(pilot, lambda: app.bridge.plan.spec.world.background == str(path) and app.loading.mat_is_ready)
+        assert app.bridge.snapshot().colors["left"].rgb == (200, 0, 0)
+
+
+@pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
+async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: Path) -> None:
+    path = tmp_path / "none.png"
+    if content:
+        path.write_text(content)
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        before = app.bridge.plan
+        await pilot.press("b")
+        await pilot.pause()
+        await enter_path(pilot, path)
+        await until(pilot, lambda: any("none.png" in notice for notice in notices(app)))
+        await until(pilot, lambda: app.bridge.plan == before)
+        assert app.loading.mat_is_ready
+        assert app.bridge.snapshot().colors["left"].rgb == (255, 255, 255)
+
+
+def with_mats(folder: Path | None) -> AppSettings:
+    return settings(LOGS, settings=Settings(background="Grey_bands", mats=None if folder is None else str(folder)))
+
+
+async def choose(pilot: Pilot[None], name: str) -> None:
+    """Choose a mat in the picker by its name."""
+    await pilot.press("b")
+    await pilot.pause()
+    listed = pilot.app.screen.query_one(OptionList)
+    listed.highlighted = listed.get_option_index(name)
+    listed.focus()
+    await pilot.press("enter")
+
+
+@pytest.mark.parametrize("named", [False, True], ids=["usual folder", "--mats"])
+async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "pics" if named else home / "backgrounds"
+    folder.mkdir(parents=True)
+    Image.new("RGB", (300, 200), (200, 0, 0)).save(folder / "FLL2018.jpg", quality=100)
+    async with LabApp(with_mats(folder if named else None)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await choose(pilot, "FLL_2018_Into_Orbit")
+        picture = str(folder / "FLL2018.jpg")
+        await until(pilot, lambda: app.bridge.plan.spec.world.background == picture and app.loading.mat_is_ready)
+        assert app.bridge.plan.spec.world.start.x_mm == 150
+
+
+async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        before = app.bridge.plan
+        await choose(pilot, "FLL_2018_Into_Orbit")
+        await until(pilot, lambda: any("put it as FLL2018.jpg" in notice for notice in notices(app)))
+        assert app.bridge.plan == before
+
+
+async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
+    folder = tmp_path / "pics"
+    folder.mkdir()
+    async with LabApp(with_mats(folder)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        folder.rmdir()
+        await pilot.press("b")
+        await until(pilot, lambda: any("there is no such folder" in notice for notice in notices(app)))

@@ -1,0 +1,105 @@
+"""The noise panel, at rest and during a run."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from textual.widgets import Input, Static
+
+from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.panels.noise import Noise
+from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.app.widgets.slider import Slider
+from tuisim.core.spec import NoiseSpec
+from tuisim.runs.run_folder import read_actions
+
+SHOWN = frozenset({"noise"})
+
+
+def sliders(app: LabApp) -> list[int]:
+    return [slider.value for slider in app.query(Slider)]
+
+
+async def test_a_slider_acts_on_the_readings_at_once() -> None:
+    async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        assert app.bridge.snapshot().colors["left"].green == 255
+        app.query_one("#light", Slider).focus()
+        await pilot.press("end")
+        await until(pilot, lambda: app.bridge.snapshot().colors["left"].green < 255)
+        assert app.bridge.plan.spec.world.noise == NoiseSpec(128, 0)
+        assert app.query_one("#light-number", Input).value == "128"
+        # The arrows belong to the slider now, not to the robot.
+        assert app.bridge.pose.x_mm == 150
+
+
+@pytest.mark.parametrize(
+    ("field", "typed", "said"),
+    [
+        ("light-number", "129", "Light must be a whole number from 0 to 128, got '129'"),
+        ("motor-number", "x", "Motor must be a whole number from 0 to 500, got 'x'"),
+        ("seed", "-1", "Seed must be a whole number from 0 to 9223372036854775807, got '-1'"),
+    ],
+)
+async def test_a_wrong_number_is_refused_beside_it(field: str, typed: str, said: str) -> None:
+    async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        before = app.bridge.plan
+        entry = app.query_one(f"#{field}", Input)
+        entry.focus()
+        entry.value = typed
+        await pilot.press("enter")
+        await pilot.pause()
+        assert str(app.query_one("Noise #message", Static).render()) == said
+        assert app.bridge.plan == before
+
+
+async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
+    async with LabApp(settings("print('A: 1')\n", panels_on=SHOWN, speed=0.0)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        for field, typed in (("motor-number", "50"), ("seed", "7")):
+            entry = app.query_one(f"#{field}", Input)
+            entry.focus()
+            entry.value = typed
+            await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.plan.spec.seed == 7)
+        await pilot.press("escape", "R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        assert app.bridge.run is not None
+        assert app.bridge.run.spec.world.noise == NoiseSpec(0, 50)
+        assert app.bridge.run.spec.seed == 7
+
+
+async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.snapshot().instant.tick > 0)
+        app.query_one("#light", Slider).focus()
+        await pilot.press("pageup")
+        await until(pilot, lambda: app.bridge.snapshot().instant.noise.light == 10)
+        run, recording = app.bridge.run, app.bridge.timeline.recording
+        assert run is not None
+        assert recording is not None
+        actions, _ = read_actions(run.folder)
+        assert [(action.kind, dict(action.fields)) for action in actions] == [("set_noise", {"light": 10, "motor": 0})]
+        assert recording.noise_at(run.telemetry.record(0)) == NoiseSpec(0, 0)
+        await until(pilot, lambda: "light ±10" in screen_text(app))
+        # The run itself began without: what it was made of does not change.
+        assert json.loads((run.folder / "run.json").read_text())["spec"]["world"]["noise"]["light"] == 0
+        await pilot.press("escape", "S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        assert app.bridge.snapshot().instant.noise.light == 10
+        assert sliders(app) == [10, 0]
+
+
+async def test_the_panel_shows_what_a_mat_or_a_program_leaves() -> None:
+    async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        app.query_one("#motor", Slider).focus()
+        await pilot.press("right")
+        app.loading.change_mat("Loop")
+        await until(pilot, lambda: app.loading.mat_is_ready)
+        assert sliders(app) == [0, 1]
+        assert app.query_one(Noise).display

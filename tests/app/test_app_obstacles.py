@@ -1,0 +1,230 @@
+"""Obstacles: listed, typed, drawn with the mouse, chosen and saved; and what a blocked robot shows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input, OptionList, Static
+
+from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.panels.obstacle_drag import BoxGrip, box_at
+from tuisim.app.panels.obstacles import Obstacles
+from tuisim.app.panels.world import WorldView
+from tuisim.app.setup.next_run import with_obstacles
+from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.config.obstacles import load_obstacles
+from tuisim.config.presets import OBSTACLES
+from tuisim.core.spec import Obstacle
+
+SHOWN = frozenset({"obstacles"})
+
+
+def boxes(app: LabApp) -> tuple[Obstacle, ...]:
+    return app.bridge.plan.spec.world.obstacles
+
+
+async def opened(pilot: Pilot[Any]) -> LabApp:
+    """The app with the list of obstacles at hand."""
+    app = await ready(pilot)
+    await pilot.press("B")
+    await until(pilot, lambda: app.focused is app.query_one("Obstacles OptionList"))
+    return app
+
+
+def cell(app: LabApp, x_mm: float, y_mm: float) -> tuple[int, int]:
+    """Where a point of the world is in the picture."""
+    port = app.query_one(WorldView)._port
+    assert port is not None
+    col, row = port.to_px(x_mm, y_mm)
+    return int(col), int(row / 2)
+
+
+async def drag(pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int]) -> None:
+    await pilot.mouse_down(WorldView, offset=start)
+    await pilot.hover(WorldView, offset=end)
+    await pilot.mouse_up(WorldView, offset=end)
+    await pilot.pause()
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
+async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await opened(pilot)
+        assert "none: a drag draws one" in screen_text(app)
+        assert "drag draws or moves an obstacle" in screen_text(app)
+        assert all(entry.disabled for entry in app.query("Obstacles Input"))
+
+
+async def test_add_type_and_remove() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await opened(pilot)
+        await pilot.press("plus", "plus")
+        await until(pilot, lambda: len(boxes(app)) == 2)
+        await pilot.pause()
+        assert boxes(app)[0] != boxes(app)[1]
+        await pilot.press("enter")
+        app.query_one("#x_mm", Input).value = "30"
+        await pilot.press("enter")
+        await until(pilot, lambda: boxes(app)[1].x_mm == 30)
+        await until(pilot, lambda: "200×200 at 30, " in screen_text(app))
+        app.query_one("Obstacles OptionList").focus()
+        await pilot.press("delete")
+        await until(pilot, lambda: len(boxes(app)) == 1)
+        await pilot.press("delete")
+        await until(pilot, lambda: boxes(app) == ())
+        await pilot.pause()
+        await pilot.press("delete")
+        assert "There is none to remove" in screen_text(app)
+
+
+async def test_a_wrong_number_is_refused() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        await pilot.press("plus")
+        await until(pilot, lambda: len(boxes(app)) == 1)
+        await pilot.pause()
+        before = boxes(app)
+        for field, typed, said in (
+            ("width_mm", "0", "W must be above 0, got 0.0"),
+            ("x_mm", "wide", "X must be a number, got 'wide'"),
+            ("y_mm", "1e9", "Y must be from -10000 to 10000, got 1000000000.0"),
+            ("height_mm", "nan", "H must be a number, got nan"),
+        ):
+            entry = app.query_one(f"#{field}", Input)
+            entry.focus()
+            right, entry.value = entry.value, typed
+            await pilot.press("enter")
+            await refused(pilot, said)
+            assert boxes(app) == before
+            entry.value = right
+            await pilot.press("enter")
+
+
+async def refused(pilot: Pilot[Any], said: str) -> None:
+    """Wait until the panel says why."""
+    message = pilot.app.query_one("Obstacles #message", Static)
+    await until(pilot, lambda: str(message.render()) == said)
+
+
+async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        start, end = cell(app, 1000, 900), cell(app, 1300, 600)
+        await drag(pilot, start, end)
+        await until(pilot, lambda: len(boxes(app)) == 1)
+        made = boxes(app)[0]
+        assert (made.x_mm, made.y_mm + made.height_mm) == pytest.approx((1000, 900), abs=35)
+        assert (made.width_mm, made.height_mm) == pytest.approx((300, 300), abs=70)
+        await drag(pilot, cell(app, 1150, 750), cell(app, 1550, 750))
+        await until(pilot, lambda: boxes(app)[0].x_mm > 1300)
+        assert boxes(app)[0].x_mm == pytest.approx(made.x_mm + 400, abs=35)
+        assert (boxes(app)[0].width_mm, boxes(app)[0].y_mm) == (made.width_mm, made.y_mm)
+        assert app.bridge.pose.x_mm == 150
+
+
+async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        app.loading.take(with_obstacles(app.bridge.plan, OBSTACLES["Square_posts"]))
+        await pilot.pause()
+        await pilot.click(WorldView, offset=cell(app, 550, 250))
+        await until(pilot, lambda: app.query_one(Obstacles).at == 0)
+        await pilot.press("B")
+        await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
+        assert boxes(app) == OBSTACLES["Square_posts"]
+        assert "drag draws" not in screen_text(app)
+
+
+async def test_the_box_at_hand_is_marked_in_the_world() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        app.loading.take(with_obstacles(app.bridge.plan, OBSTACLES["Wall"]))
+        view = app.query_one(WorldView)
+        await until(pilot, lambda: view._scene is not None and view._scene.marked == 0)
+        before = view._cells.copy()
+        await pilot.press("B")
+        await until(pilot, lambda: view._scene is not None and view._scene.marked is None)
+        assert view._cells.shape != before.shape or (view._cells != before).any()
+
+
+async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("k")
+        sets = app.screen.query_one(OptionList)
+        sets.highlighted = sets.get_option_index("Wall")
+        await pilot.press("enter")
+        await until(pilot, lambda: boxes(app) == OBSTACLES["Wall"])
+        await pilot.press("ctrl+o")
+        app.screen.query_one(Input).value = "mine.toml"
+        await pilot.press("enter")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        assert load_obstacles("mine.toml") == OBSTACLES["Wall"]
+        await pilot.press("k")
+        sets = app.screen.query_one(OptionList)
+        assert str(tmp_path / "mine.toml") in [option.id for option in sets.options]
+
+
+async def test_obstacles_are_not_changed_during_a_run() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
+        await until(pilot, lambda: "Not during a run: S stops it" in notices(app))
+        assert boxes(app) == ()
+
+
+async def test_a_blocked_motor_is_shown_as_stalled() -> None:
+    wall = "tank_drive.on(SpeedPercent(50), SpeedPercent(50))\nimport time\ntime.sleep(60)\n"
+    async with LabApp(settings(wall, background="Empty_Map", autorun=False)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        from tuisim.app.setup.next_run import with_values
+
+        plan = with_values(app.bridge.plan, solid=True)
+        start = app.bridge.pose
+        app.loading.take(with_obstacles(plan, (Obstacle(start.x_mm + 60, start.y_mm - 100, 50, 200),)))
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.snapshot().stalled == (True, True))
+        await until(pilot, lambda: screen_text(app).count("stalled") == 2)
+        await pilot.press("S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: "stalled" not in screen_text(app))
+
+
+BOXES = (Obstacle(100, 100, 200, 200), Obstacle(200, 200, 200, 200), Obstacle(900, 100, 2, 300))
+
+
+@pytest.mark.parametrize(
+    ("point", "index"),
+    [((150, 150), 0), ((250, 250), 1), ((350, 350), 1), ((910, 200), 2), ((600, 600), None)],
+    ids=["one", "the upper of two", "beside the lower", "a thin one nearby", "none"],
+)
+def test_which_box_is_under_the_mouse(point: tuple[float, float], index: int | None) -> None:
+    assert box_at(BOXES, *point, slack_mm=15) == index
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "drawn"),
+    [
+        ((100, 100), (301, 402), Obstacle(100, 100, 200, 300)),
+        ((300, 400), (101, 99), Obstacle(100, 100, 200, 300)),
+        ((-50, 1000), (100, 2000), Obstacle(0, 1000, 100, 145)),
+        ((100, 100), (110, 300), None),
+    ],
+    ids=["up", "down", "only on the field", "too thin"],
+)
+def test_what_a_drag_draws(start: tuple[float, float], end: tuple[float, float], drawn: Obstacle | None) -> None:
+    made = BoxGrip((), None, *start).dragged_to(*end)
+    assert made == (None if drawn is None else ((drawn,), 0))
+
+
+def test_a_box_stays_within_reach() -> None:
+    moved = BoxGrip(BOXES, 0, 150, 150).dragged_to(-5000, 9000)
+    assert moved is not None
+    assert moved[0][0] == Obstacle(-100, 1043, 200, 200)
+    assert moved[0][1:] == BOXES[1:]

@@ -1,0 +1,163 @@
+"""Where the robot is put: at random, to saved poses, by the mouse; and the ghost of the chart's cursor."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from textual.widgets import Input, OptionList
+
+from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.setup.next_run import plan_of
+from tuisim.app.setup.poses import delete_pose, fits, load_poses, poses_file, random_pose, save_pose
+from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.config.options import Settings
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import Obstacle
+from tuisim.errors import ConfigError
+
+SPEC = plan_of(Settings()).spec
+POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (150, 500, 850))
+
+
+@pytest.mark.parametrize(
+    ("pose", "obstacles", "solid", "fit"),
+    [
+        (Pose(1000, 500, 0), (), False, True),
+        (Pose(50, 500, 0), (), False, False),
+        (Pose(1000, 50, 0), (), True, False),
+        (Pose(1000, 500, 0), (Obstacle(950, 450, 100, 100),), False, True),
+        (Pose(1000, 500, 0), (Obstacle(950, 450, 100, 100),), True, False),
+        # Beside the middle of its side, beyond its corner, and within its corner once it is turned.
+        (Pose(1000, 500, 0), (Obstacle(1060, 400, 50, 200),), True, True),
+        (Pose(1000, 500, 0), (Obstacle(1050, 610, 50, 50),), True, True),
+        (Pose(1000, 500, 0), (Obstacle(880, 610, 120, 50),), True, True),
+        (Pose(1000, 500, 45), (Obstacle(830, 560, 120, 50),), True, False),
+    ],
+)
+def test_where_the_outline_fits(pose: Pose, obstacles: tuple[Obstacle, ...], solid: bool, fit: bool) -> None:
+    spec = replace(SPEC, world=replace(SPEC.world, obstacles=obstacles, solid=solid))
+    assert fits(spec, pose) is fit
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_random_place_is_a_free_one(seed: int) -> None:
+    spec = replace(SPEC, world=replace(SPEC.world, obstacles=POSTS, solid=True))
+    pose = random_pose(spec, random.Random(seed))
+    assert pose is not None
+    assert fits(spec, pose)
+
+
+def test_no_free_place_is_told() -> None:
+    spec = replace(SPEC, world=replace(SPEC.world, obstacles=(Obstacle(0, 0, 2362, 1143),), solid=True))
+    assert random_pose(spec, random.Random(1)) is None
+
+
+async def test_random_and_back_to_the_start() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("j")
+        assert app.bridge.pose != Pose(150, 500, 0)
+        assert fits(app.bridge.spec, app.bridge.pose)
+        await pilot.press("m")
+        assert app.bridge.pose == Pose(150, 500, 0)
+
+
+@pytest.mark.usefixtures("home")
+def test_poses_are_kept_replaced_and_deleted() -> None:
+    assert load_poses() == {}
+    save_pose("by the wall", Pose(1, 2, -90))
+    save_pose(' "odd" [name] = ü ', Pose(1.5, 2.25, 1e-3))
+    save_pose("by the wall", Pose(3, 4, 5))
+    assert load_poses() == {"by the wall": Pose(3, 4, 5), '"odd" [name] = ü': Pose(1.5, 2.25, 1e-3)}
+    delete_pose("by the wall")
+    delete_pose("no such")
+    assert list(load_poses()) == ['"odd" [name] = ü']
+
+
+@pytest.mark.parametrize("name", ["", "  ", "x" * 41, "two\nlines"], ids=["empty", "blank", "long", "lines"])
+@pytest.mark.usefixtures("home")
+def test_a_pose_needs_a_name(name: str) -> None:
+    with pytest.raises(ConfigError, match="a pose needs a name"):
+        save_pose(name, Pose(0, 0, 0))
+    assert not poses_file().exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[poses.a]\nx_mm = 1\ny_mm = 2\n", "poses.a.heading_deg: is missing"),
+        ("[poses.a]\nx_mm = nan\ny_mm = 2\nheading_deg = 0\n", "poses.a.x_mm: must be a number"),
+        ("places = 3\n", "places: no such key"),
+        ("[[[", "is not TOML"),
+    ],
+)
+def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str, home: Path) -> None:
+    home.mkdir()
+    poses_file().write_text(text)
+    with pytest.raises(ConfigError, match=said):
+        save_pose("b", Pose(0, 0, 0))
+    assert poses_file().read_text() == text
+
+
+@pytest.mark.usefixtures("home")
+async def test_saved_poses_in_the_app() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        app.bridge.place(Pose(700, 300, 45))
+        await pilot.press("P")
+        await until(pilot, lambda: isinstance(app.focused, Input))
+        assert "None yet" in screen_text(app)
+        await pilot.press(*"corner", "enter")
+        await until(pilot, lambda: "x 700, y 300, 45°" in screen_text(app).partition("Save where")[0])
+        await pilot.press("escape", "m", "P")
+        await until(pilot, lambda: isinstance(app.focused, OptionList))
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        assert app.bridge.pose == Pose(700, 300, 45)
+        await pilot.press("P")
+        await until(pilot, lambda: isinstance(app.focused, OptionList))
+        await pilot.press("down", "delete")
+        await until(pilot, lambda: "None yet" in screen_text(app))
+        assert load_poses() == {}
+
+
+async def test_a_place_during_a_run_is_an_action_of_the_user() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await pilot.press("j")
+        run = app.bridge.run
+        assert run is not None
+        await until(pilot, lambda: bool((last := run.telemetry.last()) and last.actions == 1))
+        await pilot.press("S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+
+
+async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
+    async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(200, 60)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        chart, world = app.desk.chart, app.desk.world
+        assert chart is not None
+        assert world is not None
+        await until(
+            pilot, lambda: chart._picture is not None and chart._picture.columns > 0 and chart._traces.end_s() > 5
+        )
+        chart.focus()
+        now = app.bridge.pose
+        await pilot.press("left", *["shift+left"] * 2)
+        await until(pilot, lambda: app.bridge.snapshot().past)
+        await pilot.pause()
+        snapshot, cursor_s = app.bridge.snapshot(), chart._state.cursor_s
+        assert cursor_s == snapshot.time_s
+        assert 150 < snapshot.instant.pose.x_mm < now.x_mm
+        assert snapshot.now_pose == now
+        assert world._view._scene is not None
+        assert (world._view._scene.pose, world._view._scene.ghost) == (snapshot.instant.pose, now)
+        await pilot.press("escape")
+        await until(pilot, lambda: not app.bridge.snapshot().past)
+        assert chart._state.cursor_s is None

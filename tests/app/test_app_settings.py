@@ -1,0 +1,202 @@
+"""The settings panel: a form over the plan of the next run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input, OptionList
+
+from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.setup.next_run import with_robot
+from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.app.widgets.form import Choice, Row
+from tuisim.config.robots import load_robot
+
+
+async def opened(pilot: Pilot[Any]) -> LabApp:
+    """The app with its settings shown."""
+    app = await ready(pilot)
+    await pilot.press("Z")
+    await until(pilot, lambda: isinstance(app.focused, Choice))
+    return app
+
+
+def row(app: LabApp, field: str) -> Row:
+    return next(row for row in app.query(Row) if row.field == field)
+
+
+async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
+    app = pilot.app
+    assert isinstance(app, LabApp)
+    entry = row(app, field).entry
+    entry.focus()
+    entry.value = text
+    await pilot.press("enter")
+    await pilot.pause()
+
+
+@pytest.mark.parametrize(
+    "size",
+    [
+        pytest.param((80, 24), id="80x24"),
+        pytest.param((120, 40), id="120x40", marks=pytest.mark.slow),
+        pytest.param((200, 60), id="200x60", marks=pytest.mark.slow),
+    ],
+)
+async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await opened(pilot)
+        assert "‹ Default_Robot ›" in screen_text(app)
+        assert row(app, "wheel_spacing_mm").entry.value == "180"
+        assert row(app, "left.port").entry.value == "in2"
+        assert [panel for panel in app.desk.panels if app.desk.panels[panel].has_class("-hears-keys")] == ["settings"]
+        # Letters are still keys of the app.
+        await pilot.press("Z")
+        assert not app.desk.shown("settings")
+        assert app.focused is app.desk.world
+
+
+@pytest.mark.slow
+async def test_a_value_is_taken_at_once() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        await enter(pilot, "left.x_mm", "-100")
+        assert app.bridge.spec.robot.color_sensors[0].x_mm == -100
+        assert row(app, "preset").entry.value == "Default_Robot, edited"
+        await enter(pilot, "ultrasonic.used", "on")
+        await until(pilot, lambda: app.bridge.snapshot().ultrasonic_mm is None)
+        await pilot.press("ctrl+n")
+        await until(pilot, lambda: row(app, "preset").entry.value == "Default_Robot")
+        assert app.bridge.snapshot().ultrasonic_mm is not None
+
+
+async def test_a_wrong_value_is_told_below_its_field_and_nothing_is_changed() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        before = app.bridge.plan
+        await enter(pilot, "wheel_diameter_mm", "999")
+        assert "must be from 1 to 500, got 999" in screen_text(app)
+        assert app.bridge.plan == before
+        await enter(pilot, "wheel_diameter_mm", "60")
+        assert "must be" not in screen_text(app)
+        assert app.bridge.plan.spec.robot.wheel_diameter_mm == 60
+
+
+async def test_a_field_that_is_left_is_entered() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        entry = row(app, "back_mm").entry
+        entry.focus()
+        entry.value = "-99"
+        await pilot.press("tab")
+        await until(pilot, lambda: app.bridge.plan.spec.robot.back_mm == -99)
+
+
+@pytest.mark.slow
+async def test_choices_are_stepped_through_with_the_arrows() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        await pilot.press("right")
+        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Small_Robot")
+        await pilot.press("left", "left", "left")
+        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Sensor_Diameter_Config")
+        # New diameters have to be prepared; until then nothing starts.
+        await until(pilot, lambda: app.loading.mat_is_ready)
+        assert app.bridge.mat is not None
+        assert app.bridge.mat.key[2] == {30, 10}
+        assert app.bridge.pose.x_mm == 150
+
+
+@pytest.mark.slow
+async def test_settings_are_not_changed_during_a_run() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await enter(pilot, "wheel_diameter_mm", "60")
+        assert "Not during a run: S stops it" in screen_text(app)
+        assert app.bridge.plan.spec.robot.wheel_diameter_mm == 56
+        await pilot.press("escape", "S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await enter(pilot, "wheel_diameter_mm", "60")
+        assert app.bridge.spec.robot.wheel_diameter_mm == 60
+
+
+@pytest.mark.slow
+async def test_a_robot_is_saved_edited_and_loaded_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        await enter(pilot, "wheel_diameter_mm", "77")
+        await pilot.press("ctrl+r")
+        app.screen.query_one(Input).value = "mine.toml"
+        await pilot.press("enter")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        assert load_robot("mine.toml").wheel_diameter_mm == 77
+        await pilot.press("escape", "r")
+        robots = app.screen.query_one(OptionList)
+        robots.highlighted = robots.get_option_index("Small_Robot")
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Small_Robot")
+        await pilot.press("r")
+        robots = app.screen.query_one(OptionList)
+        robots.highlighted = robots.get_option_index(str(tmp_path / "mine.toml"))
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.plan.spec.robot.wheel_diameter_mm == 77)
+        assert row(app, "preset").entry.value == "mine.toml"
+
+
+async def test_a_wrong_robot_file_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "bad.toml").write_text("wheels = 3\n")
+    monkeypatch.chdir(tmp_path)
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        before = app.bridge.plan
+        await pilot.press("r")
+        entry = app.screen.query_one(Input)
+        entry.focus()
+        entry.value = "bad.toml"
+        await pilot.press("enter")
+        await until(pilot, lambda: any("bad.toml: wheels: no such key" in notice for notice in notices(app)))
+        assert app.bridge.plan == before
+
+
+async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("F")
+        profiles = app.screen.query_one(OptionList)
+        profiles.highlighted = profiles.get_option_index("ev3")
+        await pilot.press("enter")
+        await until(pilot, lambda: "ev3, seed 0" in screen_text(app))
+        assert app.bridge.plan.spec.world.solid
+
+
+@pytest.mark.slow
+async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
+    drive = "tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)\n"
+    async with LabApp(settings(drive, speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        for field, text in (("pen.color", "teal"), ("pen.width_mm", "40"), ("pen.x_mm", "150")):
+            await enter(pilot, field, text)
+        await enter(pilot, "pen.down", "off")
+        assert app.bridge.pen_down
+        await pilot.press("escape", "R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        world = app.desk.world
+        assert world is not None
+        await until(pilot, lambda: len(world._view.trace) > 0)
+        pieces = list(world._view.trace.pieces(0))
+        assert {piece.pen for piece in pieces} == {((0, 128, 128), 40)}
+        assert pieces[0].ys_mm[1] == pytest.approx(500 - 150)
+
+
+async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: Path) -> None:
+    (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.loading.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
+        await until(pilot, lambda: sum("means nothing here: owner" in notice for notice in notices(app)) == 1)

@@ -1,0 +1,103 @@
+"""The panels of text: lines of the output, and the program's code."""
+
+from __future__ import annotations
+
+import pytest
+from textual.app import App, ComposeResult
+from textual.widget import Widget
+
+from tuisim.app.panels.code import Code
+from tuisim.app.panels.output_lines import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
+from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
+
+
+def row(text: str, stream: int = STDOUT) -> OutputRow:
+    return OutputRow(text, 0, 0, 1, stream)
+
+
+class Frame(App[None]):
+    def __init__(self, content: Widget) -> None:
+        super().__init__()
+        self.content = content
+
+    def compose(self) -> ComposeResult:
+        yield self.content
+
+
+def lines(app: App[None]) -> list[str]:
+    strips = app.screen._compositor.render_strips()
+    return ["".join(segment.text for segment in strip).rstrip() for strip in strips]
+
+
+@pytest.mark.parametrize(
+    ("text", "stream", "width", "expected"),
+    [
+        ("", STDOUT, 10, [""]),
+        ("Colour: 1", STDOUT, 10, ["Colour: 1"]),
+        ("hello there", STDOUT, 10, ["hello ", "there"]),
+        ("x" * 25, STDOUT, 10, ["x" * 10, "x" * 10, "x" * 5]),
+        ("hi", SPEECH, 20, ["says: hi"]),
+        ("[beep]", SPEECH, 20, ["[beep]"]),
+        ("42", INPUT, 20, ["> 42"]),
+        ("a\tb\x1b[31m", STDERR, 20, ["a   b·[31m"]),
+        ("漢字漢字", STDOUT, 5, ["漢字", "漢字"]),
+    ],
+    ids=["empty", "fits", "at a blank", "cut", "speech", "sound", "answer", "controls", "wide"],
+)
+def test_a_row_as_lines(text: str, stream: int, width: int, expected: list[str]) -> None:
+    assert shown_lines(row(text, stream), width) == expected
+
+
+def test_an_endless_line_is_cut_and_says_so() -> None:
+    assert "".join(shown_lines(row("y" * (MAX_LINE_CHARS + 7)), 80)).endswith("… (7 more characters)")
+
+
+async def test_the_newest_line_is_followed_until_scrolled_up() -> None:
+    async with Frame(Log()).run_test(size=(30, 5)) as pilot:
+        log = pilot.app.query_one(Log)
+        log.add([row(f"line {n}") for n in range(20)])
+        await pilot.pause()
+        assert lines(pilot.app)[-1].startswith("line 19")
+        log.focus()
+        await pilot.press("up", "up")
+        log.add([row("line 20")])
+        await pilot.pause()
+        assert lines(pilot.app)[-1].startswith("line 17")
+        await pilot.press("end")
+        log.add([row("line 21")])
+        await pilot.pause()
+        assert lines(pilot.app)[-1].startswith("line 21")
+
+
+async def test_only_the_newest_lines_are_kept_and_the_others_counted() -> None:
+    async with Frame(Log()).run_test(size=(50, 4)) as pilot:
+        log = pilot.app.query_one(Log)
+        log.add([row(f"line {n}") for n in range(KEPT_LINES + 500)], skipped=1000)
+        log.focus()
+        await pilot.press("home")
+        await pilot.pause()
+        assert lines(pilot.app)[0].startswith("… 1,500 earlier lines are in the log")
+        assert lines(pilot.app)[1].startswith("line 500")
+
+
+async def test_lines_wrap_anew_when_the_panel_gets_narrower() -> None:
+    async with Frame(Log()).run_test(size=(40, 6)) as pilot:
+        pilot.app.query_one(Log).add([row("one two three four five six")])
+        await pilot.pause()
+        assert lines(pilot.app)[0] == "one two three four five six"
+        await pilot.resize_terminal(16, 6)
+        await pilot.pause()
+        assert lines(pilot.app)[:2] == ["one two three", "four five six"]
+
+
+async def test_the_line_of_an_error_is_brought_into_view() -> None:
+    async with Frame(Code()).run_test(size=(40, 10)) as pilot:
+        code = pilot.app.query_one(Code)
+        code.set_program("long.py", "\n".join(f"x{n} = {n}" for n in range(1, 101)))
+        await pilot.pause()
+        code.mark_error(70)
+        await pilot.pause()
+        assert any("✗ 70 x70 = 70" in line for line in lines(pilot.app))
+        code.mark_error(0)
+        await pilot.pause()
+        assert not any("✗" in line for line in lines(pilot.app))

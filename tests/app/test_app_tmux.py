@@ -1,0 +1,53 @@
+"""The app in a real terminal with a real child process."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.app.terminals import Terminal
+
+pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
+
+
+def test_a_program_runs_to_its_end_and_its_log_is_exported(terminal: Terminal, tmp_path: Path) -> None:
+    terminal.start(["log_greys", "-R", "--speed", "4"], 120, 40)
+    first = terminal.until(lambda text: "running" in text.splitlines()[-1])
+    assert "World" in first
+    assert "Ultrasonic" in first
+    last = terminal.until(lambda text: "finished" in text.splitlines()[-1])
+    assert "Colour: 0.0" in last
+    terminal.keys("e")
+    terminal.until(lambda text: "Export the log" in text)
+    terminal.keys("Enter")
+    terminal.until(lambda text: "The log is in log_greys.csv" in text)
+    assert (tmp_path / "log_greys.csv").read_text().startswith("index,variable,value,time,run,")
+    terminal.keys("q")
+    terminal.until(lambda text: "EXIT 0" in text)
+
+
+def test_stop_reaches_a_program_that_spins(terminal: Terminal, tmp_path: Path) -> None:
+    (tmp_path / "spin.py").write_text("while True:\n    try:\n        pass\n    except:\n        pass\n")
+    terminal.start(["spin.py", "-R"], 80, 24)
+    terminal.until(lambda text: "running" in text.splitlines()[-1])
+    terminal.keys("S")
+    terminal.until(lambda text: "stopped" in text.splitlines()[-1])
+    terminal.keys("q")
+    terminal.until(lambda text: "EXIT 0" in text)
+
+
+def test_capital_and_small_letters_are_different_keys(terminal: Terminal) -> None:
+    terminal.start(["log_greys"], 120, 40)
+    terminal.until(lambda text: "R run" in text.splitlines()[-1])
+    terminal.keys("c")
+    terminal.until(lambda text: "─ Chart" in text)
+    terminal.keys("C", "p")
+    terminal.until(lambda text: "─ Chart" in text and "pen down" in text)
+    terminal.keys("P")
+    terminal.until(lambda text: "─ Saved poses" in text)
+    terminal.keys("Escape")
+    terminal.until(lambda text: "─ Saved poses" not in text)
+    terminal.keys("x", "X")
+    # The panels are painted one after another.
+    terminal.until(lambda text: "─ Positioning" in text and "pen down" in text)

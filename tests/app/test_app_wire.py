@@ -1,0 +1,138 @@
+"""What the app sends to a terminal: each paint once, and nothing where nothing happens."""
+
+from __future__ import annotations
+
+from functools import partial
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual._callback import invoke
+from textual.pilot import Pilot
+
+from tests.app.app_help import ENDLESS, LOGS, ready, settings, until
+from tests.app.wires import on_wire, until_quiet, wire_of
+from tuisim.analysis.source import LogRequest
+from tuisim.app.analyser.app import AnalyserApp
+from tuisim.app.app import LabApp
+from tuisim.app.run_controller import RunUpdate
+from tuisim.app.terminal.pacer import Pacer
+from tuisim.protocol import Resumed
+
+LOG = "index,variable,value,time\n0,Colour,1.0,0.1\n1,Colour,2.0,0.2\n"
+BEATS = 20
+ATTEMPTS = 5
+
+
+@pytest.mark.parametrize("colors", ["256", "truecolor"])
+async def test_the_first_paint_shows_the_panels_before_the_mat(colors: str) -> None:
+    async with on_wire(LabApp(settings()), colors) as pilot:
+        await ready(pilot)
+        await until_quiet(pilot)
+
+        sent = "".join(wire_of(pilot).sent)
+        assert wire_of(pilot).kilobytes <= 30
+        assert max(sent.index(title) for title in ("World", "Instrumentation", "Output")) < sent.index("▀")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("colors", ["256", "truecolor"])
+@pytest.mark.parametrize("key", ["question_mark", "ctrl+p", "b", "o"])
+async def test_a_dialog_is_painted_once(key: str, colors: str) -> None:
+    async with on_wire(LabApp(settings()), colors) as pilot:
+        await ready(pilot)
+        await until_quiet(pilot)
+        wire, paints = wire_of(pilot), []
+        for pressed in (key, "escape"):
+            wire.sent.clear()
+            await pilot.press(pressed)
+            await until_quiet(pilot)
+            paints.append(wire.kilobytes)
+
+    opened, closed = paints
+    assert 0 < opened <= 15
+    assert 0 < closed <= 20
+
+
+def is_active(timer: Any) -> bool:
+    """Whether a timer is not paused."""
+    return bool(timer._active.is_set())
+
+
+async def sent_at_rest(pilot: Pilot[Any]) -> str:
+    """What is sent while the app looks for news many times, and finds none; empty if it comes to rest in the end."""
+    for _ in range(ATTEMPTS):
+        if not (sent := await sent_for_a_while(pilot)):
+            break
+    return sent
+
+
+async def sent_for_a_while(pilot: Pilot[Any]) -> str:
+    app: object = pilot.app
+    await until_quiet(pilot)
+    wire_of(pilot).sent.clear()
+    if isinstance(app, LabApp):
+        app.pacer = Pacer(app.settings.fps, clock=partial(next, count(0.0, 1.0)))
+        for _ in range(BEATS):
+            app._beat()
+    # Whatever has a timer of its own is due sooner or later.
+    for timer in {timer for node in pilot.app.screen.walk_children(with_self=True) for timer in node._timers}:
+        if timer._callback and is_active(timer) and timer._repeat != 0:
+            await invoke(timer._callback)
+    await until_quiet(pilot)
+    return "".join(wire_of(pilot).sent)
+
+
+@pytest.mark.parametrize("keys", [[], ["question_mark"], ["ctrl+p"], ["o"], ["d"]], ids=str)
+async def test_where_nothing_happens_nothing_is_sent(keys: list[str]) -> None:
+    async with on_wire(LabApp(settings(LOGS))) as pilot:
+        await ready(pilot)
+        await pilot.press(*keys)
+
+        assert await sent_at_rest(pilot) == ""
+
+
+@pytest.mark.parametrize("panels", [frozenset[str](), frozenset(["chart"])], ids=["no chart", "chart"])
+@pytest.mark.parametrize("key", ["space", "S"])
+async def test_a_run_that_stands_still_or_is_over_sends_nothing(key: str, panels: frozenset[str]) -> None:
+    async with on_wire(LabApp(settings(ENDLESS, panels_on=panels, autorun=True))) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == "running")
+        await pilot.press(key)
+        await until(pilot, lambda: app.bridge.state in ("paused", "ended"))
+        app.clear_notifications()
+
+        assert await sent_at_rest(pilot) == ""
+
+
+async def test_the_analyser_at_rest_sends_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(LOG, "utf-8")
+    async with on_wire(AnalyserApp(LogRequest(str(path)))) as pilot:
+        await until(pilot, lambda: "Colour" in "".join(wire_of(pilot).sent))
+
+        assert await sent_at_rest(pilot) == ""
+
+
+async def test_the_app_rests_when_nothing_happens_and_wakes_at_a_key() -> None:
+    async with on_wire(LabApp(settings())) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: not is_active(app._beats))
+
+        await pilot.press("p")
+
+        await until(pilot, lambda: is_active(app._beats))
+
+
+async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with on_wire(LabApp(settings())) as pilot:
+        app = await ready(pilot)
+        app.pacer = Pacer(app.settings.fps, clock=partial(next, count(0.0, 1.0)))
+        monkeypatch.setattr(app.bridge, "poll", lambda: RunUpdate([], held=(Resumed(),)))
+        drawn: list[bool] = []
+        monkeypatch.setattr(app, "draw", lambda: drawn.append(True))
+
+        app._beat()
+
+        assert drawn

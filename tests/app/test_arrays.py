@@ -1,0 +1,62 @@
+"""The sensor arrays panel."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.panel_help import PanelApp, moment, screen_text, small_field
+from tuisim.app.panels.arrays import Arrays
+from tuisim.app.terminal.cell_view import PixelView
+from tuisim.core.geometry import Pose
+
+FIELD = small_field()
+
+
+@pytest.mark.parametrize(
+    ("size", "names"),
+    [
+        pytest.param((40, 11), ["Sensor1 left", "Sensor2 right"], id="with names"),
+        pytest.param((44, 14), ["Sensor1 left", "Sensor2 right"], id="with room"),
+        pytest.param((40, 10), [], id="just the discs"),
+        pytest.param((20, 6), [], id="small"),
+        pytest.param((24, 20), [], id="stacked"),
+    ],
+)
+async def test_discs_and_names(size: tuple[int, int], names: list[str]) -> None:
+    app = PanelApp(Arrays())
+    async with app.run_test(size=size) as pilot:
+        app.panel.show(moment(Pose(100.0, 1000.0, 90.0), field=FIELD))
+        await pilot.pause()
+        shown = app.panel.query_one(PixelView)._shown
+        text = "\n".join(screen_text(app))
+
+    # The left disc lies on red, the right one on white.
+    assert (shown.reshape(-1, 3) == shown[shown.shape[0] // 2, shown.shape[1] // 2]).any()
+    assert len({tuple(pixel) for pixel in shown.reshape(-1, 3).tolist()}) >= 3
+    assert all(name in text for name in names)
+    assert bool(app.panel.border_subtitle) == (not names)
+
+
+async def test_without_a_mat_it_is_blank() -> None:
+    app = PanelApp(Arrays())
+    async with app.run_test(size=(40, 11)) as pilot:
+        app.panel.show(moment(field=FIELD))
+        await pilot.pause()
+        app.panel.show(moment())
+        app.panel._throttle.now()
+
+        assert app.panel.query_one(PixelView)._cells.size == 0
+
+
+async def test_the_same_pose_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = PanelApp(Arrays())
+    async with app.run_test(size=(40, 11)) as pilot:
+        app.panel.show(moment(field=FIELD))
+        await pilot.pause()
+        drawn: list[object] = []
+        monkeypatch.setattr(app.panel.query_one(PixelView), "set_picture", drawn.append)
+
+        app.panel.show(moment(field=FIELD, time_s=99.0))
+        app.panel._throttle.now()
+
+        assert not drawn

@@ -1,0 +1,52 @@
+"""Brackets in what somebody has written are shown as they are: no list or dialog takes them for markup."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from textual.app import App
+from textual.screen import Screen
+
+from tuisim.app.dialogs.breakpoints import BreaksDialog, WatchesDialog
+from tuisim.app.dialogs.differences import Differences
+from tuisim.app.dialogs.poses import SavedPoses
+from tuisim.app.setup.poses import save_pose
+from tuisim.breakpoints import parse_break
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import RobotSpec
+from tuisim.runs.diff import RowDifference, RunDiff
+
+pytestmark = pytest.mark.usefixtures("home")
+
+
+def _poses() -> Screen[Any]:
+    save_pose("door [/x]", Pose(1.0, 2.0, 3.0))
+    return SavedPoses(Pose(0.0, 0.0, 0.0))
+
+
+def _differences() -> Screen[Any]:
+    row = RowDifference(1, "[/x]", "[beep]", (0.0, 0.1))
+    return Differences(
+        "Run 1", "run 2", RunDiff((("[a]", "[b]", "1"),), ("-a[i]",), False, None, None, row, None, None)
+    )
+
+
+DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
+    "poses": (_poses, ("door [/x]",)),
+    "breaks": (lambda: BreaksDialog((parse_break("print matches [/b]"),), RobotSpec(), lambda _: None), ("[/b]",)),
+    "watches": (lambda: WatchesDialog(("table[row]",), lambda _: None), ("table[row]",)),
+    "differences": (_differences, ("'[/x]' at 0.00 s and '[beep]' at 0.10 s", "[b] and 1", "-a[i]")),
+}
+
+
+@pytest.mark.parametrize(("make", "shown"), DIALOGS.values(), ids=DIALOGS)
+async def test_brackets_are_shown(make: Callable[[], Screen[Any]], shown: tuple[str, ...]) -> None:
+    app: App[None] = App()
+    async with app.run_test(size=(100, 40)) as pilot:
+        app.push_screen(make())
+        await pilot.pause()
+        text = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+        for words in shown:
+            assert words in text

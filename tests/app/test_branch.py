@@ -1,0 +1,196 @@
+"""Branches: the same run again up to an instant, and then another future."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.app.app_help import notices, program, ready, screen_text, settings, until
+from tuisim.app.actions.time_travel import to_tick
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.runs import branch_root
+from tuisim.app.snapshot import ENDED, PAUSED, RUNNING
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec
+from tuisim.runs.catalogue import RunInfo
+from tuisim.runs.store import RunStore
+
+pytestmark = pytest.mark.usefixtures("home")
+
+DRIVES = """\
+import threading, time, random
+def says():
+    for n in range(400):
+        time.sleep(0.05)
+        print('N: ' + str(n * random.random()))
+threading.Thread(target=says, daemon=True).start()
+while True:
+    tank_drive.on(SpeedPercent(20 + colorLeft.reflected_light_intensity_pc / 5), SpeedPercent(20))
+"""
+
+
+async def with_a_past(pilot: Pilot[Any], ticks: int = 300) -> LabApp:
+    """Let the program run with noise and a user who meddles, and stop it."""
+    app = await ready(pilot)
+    await until(pilot, lambda: app.bridge.timeline.newest > ticks // 4)
+    app.bridge.set_noise(NoiseSpec(30, 20))
+    await until(pilot, lambda: app.bridge.timeline.newest > ticks // 2)
+    app.bridge.place(Pose(500, 700, 45))
+    await until(pilot, lambda: app.bridge.timeline.newest > ticks)
+    return app
+
+
+async def stop(pilot: Pilot[Any], app: LabApp) -> None:
+    await pilot.press("S")
+    await until(pilot, lambda: app.bridge.state == ENDED)
+
+
+def telemetry(run_id: str) -> Any:
+    return RunStore().load_run(run_id).telemetry.array()
+
+
+Deed = Callable[[Pilot[Any], LabApp], Awaitable[object]]
+
+
+async def _nudge(pilot: Pilot[Any], app: LabApp) -> None:
+    await pilot.press("up")
+
+
+async def _noise(pilot: Pilot[Any], app: LabApp) -> None:
+    app.bridge.set_noise(NoiseSpec(100, 0))
+
+
+async def _pen(pilot: Pilot[Any], app: LabApp) -> None:
+    await pilot.press("p")
+
+
+async def _nothing(pilot: Pilot[Any], app: LabApp) -> None:
+    await pilot.press("y")
+
+
+@pytest.mark.parametrize(
+    ("deed", "kind"),
+    [
+        (_nudge, "set_pose"),
+        pytest.param(_noise, "set_noise", marks=pytest.mark.slow),
+        pytest.param(_pen, "set_pen", marks=pytest.mark.slow),
+        (_nothing, ""),
+    ],
+    ids=["nudge", "noise", "pen", "branch key"],
+)
+async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str) -> None:
+    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await with_a_past(pilot)
+        await stop(pilot, app)
+        first = app.bridge.run_id
+        to_tick(app, 260)
+        await deed(pilot, app)
+        await until(pilot, lambda: "Branch from 2.60 s?" in screen_text(app))
+        await pilot.press("y")
+        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 300)
+        await stop(pilot, app)
+        branch = RunStore().load_run(app.bridge.run_id)
+        old, new = telemetry(first), branch.telemetry.array()
+        assert old[:260].tobytes() == new[:260].tobytes()
+        assert branch.tags == ("branch-of-1", "at-2.60s")
+        done = [(action.tick, action.kind) for action in branch.actions]
+        before = [(a.tick, a.kind) for a in RunStore().load_run(first).actions if a.tick <= 260]
+        assert done == before + ([(260, kind)] if kind else [])
+        assert any("branch of run 1 at 2.60 s" in notice for notice in notices(app))
+        if not kind:
+            both = min(len(old), len(new))
+            assert old[:both].tobytes() == new[:both].tobytes()
+
+
+@pytest.mark.slow
+async def test_a_paused_run_branches_paused_and_is_kept() -> None:
+    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await with_a_past(pilot)
+        first = app.bridge.run_id
+        await pilot.press("space", "less_than_sign")
+        await until(pilot, lambda: app.bridge.state == PAUSED)
+        at = app.bridge.timeline.at
+        assert at is not None
+        await pilot.press("R")
+        await until(pilot, lambda: "Run 1 ends here" in screen_text(app))
+        await pilot.press("n")
+        assert app.bridge.timeline.at == at
+        await pilot.press("y", "y")
+        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == PAUSED)
+        assert app.bridge.timeline.newest == at
+        assert not app.bridge.in_past
+        assert RunStore().load_run(first).state == "stopped"
+        await pilot.press("space")
+        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.timeline.newest > at)
+        await stop(pilot, app)
+
+
+async def test_an_edited_program_says_where_it_went_another_way() -> None:
+    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await with_a_past(pilot)
+        await stop(pilot, app)
+        first = app.bridge.run_id
+        app.bridge.program = program(DRIVES.replace("    tank_drive.on(", "    time.sleep(1)\n    tank_drive.on("))
+        to_tick(app, 260)
+        await pilot.press("R")
+        await until(pilot, lambda: "The edited program" in screen_text(app))
+        await pilot.press("y")
+        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 260)
+        await until(pilot, lambda: any("went another way from 0." in notice for notice in notices(app)))
+        await stop(pilot, app)
+
+
+async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
+    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await with_a_past(pilot, ticks=80)
+        first = app.bridge.run_id
+        await pilot.press("less_than_sign", "R", "r")
+        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == RUNNING)
+        assert not app.bridge.in_past
+        await until(pilot, lambda: app.bridge.timeline.newest > 5)
+        assert not RunStore().load_run(app.bridge.run_id).tags
+        await stop(pilot, app)
+
+
+async def test_a_program_that_ends_before_the_instant_is_told() -> None:
+    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await with_a_past(pilot, ticks=100)
+        await stop(pilot, app)
+        first = app.bridge.run_id
+        app.bridge.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
+        to_tick(app, 80)
+        await pilot.press("y", "y")
+        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == ENDED)
+        await until(pilot, lambda: any("of the edited program: it went another way" in n for n in notices(app)))
+
+
+@pytest.mark.slow
+async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
+    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await with_a_past(pilot)
+        await stop(pilot, app)
+        first = app.bridge.run_id
+        to_tick(app, 200)
+        app.bridge.set_noise(NoiseSpec(0, 0))
+        await pilot.press("y")
+        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 260)
+        await stop(pilot, app)
+        await pilot.press("equals_sign")
+        await until(pilot, lambda: "Compare run 2 with" in screen_text(app) and "1 of 1 runs" in screen_text(app))
+        await pilot.press("enter")
+        await until(pilot, lambda: "first tick" in screen_text(app))
+        assert "2.00 s, tick 200: differs in actions" in screen_text(app)
+        assert "user actions" in screen_text(app)
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.timeline.at == 200)
+
+
+@pytest.mark.parametrize(
+    ("tags", "number"), [("branch-of-12 at-3.20s", 12), ("", None), ("best branch-of-2026x", None)]
+)
+def test_a_branch_knows_its_root(tags: str, number: int | None) -> None:
+    run = RunInfo(3, "id", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, tags=tags)
+    assert branch_root(run) == number

@@ -1,0 +1,150 @@
+"""The brick panel: keys and mouse press its buttons, and it shows what the program lets it show."""
+
+from __future__ import annotations
+
+import json
+
+from tests.app.app_help import notices, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.panels.brick import Brick
+from tuisim.app.snapshot import PAUSED, RUNNING
+
+WATCHES = """\
+from ev3dev2.button import Button
+from ev3dev2.led import Leds
+from ev3dev2.display import Display
+from ev3dev2.console import Console
+from time import sleep
+buttons, leds, display = Button(), Leds(), Display()
+leds.set_color('LEFT', 'RED')
+display.rectangle(True, 20, 20, 150, 100)
+display.update()
+print('ready')
+while True:
+    seen = buttons.buttons_pressed
+    if seen:
+        print('+'.join(seen))
+        if 'down' in seen:
+            Console().text_at('Mission 7')
+        if 'backspace' in seen:
+            break
+    sleep(0.02)
+"""
+
+
+def printed(app: LabApp) -> list[str]:
+    assert app.bridge.run is not None
+    return [row.text for row in app.bridge.run.output.all_rows() if row.stream == 1]
+
+
+def drawn(app: LabApp) -> str:
+    """What the panel shows, as lines of text."""
+    assert app.desk.brick is not None
+    return "\n".join("".join(text for text, _ in line) for line in app.desk.brick._picture.lines)
+
+
+def actions(app: LabApp) -> list[list[str]]:
+    assert app.bridge.run is not None
+    path = app.bridge.run.folder / "actions.jsonl"
+    return [json.loads(line)["pressed"] for line in path.read_text().splitlines()] if path.exists() else []
+
+
+async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
+    app = LabApp(settings(WATCHES))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("K")
+        await until(pilot, lambda: isinstance(app.focused, Brick))
+        await pilot.press("enter")
+        assert any("while a program runs" in text for text in notices(app))
+        await pilot.press("R")
+        await until(pilot, lambda: "ready" in printed(app))
+        pose = app.bridge.pose
+
+        await pilot.press("left")
+        await until(pilot, lambda: "left" in printed(app))
+        await until(pilot, lambda: actions(app)[-1:] == [[]])
+        await pilot.press("shift+up")
+        await pilot.press("enter")
+        await until(pilot, lambda: "up+enter" in printed(app))
+        assert app.bridge.pose == pose
+        await until(pilot, lambda: "red" in drawn(app))
+
+        await pilot.press("down")
+        await until(pilot, lambda: "Mission 7" in drawn(app))
+        await pilot.press("backspace")
+        await until(pilot, lambda: not app.bridge.in_run)
+        assert app.desk.brick is not None
+        assert app.desk.brick.held == frozenset()
+
+
+async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
+    app = LabApp(settings(WATCHES))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("K", "R")
+        await until(pilot, lambda: "ready" in printed(app))
+        brick = app.desk.brick
+        assert brick is not None
+        await until(pilot, lambda: bool(brick._picture.buttons))
+        box = next(box for box in brick._picture.buttons if box.name == "right")
+        # The border takes a row and a column.
+        spot = (box.first + 2, box.row + 1)
+        await pilot.mouse_down(brick, offset=spot)
+        await until(pilot, lambda: printed(app).count("right") > 3)
+        assert brick.held == {"right"}
+        await pilot.mouse_up(brick, offset=spot)
+        await until(pilot, lambda: actions(app) == [["right"], []])
+
+
+async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
+    app = LabApp(settings(WATCHES))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("K", "R")
+        await until(pilot, lambda: "ready" in printed(app))
+        await pilot.press("down")
+        await until(pilot, lambda: "Mission 7" in drawn(app))
+        await pilot.press("space")
+        await until(pilot, lambda: app.bridge.state == "paused")
+        app.bridge.timeline.go(1)
+        app.draw(force=True)
+        await until(pilot, lambda: "Mission 7" not in drawn(app))
+        assert app.bridge.snapshot().pressed == frozenset()
+
+
+async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
+    app = LabApp(settings(WATCHES))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("K", "plus")
+        await pilot.pause()
+        assert [panel for panel in app.desk.panels if app.desk.shown(panel)] == ["brick"]
+        assert app.desk.panels["brick"].size.width > 110
+        await pilot.press("plus")
+        await pilot.pause()
+        assert app.desk.shown("world")
+        await pilot.press("plus", "W")
+        await pilot.pause()
+        assert app.desk.shown("world")
+
+
+async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
+    app = LabApp(settings(WATCHES, speed=4.0, panels_on=frozenset({"brick"})))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: "ready" in printed(app))
+        assert app.desk.brick is not None
+        app.desk.brick.focus()
+        await pilot.press("shift+up")
+        await until(pilot, lambda: "up" in printed(app))
+        assert actions(app) == [["up"]]
+        await pilot.press("comma")
+        await until(pilot, lambda: app.bridge.snapshot().past)
+        await pilot.press("enter")
+        await until(pilot, lambda: any("not in the past" in text for text in notices(app)))
+        assert app.bridge.pressed == {"up"}
+        await pilot.press("y", "y")
+        await until(pilot, lambda: app.bridge.state in (RUNNING, PAUSED) and actions(app) == [["up"], []])
+        assert (app.bridge.pressed, app.desk.brick.held) == (frozenset(), frozenset())

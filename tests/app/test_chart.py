@@ -1,0 +1,176 @@
+"""The chart panel."""
+
+from __future__ import annotations
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.app.panel_help import PanelApp, moment, screen_text
+from tuisim.app.panels.chart import Chart
+from tuisim.charts.text_chart import ChartPainter
+
+
+def fill(chart: Chart) -> None:
+    for at in range(50):
+        chart.append("Colour", [at / 10], [100.0 if at < 25 else 20.0])
+        chart.append("gyro °", [at / 10], [float(at)])
+
+
+def rows(app: PanelApp[Chart]) -> list[str]:
+    app.panel._draw_now()
+    return screen_text(app)
+
+
+async def opened(app: PanelApp[Chart], pilot: Pilot[None]) -> None:
+    app.panel.focus()
+    await pilot.pause()
+
+
+@pytest.mark.parametrize("size", [(20, 6), (80, 16), (180, 30)], ids=str)
+async def test_it_draws_what_was_logged(size: tuple[int, int]) -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=size) as pilot:
+        fill(app.panel)
+        app.panel.show(moment())
+        await pilot.pause()
+
+        text = "".join(rows(app))
+
+    assert "[x] Colour" in text
+    assert any("⠀" < char <= "⣿" for char in text)
+
+
+async def test_data_from_before_it_was_shown_is_kept() -> None:
+    chart = Chart()
+    fill(chart)
+    app = PanelApp(chart)
+    async with app.run_test(size=(80, 16)) as pilot:
+        await pilot.pause()
+
+        assert "[x] Colour" in rows(app)[0]
+
+
+async def test_keys_tick_traces() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        await opened(app, pilot)
+        seen = []
+        for key in ("down", "space", "1", "up", "space", "2"):
+            await pilot.press(key)
+            seen.append(rows(app)[0].strip())
+
+    assert seen == [
+        "[x] Colour  [ ] gyro °",
+        "[x] Colour  [x] gyro °",
+        "[ ] Colour  [x] gyro °",
+        "[ ] Colour  [x] gyro °",
+        "[ ] Colour  [ ] gyro °",
+        "[ ] Colour  [x] gyro °",
+    ]
+
+
+async def test_the_mouse_ticks_traces() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        rows(app)
+        await pilot.click(app.panel, offset=(1, 0))
+
+        assert rows(app)[0].startswith("[ ] Colour")
+
+
+async def test_the_cursor_walks_and_goes() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        await opened(app, pilot)
+        await pilot.press("left", "left", "shift+left")
+        last = rows(app)[-1]
+        await pilot.press("escape")
+        await pilot.pause()
+
+    moves = app.heard(Chart.CursorMoved)
+    times = [message.time_s for message in moves if message.time_s is not None]
+    # The first step goes one column back from the newest point, which is at 4.9 s.
+    assert 4.7 < times[0] < 4.9
+    assert times[0] > times[1] > times[2]
+    assert moves[-1].time_s is None
+    assert last.split()[:3] == [f"{times[2]:.2f}", "s", "Colour"]
+
+
+async def test_the_mouse_puts_the_cursor() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        rows(app)
+        await pilot.mouse_down(app.panel, offset=(40, 5))
+        await pilot.hover(app.panel, offset=(50, 5))
+        await pilot.mouse_up(app.panel, offset=(50, 5))
+        await pilot.pause()
+
+    first, second = (message.time_s for message in app.heard(Chart.CursorMoved))
+    assert first is not None and second is not None
+    assert 2 < first < second < 3.5
+
+
+async def test_the_mouse_reads_values_without_a_press() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        rows(app)
+        await pilot.hover(app.panel, offset=(60, 5))
+        read = str(app.panel.border_subtitle).split()
+        await pilot.hover(app.panel, offset=(60, 0))
+        await pilot.pause()
+
+    assert read[1:] == ["s", "Colour", "20"]
+    assert 2.5 < float(read[0]) < 4.9
+    assert not app.panel.border_subtitle
+    assert not app.heard(Chart.CursorMoved)
+
+
+async def test_freezing_keeps_the_window() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        await opened(app, pilot)
+        rows(app)
+        await pilot.press("f")
+        app.panel.append("Colour", [100.0], [50.0])
+        frozen = (rows(app)[-1], app.panel.border_subtitle)
+        await pilot.press("f")
+        following = (rows(app)[-1], app.panel.border_subtitle)
+
+    assert frozen[0].rstrip().endswith("4 s")
+    assert frozen[1] == Chart.FROZEN
+    assert following[0].rstrip().endswith("100 s")
+    assert not following[1]
+
+
+async def test_clearing_keeps_the_ticks() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        await opened(app, pilot)
+        await pilot.press("2", "delete")
+        empty = rows(app)
+        app.panel.append("gyro °", [0.0, 1.0], [1.0, 2.0])
+
+        assert any("print('Colour: ' + str(value))" in row for row in empty)
+        assert rows(app)[0].startswith("[x] Colour  [x] gyro °")
+
+
+async def test_it_is_not_drawn_more_often_than_can_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        await pilot.pause()
+        drawn: list[object] = []
+        monkeypatch.setattr(ChartPainter, "paint", lambda *args: drawn.append(args))
+        app.panel._throttle._last_s = float("inf")
+
+        for at in range(100):
+            app.panel.append("Colour", [at / 10], [1.0])
+            app.panel.show(moment())
+
+        assert not drawn

@@ -1,0 +1,31 @@
+"""The dialog that opens programs: a path can be typed at once."""
+
+from __future__ import annotations
+
+from textual.app import App
+from textual.widgets import Input
+
+from tuisim.app.dialogs.chooser import Chooser, Group
+
+
+async def test_what_is_typed_goes_into_the_field_and_is_chosen() -> None:
+    chosen: list[str | None] = []
+    app: App[None] = App()
+    async with app.run_test() as pilot:
+        app.push_screen(Chooser("Open", [Group("Here", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append)
+        await pilot.pause()
+        await pilot.press(*"nope.py", "enter")
+        await pilot.pause()
+    assert chosen == ["nope.py"]
+
+
+async def test_enter_without_typing_takes_the_list() -> None:
+    chosen: list[str | None] = []
+    app: App[None] = App()
+    async with app.run_test() as pilot:
+        app.push_screen(Chooser("Open", [Group("", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append)
+        await pilot.pause()
+        assert not app.screen.query_one(Input).has_focus
+        await pilot.press("down", "enter")
+        await pilot.pause()
+    assert chosen == ["a.py"]

@@ -1,0 +1,252 @@
+"""Stepping, breaks and looks in the app, now and in the past."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input, OptionList, Static
+
+from tests.app.app_help import notices, press_and_stand, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.breakpoint_store import Kept, following, keep, load_kept
+from tuisim.breakpoints import parse_breakpoints
+from tuisim.protocol import Inspected
+
+COUNTS = """\
+import time
+total = 0
+for i in range(50):
+    total = total + i
+    time.sleep(0.05)
+    print('Total: ' + str(total))
+print('done')
+"""
+CALLS = """\
+import time
+def outer(n):
+    local = n + 1
+    inner(local)
+    return local
+
+def inner(m):
+    time.sleep(0.1)
+    return m
+
+outer(1)
+print('done')
+"""
+
+
+def line(app: LabApp) -> int:
+    assert app.debugging.standing is not None
+    return app.debugging.standing.paused.line
+
+
+def looked(app: LabApp) -> Inspected:
+    assert app.debugging.standing is not None
+    return app.debugging.standing.looked
+
+
+def values(app: LabApp) -> dict[str, str]:
+    return {one.name: one.value for one in looked(app).variables}
+
+
+def cursor_to(app: LabApp, line: int) -> None:
+    """Put the cursor of the code panel on a line, counted from 1."""
+    assert app.desk.code is not None
+    app.desk.code._area.move_cursor((line - 1, 0))
+
+
+async def stands(pilot: Pilot[Any], app: LabApp, at: int) -> None:
+    """Wait until the program stands at a line and has been looked at."""
+    await until(pilot, lambda: app.debugging.standing is not None and line(app) == at and not app.debugging.busy)
+
+
+async def press(pilot: Pilot[Any], app: LabApp, key: str, *lines: int) -> None:
+    """Press a key again and again; it leads to these lines."""
+    for at in lines:
+        await press_and_stand(pilot, key)
+        await stands(pilot, app, at)
+
+
+def drawn(app: LabApp) -> str:
+    assert app.desk.debug is not None
+    return "\n".join("".join(text for text, _ in row) for row in app.desk.debug._lines)
+
+
+async def test_steps_from_the_first_line(home: object) -> None:
+    app = LabApp(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 3, 4, 5)
+        assert values(app) == {"total": "0", "i": "0"}
+        assert app.bridge.snapshot().line == 5
+        assert app.desk.shown("debug")
+        await press(pilot, app, "n", 6, 3, 4)
+        assert values(app)["i"] == "1"
+        assert "line 4" in drawn(app)
+
+
+async def test_one_line_back_and_on_again(home: object) -> None:
+    app = LabApp(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 3, 4, 5, 6, 3, 4, 5, 6)
+        assert values(app)["total"] == "1"
+        await press(pilot, app, "N", 5, 4)
+        assert values(app)["total"] == "0"
+        assert app.debugging.looks_back
+        assert "past" in drawn(app)
+        await press(pilot, app, "n", 5)
+        assert values(app)["total"] == "1"
+        await pilot.press("end")
+        await until(pilot, lambda: not app.debugging.looks_back and app.debugging.standing is not None)
+        assert line(app) == 6
+        await press(pilot, app, "n", 3)
+
+
+@pytest.mark.parametrize("key", ["n", "u"], ids=["a line on", "on to the end of the program"])
+async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> None:
+    app = LabApp(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 3, 4, 5, 6)
+        await press(pilot, app, "N", 5)
+        assert "past" in drawn(app)
+        await press(pilot, app, key, 6)
+        assert not app.debugging.is_away
+        assert "past" not in drawn(app) and "…" not in drawn(app)
+        await press(pilot, app, "n", 3)
+
+
+async def test_into_and_out_of_calls(home: object) -> None:
+    app = LabApp(settings(CALLS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await press(pilot, app, "n", 1, 2, 7, 11)
+        await press(pilot, app, "s", 3, 4, 8)
+        assert [frame.function for frame in looked(app).stack] == ["inner", "outer", "<module>"]
+        assert values(app) == {"m": "2"}
+        await pilot.press("tab")
+        assert app.desk.debug is not None
+        app.desk.debug.focus()
+        await pilot.press("right")
+        await until(pilot, lambda: values(app) == {"n": "1", "local": "2"})
+        await pilot.press("u")
+        await stands(pilot, app, 5)
+
+
+async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> None:
+    async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        cursor_to(app, 5)
+        await pilot.press("t")
+        assert [one.text for one in app.debugging.breaks] == ["5"]
+        await pilot.press("R")
+        await stands(pilot, app, 5)
+        assert any("Break 5" in text for text in notices(app))
+        await pilot.press("space")
+        await until(pilot, lambda: app.debugging.standing is not None and values(app).get("i") == "1")
+        await pilot.press("t", "space")
+        await until(pilot, lambda: not app.bridge.in_run)
+        await pilot.press("t")
+    async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: [one.text for one in app.debugging.breaks] == ["5"])
+
+
+async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: object) -> None:
+    app = LabApp(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("T")
+        await pilot.pause()
+        field = app.screen.query_one(Input)
+        for text in ("4 if i ==", "sample Total > 5", "4 if i == 3"):
+            field.value = text
+            await pilot.press("enter")
+        assert "no expression" not in str(app.screen.query_one("#message", Static).render())
+        assert [one.text for one in app.debugging.breaks] == ["sample Total > 5", "4 if i == 3"]
+        app.screen.query_one(OptionList).focus()
+        await pilot.press("home", "space")
+        assert app.debugging.breaks[0].disabled
+        await pilot.press("delete", "escape")
+        assert [one.written() for one in app.debugging.breaks] == ["4 if i == 3"]
+        await pilot.press("w")
+        await pilot.pause()
+        app.screen.query_one(Input).value = "total * 2"
+        await pilot.press("enter", "escape", "R")
+        await stands(pilot, app, 4)
+        assert values(app) == {"total": "3", "i": "3"}
+        assert [(watch.text, watch.value) for watch in looked(app).watches] == [("total * 2", "6")]
+
+
+async def test_the_variables_of_any_former_instant(home: object) -> None:
+    app = LabApp(settings(COUNTS, speed=0.0))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == "ended")
+        await pilot.press("G")
+        app.bridge.timeline.go(42)
+        await until(pilot, lambda: app.debugging.standing is not None and not app.debugging.busy)
+        assert values(app) == {"total": "36", "i": "8"}
+        assert "sleeps until 0.45 s" in drawn(app)
+        app.bridge.timeline.go(7)
+        await until(pilot, lambda: values(app) == {"total": "1", "i": "1"})
+        await press(pilot, app, "n", 6)
+        assert app.bridge.timeline.at == 10
+        await pilot.press("L")
+        await until(pilot, lambda: not app.debugging.busy)
+        await pilot.press("end")
+        await until(pilot, lambda: app.debugging.standing is None)
+
+
+async def test_run_to_the_cursor_starts_the_program(home: object) -> None:
+    app = LabApp(settings(COUNTS))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        cursor_to(app, 6)
+        await pilot.press("L")
+        await stands(pilot, app, 6)
+        await pilot.press("S")
+        await until(pilot, lambda: not app.bridge.in_run)
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "expected"),
+    [
+        ("a\nb\nc", "a\nb\nc", ["2", "3 if x"]),
+        ("a\nb\nc", "new\na\nb\nc", ["3", "4 if x"]),
+        ("a\nb\nc", "a\nb\nnew\nc", ["2", "4 if x"]),
+        ("a\nb\nc", "a\nc", ["2 if x"]),
+    ],
+    ids=["same", "line before", "line between", "line gone"],
+)
+def test_breaks_follow_their_lines(before: str, now: str, expected: list[str]) -> None:
+    breaks = parse_breakpoints(("2", "3 if x", "time 3"))
+    assert [one.text for one in following(breaks, before, now)] == [*expected, "time 3"]
+
+
+def test_what_is_kept_comes_back(home: object) -> None:
+    kept = Kept(parse_breakpoints(("12 if x > 3", "# time 3.5")), ("len(x)",))
+    keep("/some/where.py", kept)
+    assert load_kept("/some/where.py") == kept
+    assert load_kept("/else/where.py") == Kept()
+
+
+async def test_breaks_are_kept_with_a_program_that_no_panel_shows(home: object) -> None:
+    app = LabApp(settings(COUNTS, panels_off=("code", "controls")))
+    assert app.bridge.program is not None
+    keep(app.bridge.program.path, Kept(parse_breakpoints(("4",)), ("total",)))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await until(pilot, lambda: bool(app.debugging.breaks))
+        assert (app.desk.code, app.debugging.watches) == (None, ("total",))
+        app.debugging.set_breaks(parse_breakpoints(("4", "6")))
+        assert load_kept(app.bridge.program.path).breaks == app.debugging.breaks
+        await pilot.press("D")
+        await until(pilot, lambda: app.desk.code is not None)
+        assert [one.text for one in app.debugging.breaks] == ["4", "6"]

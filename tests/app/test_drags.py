@@ -1,0 +1,37 @@
+"""A drag ends when a dialog takes the mouse: nothing follows it afterwards."""
+
+from __future__ import annotations
+
+from textual.widget import Widget
+
+from tests.app.app_help import LOGS, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.panels.brick import Brick
+from tuisim.app.panels.chart import Chart
+from tuisim.app.panels.world import WorldView
+from tuisim.app.widgets.slider import Slider
+
+
+async def test_no_drag_outlives_a_dialog() -> None:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"noise", "brick"}))).run_test(size=(120, 50)) as pilot:
+        app = await ready(pilot)
+        view, slider = app.query_one(WorldView), app.query_one("#light", Slider)
+        chart, brick = app.query_one(Chart), app.query_one(Brick)
+        assert view._port is not None
+        col, row = view._port.to_px(app.bridge.pose.x_mm, app.bridge.pose.y_mm)
+        grips: list[tuple[Widget, tuple[int, int]]] = [(view, (int(col), int(row / 2))), (slider, (0, 0))]
+        for widget, at in grips:
+            await pilot.mouse_down(widget, offset=at)
+            dialog: Dialog[None] = Dialog()
+            await app.push_screen(dialog)
+            await pilot.mouse_up()
+            dialog.dismiss()
+            await until(pilot, lambda: len(app.screen_stack) == 1)
+        # As while the mouse presses a button, or drags the cursor.
+        brick._clicked, chart._dragging = "enter", True
+        app.capture_mouse(brick)
+        app.capture_mouse(chart)
+        app.capture_mouse(None)
+        await pilot.pause()
+        assert (view._grip, slider.dragging, brick.held, chart._dragging) == (None, False, frozenset(), False)

@@ -1,0 +1,349 @@
+"""Editing a program in the app: typing, saving, running, unsaved work, files that change elsewhere."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.app.app_help import ENDLESS, notices, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.question import Question
+from tuisim.app.dialogs.save import ProgramDialog
+from tuisim.app.editor.area import CodeArea
+from tuisim.app.editor.document import TEMPLATE
+from tuisim.app.editor.drafts import find_draft, keep_draft
+from tuisim.app.panels.code import Code
+from tuisim.app.snapshot import ENDED, IDLE, RUNNING
+from tuisim.app.start_options import AppSettings
+from tuisim.config.assets import programs
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.program_file import read_program
+from tuisim.runs.handle import Program
+
+pytestmark = pytest.mark.usefixtures("home")
+
+TEXT = "print('A: 1')\nfor n in range(3):\n    print('B: ' + str(n))\n"
+
+
+def own(path: Path, text: str = TEXT) -> AppSettings:
+    """The app with a program that is in a file."""
+    if not path.exists():
+        path.write_text(text)
+    source = read_program(path)
+    program = Program(name=source.name, text=source.text, prelude=source.prelude, path=source.path)
+    spec = build_run_spec(Settings(background="Empty_Map"))
+    return AppSettings(spec=spec, program=program, background="Empty_Map")
+
+
+async def begun(pilot: Pilot[Any]) -> tuple[LabApp, Code]:
+    app = await ready(pilot)
+    await until(pilot, lambda: app.desk.code is not None)
+    assert app.desk.code is not None
+    return app, app.desk.code
+
+
+async def typed(pilot: Pilot[Any], code: Code, *keys: str) -> None:
+    """Type at the start of the text."""
+    await pilot.press("d")
+    await until(pilot, lambda: code.typing)
+    await pilot.press(*keys)
+    await pilot.pause()
+
+
+async def asked(pilot: Pilot[Any]) -> Question:
+    await until(pilot, lambda: isinstance(pilot.app.screen, Question))
+    await pilot.pause()
+    assert isinstance(pilot.app.screen, Question)
+    return pilot.app.screen
+
+
+async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, *"print", "left_parenthesis", "7", "right_parenthesis", "enter")
+        assert str(code.border_title) == "Code: prog.py • edited"
+        await pilot.press("ctrl+r")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await pilot.pause()
+        assert app.bridge.timeline.recording is not None
+        assert app.bridge.timeline.recording.program.text == "print(7)\n" + TEXT
+        assert path.read_text() == TEXT
+        await pilot.press("ctrl+s")
+        await pilot.pause()
+        assert path.read_text() == "print(7)\n" + TEXT
+        assert str(code.border_title) == "Code: prog.py"
+        assert find_draft(str(path)) is None
+
+
+async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "enter", "i", "f", "space", "ctrl+s")
+        assert path.read_text() == "\nif " + TEXT
+        assert any("line 2" in text and "is saved" in text for text in notices(app))
+        assert "✗ 2 if print" in screen_text(app)
+
+
+async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        start = app.bridge.plan.spec.world.start
+        await typed(pilot, code, "i", "f", "enter", "ctrl+r")
+        assert app.bridge.state == IDLE
+        assert app.bridge.plan.spec.world.start == start
+        assert "✗ 1 if" in screen_text(app)
+        assert any("cannot run: line 1" in text for text in notices(app))
+        await pilot.press(*["backspace"] * 3, "ctrl+r")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+
+
+async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(tmp_path: Path) -> None:
+    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.alone == "code")
+        await pilot.press("i", "f", "enter", "ctrl+r")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.error_line == 1)
+        await pilot.pause()
+        assert app.desk.alone == "code"
+
+
+async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    example = programs()[0]
+    before = example.path.read_bytes()
+    async with LabApp(own(example.path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "#", "enter", "ctrl+s")
+        await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
+        await pilot.press("enter")
+        await until(pilot, lambda: not isinstance(app.screen, ProgramDialog))
+        assert (tmp_path / example.name).read_bytes() == b"#\n" + before
+        assert example.path.read_bytes() == before
+        assert app.bridge.program is not None
+        assert app.bridge.program.path == str(tmp_path / example.name)
+
+
+async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path) -> None:
+    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.size.height > 20)
+        assert not app.desk.shown("world")
+        await pilot.press("x", "escape")
+        await until(pilot, lambda: app.desk.shown("world"))
+        assert app.desk.shown("code")
+        await pilot.press("d", "ctrl+r")
+        await until(pilot, lambda: app.bridge.state == ENDED and app.desk.shown("world"))
+        assert app.work.dirty
+
+
+@pytest.mark.parametrize("size", [(80, 24), (100, 30), (120, 40), (200, 60)], ids=str)
+async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
+    async with LabApp(own(tmp_path / "prog.py")).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        before = app.desk.code.size if app.desk.shown("code") and app.desk.code else None
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.typing)
+        await pilot.pause()
+        assert app.desk.code is not None
+        width, height = app.desk.code.size
+        assert width >= min(79 + 5, size[0] - 2)
+        assert height >= 13
+        # Where there is room for both, the world stays.
+        assert app.desk.shown("world") is (size == (200, 60))
+        await pilot.press(*"abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz", "escape")
+        await until(pilot, lambda: app.desk.shown("world") and before in (None, app.desk.code and app.desk.code.size))
+        await until(pilot, lambda: app.query_one(CodeArea).scroll_offset.x == 0)
+
+
+WRONG = "print('A: 1')\nfor n in range(3):\n    n.x\n"
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["panel hidden", "panel shown"])
+async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], tmp_path: Path) -> None:
+    async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await pilot.press("d")
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.typing)
+        assert app.desk.code is not None
+        await until(pilot, lambda: app.desk.code is not None and app.desk.code.error_line == 3)
+        assert app.query_one(CodeArea).cursor_location == (2, 4)
+
+
+async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path, WRONG)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: code.error_line == 3)
+        path.write_text(WRONG.replace("n.x", "n + 1"))
+        app.loading.look()
+        await pilot.pause()
+        assert "n + 1" in code.query_one(CodeArea).program_text
+        assert code.error_line == 0
+
+
+async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None:
+    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape", "escape")
+        await pilot.press("ctrl+s")
+        await until(pilot, lambda: "Save the world" in screen_text(app))
+
+
+@pytest.mark.parametrize(
+    ("answer", "in_file", "left"),
+    [("s", "x" + TEXT, True), ("d", TEXT, True), ("escape", TEXT, False)],
+    ids=["save", "discard", "stay"],
+)
+async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, left: bool, tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape", "escape", "q")
+        await asked(pilot)
+        await pilot.press(answer)
+        await pilot.pause()
+        assert path.read_text() == in_file
+        assert app._exit is left
+    assert (find_draft(str(path)) is None) is left
+
+
+async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path) -> None:
+    path, other = tmp_path / "prog.py", tmp_path / "other.py"
+    other.write_text("print('other')\n")
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape")
+        app.loading.open_file(str(other))
+        await asked(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: "print('other')" in screen_text(app))
+        assert path.read_text() == TEXT
+        assert not app.work.dirty
+
+
+@pytest.mark.parametrize(
+    ("answer", "shown", "kept"),
+    [("r", "draft = 1\n", True), ("d", TEXT, False), ("escape", TEXT, True)],
+    ids=["restore", "discard", "later"],
+)
+async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    keep_draft(str(path), "draft = 1\n")
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await asked(pilot)
+        assert "3 lines differ" in screen_text(app)
+        await pilot.press(answer)
+        await pilot.pause()
+        assert code.query_one(CodeArea).program_text == shown
+        assert app.work.dirty is (answer == "r")
+    assert (find_draft(str(path)) is not None) is kept
+
+
+async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x")
+        await until(pilot, lambda: find_draft(str(path)) is not None)
+        await pilot.press("ctrl+z")
+        await until(pilot, lambda: find_draft(str(path)) is None)
+        assert not app.work.dirty
+
+
+@pytest.mark.parametrize(("answer", "shown"), [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"])
+async def test_a_file_that_changes_under_unsaved_edits(answer: str, shown: str, tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape")
+        path.write_text("other = 1\n")
+        app.loading.look()
+        await asked(pilot)
+        await pilot.press(answer)
+        await pilot.pause()
+        assert code.query_one(CodeArea).program_text == shown
+        assert app.work.dirty is (answer == "k")
+
+
+async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
+    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await typed(pilot, code, "x", "escape")
+        app.loading.change_mat("Grey_bands")
+        await pilot.pause()
+        assert code.query_one(CodeArea).program_text == "x" + TEXT
+        assert app.work.dirty
+
+
+async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    async with LabApp(settings(speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await pilot.press("ctrl+t")
+        await until(pilot, lambda: code.typing)
+        assert code.query_one(CodeArea).program_text == TEMPLATE
+        await pilot.press("f5")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        assert app.bridge._end == "finished"
+        await pilot.press("ctrl+s")
+        await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
+        await pilot.press("enter")
+        await until(pilot, lambda: (tmp_path / "new.py").exists())
+        assert (tmp_path / "new.py").read_text() == TEMPLATE
+
+
+async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    text = "%%sim_magic_preloaded -x 300\nprint('A: 1')\n"
+    async with LabApp(own(path, text)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        assert "%%sim_magic_preloaded -x 300" in screen_text(app)
+        await typed(pilot, code, *["right"] * 25, "delete", "5", "escape")
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        assert app.bridge.timeline.recording is not None
+        assert app.bridge.timeline.recording.spec.world.start.x_mm == 500
+
+
+async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: "▶" in screen_text(app))
+        await typed(pilot, code, "#", "enter", "ctrl+s")
+        await until(pilot, lambda: "running text differs" in screen_text(app))
+        assert path.read_text().startswith("#\n# %%")
+        assert "▶ 4" not in screen_text(app)
+        app.bridge.stop()
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: "running text differs" not in screen_text(app))
+
+
+async def test_a_file_that_may_not_be_written_is_saved_elsewhere(tmp_path: Path) -> None:
+    path = tmp_path / "prog.py"
+    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        path.chmod(0o444)
+        if os.access(path, os.W_OK):
+            # The superuser may write it all the same, and does.
+            await typed(pilot, code, "x", "ctrl+s")
+            assert path.read_text() == "x" + TEXT
+            return
+        await typed(pilot, code, "x", "ctrl+s")
+        await until(pilot, lambda: isinstance(app.screen, ProgramDialog))

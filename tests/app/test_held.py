@@ -1,0 +1,213 @@
+"""What the user does to a run that is held, or looked back at: seen at once, done right before the next tick."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from tests.app.app_help import press_and_stand, ready, screen_text, settings, until
+from tests.running import PATIENCE_S
+from tuisim.app.actions.time_travel import to_now, to_tick
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.question import BranchQuestion
+from tuisim.app.setup.next_run import with_obstacles
+from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, WAITING
+from tuisim.app.widgets.slider import Slider
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec, Obstacle
+from tuisim.runs.rerun import rerun, same
+from tuisim.runs.store import RunStore
+
+pytestmark = pytest.mark.usefixtures("home")
+
+STEPS = """\
+import time
+n = 0
+while True:
+    n = n + 1
+    n = n + 1
+    time.sleep(0.05)
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+"""
+
+LINES = "".join(f"n{number} = {number}\n" for number in range(1, 10))
+
+
+async def held(pilot: Pilot[Any]) -> LabApp:
+    """Hold the program at a line, with ticks behind it."""
+    app = await ready(pilot)
+    await until(pilot, lambda: app.bridge.timeline.newest > 20)
+    await pilot.press("n")
+    await until(pilot, lambda: app.debugging.standing is not None)
+    while app.debugging.standing is None or app.debugging.standing.paused.line != 4:
+        await press_and_stand(pilot, "n")
+    return app
+
+
+@pytest.mark.slow
+async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> None:
+    async with LabApp(settings(STEPS, autorun=True, speed=8.0)).run_test(size=(120, 40)) as pilot:
+        app = await held(pilot)
+        tick, start = app.bridge.timeline.newest, app.bridge.pose
+        app.bridge.set_noise(NoiseSpec(20, 0))
+        for key in ("up", "up", "right", "p", "p", "p"):
+            await pilot.press(key)
+        assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
+        # As at the end of a drag.
+        app.bridge.place(app.bridge.pose)
+        now = app.bridge.snapshot()
+        assert (now.instant.noise, now.pen_down, now.gyro_deg) == (NoiseSpec(20, 0), True, 0)
+        # Another line, and still the same tick: nothing has been done yet.
+        await pilot.press("n")
+        await until(pilot, lambda: app.debugging.standing is not None and app.debugging.standing.paused.line == 5)
+        assert app.bridge.timeline.newest == tick
+        assert app.bridge.pose.y_mm == start.y_mm + 20
+        await pilot.press("full_stop")
+        await until(pilot, lambda: app.bridge.timeline.newest == tick + 1)
+        recording = app.bridge.timeline.recording
+        assert recording is not None
+        kinds = ["set_noise", *["set_pose"] * 3, *["set_pen"] * 3]
+        assert [(action.tick, action.kind) for action in recording.actions()] == [(tick, kind) for kind in kinds]
+        assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
+        await pilot.press("S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        # It stands nowhere any more.
+        assert app.debugging.standing is None
+        run = RunStore().load_run(app.bridge.run_id)
+        again = rerun(run, RunStore())
+        again.wait(PATIENCE_S)
+        assert same(run, RunStore().load_run(again.run_id)).same
+
+
+async def noisy_past(pilot: Pilot[Any]) -> LabApp:
+    """A run whose noise was set to 10 on its way, looked at before and after that by turns."""
+    app = await ready(pilot)
+    await until(pilot, lambda: app.bridge.timeline.newest > 30)
+    app.bridge.set_noise(NoiseSpec(10, 0))
+    await until(pilot, lambda: app.bridge.snapshot().instant.noise.light == 10 and app.bridge.timeline.newest > 60)
+    to_tick(app, 10)
+    await until(pilot, lambda: light(app) == 0)
+    return app
+
+
+def light(app: LabApp) -> int:
+    return app.query_one("#light", Slider).value
+
+
+def noises(app: LabApp) -> list[int]:
+    """The light noise that the user has set in the run at hand."""
+    recording = app.bridge.timeline.recording
+    assert recording is not None
+    return [action.fields["light"] for action in recording.actions() if action.kind == "set_noise"]
+
+
+async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
+    shown = frozenset({"noise"})
+    async with LabApp(settings(STEPS, autorun=True, speed=8.0, panels_on=shown)).run_test(size=(120, 40)) as pilot:
+        app = await noisy_past(pilot)
+        await pilot.mouse_down("#light", offset=(0, 0))
+        await pilot.hover("#light", offset=(4, 0))
+        await pilot.hover("#light", offset=(8, 0))
+        assert light(app) > 20
+        assert len(app.screen_stack) == 1
+        await pilot.mouse_up("#light", offset=(8, 0))
+        await until(pilot, lambda: isinstance(app.screen, BranchQuestion))
+        assert len(app.screen_stack) == 2
+        await pilot.press("n")
+        await until(pilot, lambda: light(app) == 0)
+        to_now(app)
+        await until(pilot, lambda: light(app) == 10)
+        assert noises(app) == [10]
+        # A branch with other noise sets it once.
+        to_tick(app, 10)
+        await until(pilot, lambda: light(app) == 0)
+        field = app.query_one("#light-number", Input)
+        field.focus()
+        # As it was: nothing to ask.
+        await pilot.press("enter")
+        await pilot.pause()
+        assert len(app.screen_stack) == 1
+        field.value = "30"
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(app.screen, BranchQuestion))
+        await pilot.press("y")
+        await until(pilot, lambda: len(app.screen_stack) == 1 and app.bridge.state in (RUNNING, PAUSED))
+        await until(pilot, lambda: noises(app) == [30])
+        field.focus()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert (light(app), app.bridge.plan.spec.world.noise.light) == (30, 30)
+        newest = app.bridge.timeline.newest
+        app.bridge.resume()
+        await until(pilot, lambda: app.bridge.timeline.newest > newest + 5)
+        assert noises(app) == [30]
+
+
+async def test_a_run_paused_while_it_asks_goes_on() -> None:
+    asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
+    async with LabApp(asks).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == WAITING)
+        await pilot.press("escape", "space")
+        await until(pilot, lambda: app.bridge.state == PAUSED)
+        await pilot.press("space")
+        await until(pilot, lambda: app.bridge.state == WAITING)
+        app.bridge.answer("Ann")
+        await until(pilot, lambda: app.bridge.state == RUNNING)
+
+
+@pytest.mark.slow
+async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_same_tick() -> None:
+    async with LabApp(settings(LINES)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for line in range(1, 5):
+            await pilot.press("n")
+            await until(pilot, partial(at_line, app, line))
+            # The panels are there from the first line on.
+            assert app.desk.shown("code") and app.desk.shown("debug")
+        await pilot.press("N", "N", "n")
+        await until(pilot, lambda: at_line(app, 2) and not app.debugging.busy)
+        assert "past 0.00 s" in screen_text(app)
+        # As the end key does it: the run at work is not let on from a former line.
+        await pilot.press("full_stop")
+        await until(pilot, partial(at_line, app, 4))
+        # While the way back is worked out, it can be given up.
+        await pilot.press("N", "end")
+        assert not app.debugging.busy
+        await pilot.press("n")
+        await until(pilot, partial(at_line, app, 5))
+        assert not app.debugging.looks_back
+        assert app.bridge.timeline.newest == 0
+
+
+def at_line(app: LabApp, line: int) -> bool:
+    return app.debugging.standing is not None and app.debugging.standing.paused.line == line
+
+
+async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> None:
+    async with LabApp(settings(LINES + "tank_drive.on_for_seconds(50, 50, 1)\n", speed=0.0)).run_test() as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        to_tick(app, 10)
+        assert app.bridge.in_past
+        assert app.loading.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
+        assert app.bridge.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)
+
+
+async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("helper.py").write_text("def turn(by):\n    return by + 1\n")
+    async with LabApp(settings("from helper import turn\nturn(1)\n")).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for line in (1, 2):
+            await pilot.press("n")
+            await until(pilot, partial(at_line, app, line))
+        await pilot.press("s")
+        await until(pilot, lambda: "line 2 of helper.py" in screen_text(app))
+        assert "  return by + 1" in screen_text(app)

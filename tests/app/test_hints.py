@@ -1,0 +1,36 @@
+"""The brick panel is named once to whoever runs a program that needs it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import notices, ready, settings, until
+from tuisim.app.app import LabApp, looks_at_buttons
+from tuisim.app.snapshot import ENDED
+
+DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("import time\nfrom ev3dev2.button import Button\n", True),
+        ("from ev3dev2 import button\n", True),
+        ("    import ev3dev2.button as b\n", True),
+        ("# from ev3dev2.button import Button\nprint('button')\n", False),
+        ("from ev3dev2.motor import MoveTank\nbutton = 3\n", False),
+    ],
+)
+def test_a_program_that_looks_at_the_buttons(text: str, told: bool) -> None:
+    assert looks_at_buttons(text) == told
+
+
+@pytest.mark.usefixtures("home")
+async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
+    async with LabApp(settings(DRAWS, speed=0.0)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        for _ in range(2):
+            await pilot.press("R")
+            await until(pilot, lambda: app.bridge.state == ENDED and not app._last_words)
+        told = [notice for notice in notices(app) if notice.startswith("The program")]
+        assert told == ["The program shows something on the brick: K opens its panel"]

@@ -1,0 +1,130 @@
+"""The instrumentation panel."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
+from tuisim.app.panels.instrumentation import Instrumentation, lines
+from tuisim.app.snapshot import ENDED, Snapshot
+from tuisim.core.geometry import Pose
+from tuisim.core.parts import MotorSpec
+
+EXTREME = moment(
+    Pose(-12345.67, 98765.43, -3600.5),
+    time_s=98765.43,
+    ultrasonic_mm=2550,
+    gyro_deg=-36000,
+    gyro_rate_dps=-1050,
+    state=ENDED,
+    end="output_limit",
+    speed=0.25,
+)
+BARE = moment(spec=replace(SPEC, robot=replace(SPEC.robot, gyro=None, ultrasonic=None)), ultrasonic_mm=None, colors={})
+
+ARMED = replace(SPEC, robot=replace(SPEC.robot, extra_motors=(MotorSpec("outA"), MotorSpec("outD"))))
+FURTHER = moment(
+    spec=ARMED,
+    turns=((-2517.4, -312.2), (0.0, 0.0)),
+    further={"bumper_pressed": 1.0, "infrared_proximity": 45.0, "back_mm": 1234.0},
+)
+
+
+def text(now: Snapshot, width: int, height: int) -> list[str]:
+    return ["".join(part for part, _ in line) for line in lines(now, width, height)]
+
+
+@pytest.mark.parametrize(
+    ("heading_deg", "shown"),
+    [(-399.3, "-39.3°"), (0.0, "0.0°"), (-90.0, "-90.0°"), (270.0, "-90.0°"), (180.0, "180.0°"), (-180.0, "-180.0°"),
+     (540.0, "180.0°"), (725.5, "5.5°")],
+)  # fmt: skip
+def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -> None:
+    now = moment(Pose(1.0, 2.0, heading_deg))
+    assert text(now, 44, 11)[-3].split()[-1] == shown
+    assert now.instant.pose.heading_deg == heading_deg
+
+
+@pytest.mark.parametrize("now", [moment(), BARE, FURTHER], ids=["usual", "no sensors", "further parts"])
+@pytest.mark.parametrize("width", [18, 20, 24, 26, 32, 40, 44, 80])
+@pytest.mark.parametrize("height", [4, 6, 8, 9, 11, 13, 14, 30])
+def test_it_fits(now: Snapshot, width: int, height: int) -> None:
+    rows = text(now, width, height)
+
+    assert len(rows) <= height
+    assert max(map(len, rows)) <= width
+
+
+@pytest.mark.parametrize("width", [32, 40, 44])
+@pytest.mark.parametrize("height", [6, 11, 20])
+def test_extreme_values_fit(width: int, height: int) -> None:
+    assert max(map(len, text(EXTREME, width, height))) <= width
+
+
+@pytest.mark.parametrize(("width", "height"), [(26, 6), (24, 11), (40, 13)], ids=str)
+def test_names_are_whole(width: int, height: int) -> None:
+    rows = "\n".join(text(moment(), width, height))
+
+    for name in ("LeftMotor", "RightMotor", "Sensor1", "Sensor2", "Ultrasonic"):
+        assert name in rows
+
+
+def test_values() -> None:
+    rows = [" ".join(row.split()) for row in text(moment(), 40, 11)]
+
+    assert rows == [
+        "LeftMotor tacho 1234 525 °/s",
+        "RightMotor tacho -57 -512 °/s",
+        "Sensor1 red 86.3 % mean 86.3 %",
+        "(220, 220, 220) White",
+        "Sensor2 red 0.0 % mean 33.3 %",
+        "(0, 0, 255) Blue",
+        "Ultrasonic 134.2 cm 1342 mm",
+        "Gyro -90° rate 12 °/s",
+        "Pose x 1000.0 y 500.0 0.0°",
+        "Clock 3.21 s speed 1×",
+        "State running pen down robolab",
+    ]
+
+
+def test_how_the_run_ended_is_said() -> None:
+    assert "output limit" in text(EXTREME, 40, 11)[-1]
+
+
+@pytest.mark.parametrize("size", [(20, 6), (26, 9), (44, 14)], ids=str)
+async def test_the_panel_shows_the_words(size: tuple[int, int]) -> None:
+    app = PanelApp(Instrumentation())
+    async with app.run_test(size=size) as pilot:
+        app.panel.show(moment())
+        await pilot.pause()
+
+        assert [row.rstrip() for row in screen_text(app)][: len(text(moment(), *size))] == [
+            row.rstrip() for row in text(moment(), *size)
+        ]
+
+
+async def test_what_is_left_of_last_time_is_wiped() -> None:
+    app = PanelApp(Instrumentation())
+    async with app.run_test(size=(40, 11)) as pilot:
+        app.panel.show(EXTREME)
+        await pilot.pause()
+        app.panel.show(BARE)
+        app.panel._throttle.now()
+        await pilot.pause()
+
+        assert [row.rstrip() for row in screen_text(app)] == [row.rstrip() for row in text(BARE, 40, 11)]
+
+
+def test_further_parts() -> None:
+    rows = [" ".join(row.split()) for row in text(FURTHER, 40, 20)]
+    assert [row for row in rows if row.startswith(("Motor", "Bumper", "Infrared", "Back"))] == [
+        "Motor A tacho -2517 -312 °/s",
+        "Motor D tacho 0 0 °/s",
+        "Bumper pressed",
+        "Infrared 45 %",
+        "Back 1234 mm",
+    ]
+    starts = ("Motor", "Bum", "Inf", "Bac")
+    assert text(FURTHER, 26, 11)[6:11] == [row for row in text(FURTHER, 26, 30) if row.startswith(starts)]

@@ -1,0 +1,22 @@
+"""The command palette: everything that a key does, by its title."""
+
+from __future__ import annotations
+
+from textual.command import DiscoveryHit, Hit
+
+from tests.app.app_help import ready, settings
+from tuisim.app.actions.table import ACTIONS
+from tuisim.app.app import LabApp
+from tuisim.app.keys.palette import ActionProvider
+
+
+async def test_it_offers_every_key_and_finds_it_by_its_title() -> None:
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        provider = ActionProvider(app.screen)
+        offered = [hit async for hit in provider.discover() if isinstance(hit, DiscoveryHit)]
+        assert [hit.help for hit in offered] == [f"{one.group} · key {one.key_label}" for one in ACTIONS.values()]
+        found = [hit async for hit in provider.search("pen up") if isinstance(hit, Hit)]
+        assert [str(hit.match_display) for hit in found] == [ACTIONS["pen"].title]
+        found[0].command()
+        assert app.bridge.pen_down

@@ -1,0 +1,243 @@
+"""The plan of the next run: what a mat, a preset or a file decides goes with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tuisim.app.setup import next_run as plans
+from tuisim.app.setup.fields import find
+from tuisim.app.setup.next_run import NextRun, plan_of, plan_of_spec
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.presets import ROBOTS
+from tuisim.config.robots import load_robot, save_robot
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec
+from tuisim.errors import ConfigError
+
+BOX = (Obstacle(1, 2, 3, 4),)
+
+
+def eyes(plan: NextRun) -> list[float]:
+    return [eye.x_mm for eye in plan.spec.robot.color_sensors]
+
+
+def edited(plan: NextRun, field: str, text: str) -> NextRun:
+    edit = find(plan, field)
+    assert edit is not None
+    return edit.write(plan, text)
+
+
+# What is done after starting on Grey_bands, and where the eyes are then.
+WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
+    "a mat moves the eyes": ([lambda p: plans.with_mat(p, "Radial_grey")], [-60, 60]),
+    "and they go back": (
+        [lambda p: plans.with_mat(p, "Radial_grey"), lambda p: plans.with_mat(p, "Loop")],
+        [-20, 20],
+    ),
+    "another preset meanwhile": (
+        [
+            lambda p: plans.with_mat(p, "Radial_grey"),
+            lambda p: plans.with_robot(p, "Small_Robot"),
+            lambda p: plans.with_mat(p, "Loop"),
+        ],
+        [-10, 10],
+    ),
+    "an edit of another field": (
+        [
+            lambda p: plans.with_mat(p, "Radial_grey"),
+            lambda p: edited(p, "wheel_diameter_mm", "40"),
+            lambda p: plans.with_mat(p, "Loop"),
+        ],
+        [-20, 20],
+    ),
+    "an eye that was placed there stays": (
+        [
+            lambda p: plans.with_mat(p, "Radial_grey"),
+            lambda p: edited(p, "left.x_mm", "-33"),
+            lambda p: plans.with_mat(p, "Loop"),
+        ],
+        [-33, 60],
+    ),
+    "until the robot is reset": (
+        [
+            lambda p: plans.with_mat(p, "Radial_grey"),
+            lambda p: edited(p, "left.x_mm", "-33"),
+            lambda p: plans.with_mat(p, "Loop"),
+            plans.with_robot_as_chosen,
+        ],
+        [-20, 20],
+    ),
+}
+
+
+@pytest.mark.parametrize(("steps", "expected"), WAYS.values(), ids=WAYS)
+def test_sensor_places_never_leak(steps: list[Callable[[NextRun], NextRun]], expected: list[float]) -> None:
+    plan = plan_of(Settings(background="Grey_bands"))
+    for step in steps:
+        plan = step(plan)
+    assert eyes(plan) == expected
+
+
+@pytest.mark.parametrize("name", list(ROBOTS))
+def test_a_preset_leaves_nothing_behind(name: str) -> None:
+    plan = plans.with_robot(plan_of(Settings()), name)
+    assert plan.spec.robot == ROBOTS[name]
+    assert plans.with_robot(plan, "Default_Robot").spec == plan_of(Settings()).spec
+
+
+def test_a_mat_brings_its_own_obstacles_start_and_fit() -> None:
+    plan = plans.with_obstacles(plan_of(Settings(background_fit="fit")), BOX)
+    plan = plans.at_pose(plan, Pose(7, 8, 9))
+    assert plans.with_mat(plan, "Obstacles_Test").spec == build_run_spec(Settings(background="Obstacles_Test"))
+
+
+def test_a_profile_decides_again_what_is_solid() -> None:
+    plan = plans.with_values(plan_of(Settings()), solid=True)
+    assert plans.with_profile(plan, "nbev3devsim").spec.world.solid is False
+    assert plans.with_profile(plan, "ev3").spec.world.solid is True
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda plan: plans.at_pose(plan, Pose(7, 8, 9)),
+        lambda plan: plans.with_noise(plan, NoiseSpec(3, 4)),
+        lambda plan: plans.with_seed(plan, 99),
+        lambda plan: plans.with_pen(plan, True),
+        lambda plan: plans.with_obstacles(plan, BOX),
+    ],
+    ids=["pose", "noise", "seed", "pen", "obstacles"],
+)
+def test_what_is_changed_quickly_is_what_would_be_built(change: Callable[[NextRun], NextRun]) -> None:
+    plan = change(plan_of(Settings(background="Radial_grey", light_noise=1)))
+    assert plan.spec == build_run_spec(plan.settings)
+
+
+def test_a_robot_file_says_its_motor_noise_until_the_user_does(tmp_path: Path) -> None:
+    (tmp_path / "old.json").write_text('{"wheelNoise": 12}')
+    plan = plans.with_robot(plan_of(Settings()), str(tmp_path / "old.json"))
+    assert plan.spec.world.noise.motor == 12
+    lit = plans.with_noise(plan, NoiseSpec(5, 12))
+    assert plans.with_robot(lit, "Small_Robot").spec.world.noise == NoiseSpec(5, 0)
+    loud = plans.with_noise(plan, NoiseSpec(0, 80))
+    assert plans.with_robot(loud, "Small_Robot").spec.world.noise.motor == 80
+
+
+def test_no_later_change_reads_a_file_again(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text("wheel_diameter_mm = 77\n")
+    plan = plans.with_robot(plan_of(Settings()), str(path))
+    path.write_text("wheel_diameter_mm = 'oops'\n")
+    assert plans.with_mat(plan, "Loop").spec.robot.wheel_diameter_mm == 77
+
+
+def test_a_saved_robot_is_not_as_the_mat_has_changed_it(tmp_path: Path) -> None:
+    plan = plans.with_mat(plan_of(Settings(pen_color="teal")), "Radial_grey")
+    save_robot(plans.robot_to_save(plan), tmp_path / "mine.toml")
+    saved = load_robot(str(tmp_path / "mine.toml"))
+    assert saved == replace(RobotSpec(), pen=replace(RobotSpec().pen, color="teal"))
+
+
+def test_a_plan_of_a_run_of_which_nothing_else_is_known() -> None:
+    spec = build_run_spec(Settings(background="Radial_grey", x_mm=5, light_noise=3))
+    plan = plan_of_spec(spec)
+    assert plan.spec == spec
+    assert eyes(plans.with_mat(plan, "Loop")) == [-20, 20]
+
+
+# Field, what is typed, and what is said.
+WRONG = [
+    ("wheel_diameter_mm", "abc", "must be a number, got 'abc'"),
+    ("wheel_diameter_mm", "", "must be a number, got ''"),
+    ("wheel_spacing_mm", "1e9", "must be from 1 to 1000, got 1000000000.0"),
+    ("back_mm", "5", "must be from -1000 to 0, got 5.0"),
+    ("weight", "fat", "must be a number, got 'fat' (or weightless, light, medium, heavy)"),
+    ("weight", "nan", "must be a number, got nan"),
+    ("name", "  ", "must be one line of 1 to 100 characters"),
+    ("left.diameter_mm", "7.5", "must be a whole number, got '7.5'"),
+    ("left.diameter_mm", "1", "must be from 2 to 100, got 1"),
+    ("left.y_mm", "-501", "must be from -500 to 500, got -501.0"),
+    ("ultrasonic.ray_angles_deg", "0 up", "must be a number, got 'up'"),
+    ("ultrasonic.ray_angles_deg", "", "must be 1 to 100 angles from -360 to 360"),
+    ("pen.color", "reddish", "no such colour 'reddish'"),
+    ("pen.width_mm", "0", "must be a number from 0.1 to 200, got '0'"),
+]
+
+
+@pytest.mark.parametrize(("field", "typed", "said"), WRONG, ids=[f"{f} {t!r}" for f, t, _ in WRONG])
+def test_a_wrong_value_is_refused(field: str, typed: str, said: str) -> None:
+    from tuisim.app.widgets.form import reason
+
+    with pytest.raises(ConfigError) as caught:
+        edited(plan_of(Settings()), field, typed)
+    assert reason(caught.value).startswith(said)
+
+
+# Field, what is entered, and what the specification says then.
+RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
+    ("preset", "Small_Robot", lambda p: p.spec.robot, ROBOTS["Small_Robot"]),
+    ("name", " Robbie ", lambda p: p.spec.robot.name, "Robbie"),
+    ("wheel_spacing_mm", "90,5", lambda p: p.spec.robot.wheel_spacing_mm, 90.5),
+    ("wheel_width_mm", "15", lambda p: p.spec.robot.wheel_width_mm, 15),
+    ("back_mm", "-60", lambda p: p.spec.robot.back_mm, -60),
+    ("weight", "Heavy", lambda p: p.spec.robot.weight, 9),
+    ("weight", "2.5", lambda p: p.spec.robot.weight, 2.5),
+    ("left_port", "outD", lambda p: (p.spec.robot.left_port, p.spec.robot.right_port), ("outD", "outC")),
+    ("left_port", "outC", lambda p: (p.spec.robot.left_port, p.spec.robot.right_port), ("outC", "outB")),
+    ("left.port", "in4", lambda p: [s.port for s in p.spec.robot.sensors], ["in4", "in3", "in1", "in2"]),
+    ("left.diameter_mm", "30", lambda p: p.spec.robot.color_sensors[0].diameter_mm, 30),
+    ("right.strategy", "centre", lambda p: p.spec.robot.color_sensors[1].strategy, "centre"),
+    ("left.used", "off", lambda p: [s.name for s in p.spec.robot.color_sensors], ["right"]),
+    ("ultrasonic.used", "off", lambda p: p.spec.robot.ultrasonic, None),
+    ("ultrasonic.angle_deg", "90", lambda p: p.spec.robot.ultrasonic and p.spec.robot.ultrasonic.angle_deg, 90),
+    (
+        "ultrasonic.ray_angles_deg",
+        "-5, 0 5",
+        lambda p: p.spec.robot.ultrasonic and p.spec.robot.ultrasonic.ray_angles_deg,
+        (-5, 0, 5),
+    ),
+    ("gyro.used", "off", lambda p: p.spec.robot.gyro, None),
+    ("pen.color", "Teal", lambda p: p.spec.robot.pen.color, "teal"),
+    ("pen.width_mm", "12", lambda p: p.spec.robot.pen.width_mm, 12),
+    ("pen.x_mm", "3", lambda p: p.spec.robot.pen.x_mm, 3),
+    ("pen.down", "on", lambda p: p.spec.robot.pen.down, True),
+    ("pen.marks", "on", lambda p: p.spec.world.pen_marks, True),
+    ("profile", "ev3", lambda p: p.spec.profile.name, "ev3"),
+    ("solid", "on", lambda p: p.spec.world.solid, True),
+    ("walls", "off", lambda p: p.spec.world.walls, False),
+    ("background_fit", "centre", lambda p: p.spec.world.background_fit, "centre"),
+]
+
+
+@pytest.mark.parametrize(
+    ("field", "entered", "look", "expected"), RIGHT, ids=[f"{field} {entered}" for field, entered, _, _ in RIGHT]
+)
+def test_a_right_value_is_taken(field: str, entered: str, look: Callable[[NextRun], object], expected: object) -> None:
+    plan = edited(plan_of(Settings()), field, entered)
+    assert look(plan) == expected
+    again = find(plan, field)
+    assert again is not None
+    assert edited(plan, field, again.read(plan)).spec == plan.spec or field == "preset"
+
+
+def test_a_sensor_switched_off_comes_back_as_it_was() -> None:
+    first = plan_of(Settings())
+    for field in ("left.used", "ultrasonic.used", "gyro.used"):
+        off = edited(first, field, "off")
+        assert off.spec != first.spec
+        assert edited(off, field, "on").spec == first.spec
+
+
+def test_labels_fit_beside_their_fields() -> None:
+    from tuisim.app.setup.fields import MAX_LABEL, sections
+
+    for section in sections(plan_of(Settings())):
+        for edit in section.edits:
+            assert len(edit.label) <= MAX_LABEL
+            if edit.choices and edit.id != "preset":
+                assert edit.read(plan_of(Settings())) in edit.choices

@@ -1,0 +1,197 @@
+"""Keys that come faster than screens open and close."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from textual import events
+from textual.app import App
+from textual.screen import Screen
+from textual.widgets import Input, OptionList, Static
+
+import tuisim.app
+from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.monkey import at_once, key_event
+from tuisim.analysis.source import LogRequest
+from tuisim.app.analyser.app import AnalyserApp
+from tuisim.app.analyser.screen import Analyser
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.chooser import Chooser
+from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.dialogs.question import Question
+from tuisim.app.keys.analyser_help import AnalyserHelp
+from tuisim.app.keys.app_help import HelpScreen
+from tuisim.app.keys.palette import Palette
+
+IN_THE_LAB = {
+    "mat": "b enter enter",
+    "program": "o enter enter",
+    "robot": "r pagedown enter enter",
+    "panel opened and closed": "Z Z z",
+    "stored run": "h enter enter escape",
+    "palette": "ctrl+p enter enter escape",
+    "palette before its list is there": "ctrl+p pagedown escape",
+    "palette asked for twice": "ctrl+p escape ctrl+p ctrl+p escape escape",
+    "two dialogs after each other": "b escape T escape escape",
+}
+
+
+@pytest.fixture(autouse=True)
+def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("keys", IN_THE_LAB.values(), ids=list(IN_THE_LAB))
+async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        at_once(pilot, keys.split())
+        await pilot.pause(0.1)
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        at_once(pilot, ["question_mark"])
+        await until(pilot, lambda: isinstance(app.screen, HelpScreen))
+
+
+IN_THE_ANALYSER = {
+    "note": "m A enter enter escape",
+    "palette": "ctrl+p enter enter escape",
+}
+
+
+@pytest.mark.parametrize("keys", IN_THE_ANALYSER.values(), ids=list(IN_THE_ANALYSER))
+async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
+    Path("log.txt").write_text("".join(f"Colour: {value}\n" for value in range(9)))
+    async with AnalyserApp(LogRequest(file="log.txt")).run_test(size=(80, 24)) as pilot:
+        app = pilot.app
+        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.model is not None)
+        analyser = app.screen
+        at_once(pilot, keys.split())
+        await pilot.pause(0.1)
+        await until(pilot, lambda: app.screen is analyser)
+        at_once(pilot, ["question_mark"])
+        await until(pilot, lambda: isinstance(app.screen, AnalyserHelp))
+
+
+async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        at_once(pilot, "o/tmp")
+        await until(pilot, lambda: isinstance(app.screen, Chooser))
+        await until(pilot, lambda: [field.value for field in app.screen.query(Input)] == ["/tmp"])
+
+
+async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[object] = []
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app, dialog = await ready(pilot), HelpScreen()
+        await app.push_screen(dialog)
+        await pilot.press("escape")
+        monkeypatch.setattr(App, "_display", lambda app, screen, renderable: drawn.append(renderable))
+        app._display(dialog, "help")
+        monkeypatch.undo()
+    assert [what for what in drawn if what is not None] == []
+
+
+async def test_keys_that_come_when_the_app_has_ended_do_no_harm() -> None:
+    app = LabApp(settings())
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        app.exit()
+    # They are taken out of the queue when there is no screen any more.
+    await app.on_event(key_event("question_mark"))
+    await app.on_event(events.Paste("x"))
+
+
+async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog() -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o")
+        await until(pilot, lambda: isinstance(app.focused, OptionList))
+        await pilot.click(offset=(1, 1))
+        assert isinstance(app.focused, OptionList)
+
+
+NO_NAMES = {"too long": "x" * 300 + ".toml", "of nobody's home": "~no-such-user/lab.toml", "with a zero": "a\0b.toml"}
+
+
+@pytest.mark.parametrize("name", NO_NAMES.values(), ids=list(NO_NAMES))
+@pytest.mark.parametrize("key", ["ctrl+s", "o"])
+async def test_what_cannot_be_the_name_of_a_file_is_refused(key: str, name: str) -> None:
+    async with LabApp(settings()).run_test(size=(80, 24), notifications=True) as pilot:
+        app = await ready(pilot)
+        await pilot.press(key)
+        dialog, field = app.screen, app.screen.query_one(Input)
+        field.focus()
+        field.value = name
+        await pilot.press("enter")
+        await until(pilot, lambda: "cannot be the name of a file" in screen_text(app))
+        assert app.screen is dialog
+
+
+async def test_a_dialog_gives_its_result_once() -> None:
+    given: list[str | None] = []
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        app.push_screen(Question("", "", (("y", ""),)), given.append)
+        await pilot.pause()
+        at_once(pilot, ["y", "y", "enter"])
+        await pilot.pause()
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        await pilot.pause()
+    assert given == ["y"]
+
+
+async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        text = Static("gone", id="gone")
+        await app.push_screen(HelpScreen())
+        await app.screen.mount(text)
+        await until(pilot, lambda: text.region.area > 0)
+        x, y = text.region.offset
+        with app.batch_update():
+            # No layout comes in between.
+            await text.remove()
+            await app.on_event(events.MouseDown(None, x, y, 0, 0, 1, False, False, False, screen_x=x, screen_y=y))
+        await pilot.press("escape")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+
+
+@pytest.mark.parametrize("key", ["o", "question_mark", "ctrl+s"])
+async def test_no_palette_opens_above_a_dialog(key: str) -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press(key)
+        await until(pilot, lambda: isinstance(app.screen, Dialog) and app.screen.is_ready)
+        await pilot.press("ctrl+p")
+        await pilot.pause()
+        assert len(app.screen_stack) == 2
+
+
+@pytest.mark.parametrize("above", [HelpScreen, Palette])
+async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(above: type[Screen[None]]) -> None:
+    given: list[str | None] = []
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        below = Question("", "", (("y", ""),))
+        app.push_screen(below, given.append)
+        app.push_screen(above())
+        below.dismiss("y")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        await pilot.pause()
+    assert given == ["y"]
+
+
+def _screens() -> Iterator[type[Screen[object]]]:
+    for module in pkgutil.walk_packages(tuisim.app.__path__, "tuisim.app."):
+        for found in vars(importlib.import_module(module.name)).values():
+            if isinstance(found, type) and issubclass(found, Screen) and found.__module__ == module.name:
+                yield found
+
+
+def test_every_screen_closes_once() -> None:
+    assert [screen for screen in _screens() if not issubclass(screen, ClosesOnce)] == []

@@ -1,0 +1,188 @@
+"""Stored runs in the app: opened, looked back at, run anew, also when mat or program are gone."""
+
+from __future__ import annotations
+
+import json
+import re
+from argparse import Namespace
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.widgets import Input, OptionList
+
+from tests.app.app_help import LOGS, notices, program, ready, screen_text, settings, until
+from tests.conftest import Command
+from tests.running import PATIENCE_S
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.runs import RunChooser, matching
+from tuisim.app.snapshot import ENDED
+from tuisim.app.start_options import AppSettings
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.protocol import ScriptedAction, SetNoise
+from tuisim.runs.catalogue import RunInfo
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.packed.compact import compact
+from tuisim.runs.store import RunStore
+
+pytestmark = pytest.mark.usefixtures("home")
+
+
+def stored(text: str = LOGS, **choices: Any) -> str:
+    """Carry a program out and return the run's id."""
+    spec = build_run_spec(replace(Settings(background="Grey_bands", seed=5), **choices))
+    options = RunOptions(actions=(ScriptedAction(100, SetNoise(20, 0)), ScriptedAction(200, SetNoise(0, 0))))
+    run = start_run(program(text), spec, options)
+    assert run.wait(PATIENCE_S)
+    return run.run_id
+
+
+def replaying(run_id: str) -> AppSettings:
+    run = RunStore().load_run(run_id)
+    return AppSettings(spec=run.spec, replay=run, program=program(run.program.text))
+
+
+async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
+    run_id = stored()
+    async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == ENDED and "finished at" in screen_text(app))
+        assert "Colour: " in screen_text(app)
+        assert app.bridge.run_id == run_id
+        assert app.bridge.plan.spec == RunStore().load_run(run_id).spec
+        await pilot.press("g")
+        app.screen.query_one(Input).value = "1.5"
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.snapshot().past)
+        assert app.bridge.snapshot().instant.noise.light == 20
+        assert app.bridge.snapshot().spec.seed == 5
+        app.bridge.timeline.go(50)
+        assert app.bridge.snapshot().instant.noise.light == 0
+        app.bridge.set_speed(0.0)
+        await pilot.press("R", "r")
+        await until(pilot, lambda: app.bridge.run_id != run_id and app.bridge.state == ENDED)
+        again, first = RunStore().load_run(app.bridge.run_id), RunStore().load_run(run_id)
+        assert again.program.text == first.program.text
+        assert again.telemetry.array()[:100].tobytes() == first.telemetry.array()[:100].tobytes()
+
+
+@pytest.mark.slow
+async def test_a_run_is_searched_for_and_chosen() -> None:
+    ids = [stored("print('A: 1')\n"), stored("tank_drive.on_for_seconds(50, 50, 1)\n", background="Lollipop")]
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("h")
+        await until(pilot, lambda: "2 of 2 runs" in screen_text(app))
+        assert re.search(r" samples +│.* Grey_bands finished +0\.\d+ +1 ", screen_text(app), re.DOTALL)
+        await pilot.press(*"grey_b")
+        await until(pilot, lambda: "1 of 2 runs" in screen_text(app))
+        assert isinstance(app.screen, RunChooser)
+        assert app.screen.query_one(OptionList).option_count == 1
+        await pilot.press(*["backspace"] * 6, *"LOLLI", "enter")
+        await until(pilot, lambda: app.bridge.run_id == ids[1])
+        await until(pilot, lambda: app.bridge.mat is not None and app.bridge.mat.name == "Lollipop")
+        await pilot.press("comma")
+        assert app.bridge.snapshot().past
+
+
+async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
+    from PIL import Image
+
+    own = tmp_path / "own.png"
+    Image.new("RGB", (2362, 1143), (0, 200, 0)).save(own)
+    run_id = stored("tank_drive.on_for_seconds(50, 50, 1)\n", background=str(own))
+    own.unlink()
+    folder = RunStore().folder(run_id)
+    async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        # The prepared mat is in the cache still.
+        assert app.bridge.snapshot().colors["left"].green > 150
+        assert app.bridge.program is not None
+        assert app.bridge.program.path == ""
+        await pilot.press("R")
+        await until(pilot, lambda: any("own.png" in notice for notice in notices(app)))
+        assert app.bridge.run_id == run_id
+    for name in json.loads((folder / "run.json").read_text())["field"]["sums"]:
+        Path(name[1]).unlink()
+    async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: any("the mat of the run" in notice for notice in notices(app)))
+        await pilot.press("less_than_sign")
+        assert app.bridge.snapshot().past
+        assert not app.bridge.snapshot().colors
+
+
+def _no_run_file(folder: Path) -> str:
+    (folder / "run.json").write_text("{")
+    return "run.json"
+
+
+def _torn_pack(name: str) -> Callable[[Path], str]:
+    def damage(folder: Path) -> str:
+        compact(folder, RunStore().load_run(folder.name).spec)
+        packed = folder / f"{name}.packed"
+        packed.write_bytes(packed.read_bytes()[:-5])
+        return "the packed recording is damaged"
+
+    return damage
+
+
+@pytest.mark.parametrize(
+    "damage", [_no_run_file, _torn_pack("telemetry.bin"), _torn_pack("output.bin")], ids=["file", "ticks", "output"]
+)
+async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
+    run_id = stored("print('A: 1')\ntank_drive.on_for_seconds(50, 50, 1)\n")
+    said = damage(RunStore().folder(run_id))
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("h")
+        await until(pilot, lambda: "1 of 1 runs" in screen_text(app))
+        await pilot.press("enter")
+        await until(pilot, lambda: any(said in notice for notice in notices(app)))
+        assert not app.bridge.run_id
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--run", "99"], "no run '99'"),
+        (["--run", "1", "prog.py"], "not prog.py"),
+        (["--run", "1", "-b", "Lollipop"], "not background"),
+        (["--run", "1", "--world", "lab.toml"], "not lab.toml"),
+    ],
+    ids=["no such run", "a program too", "a mat too", "a world too"],
+)
+def test_the_command_refuses(tuisim: Command, words: list[str], said: str) -> None:
+    done = tuisim("open", *words)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def info(number: int, **facts: Any) -> RunInfo:
+    base = RunInfo(number, f"id{number}", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, "finished")
+    return replace(base, **facts)
+
+
+@pytest.mark.parametrize(
+    ("search", "numbers"),
+    [("", [3, 2, 1]), ("line", [3, 1]), ("loop error", [2]), ("best", [3]), ("2026-01", [3, 2, 1]), ("none", [])],
+)
+def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None:
+    runs = [info(1), info(2, program="maze.py", end="raised"), info(3, tags="best branch")]
+    assert [run.number for run in matching(runs, search)] == numbers
+
+
+def test_the_namespace_of_the_command_has_the_run() -> None:
+    from tuisim.commands.resolve import prepare_replay
+
+    run_id = stored("print('A: 1')\n")
+    run, prepared = prepare_replay(run_id, [], Namespace(world=None, rays=True))
+    assert (run.id, prepared.settings.rays) == (run_id, True)
+    assert prepared.program is not None
+    assert prepared.program.text == "print('A: 1')\n"

@@ -1,0 +1,242 @@
+"""Going about in time: keys, bar, words, and what the panels show of a former instant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import replace
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.goto import find
+from tuisim.app.panels.time_bar import Moment, bar_cells, mark_cells, words
+from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, snapshot_of
+from tuisim.app.timeline import Timeline
+from tuisim.errors import ConfigError
+from tuisim.runs.recording import SAMPLE
+from tuisim.runs.views import instant_of
+
+pytestmark = pytest.mark.usefixtures("home")
+
+PEN = LOGS.replace("tank_drive.on", "print('off we go')\ntank_drive.on", 1)
+
+
+@asynccontextmanager
+async def a_run(text: str = LOGS, size: tuple[int, int] = (120, 40)) -> AsyncIterator[tuple[Pilot[None], LabApp]]:
+    """A run that is over, in the app."""
+    async with LabApp(settings(text, autorun=True, speed=0.0)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        recording = app.bridge.timeline.recording
+        assert recording is not None
+        await until(pilot, lambda: not recording.rows.take(1) and not app._last_words)
+        yield pilot, app
+
+
+async def test_keys_go_back_and_forward() -> None:
+    async with a_run() as (pilot, app):
+        timeline, newest = app.bridge.timeline, app.bridge.timeline.newest
+        steps = [
+            ("comma", newest - 1), ("comma", newest - 2), ("full_stop", newest - 1), ("less_than_sign", newest - 101),
+            ("greater_than_sign", newest - 1), ("full_stop", None), ("home", 0), ("greater_than_sign", 100),
+            ("end", None), ("less_than_sign", newest - 100), ("escape", None),
+        ]  # fmt: skip
+        for key, tick in steps:
+            await pilot.press(key)
+            assert timeline.at == tick, key
+        await pilot.press("home", "comma")
+        assert "This is the start of the run" in notices(app)
+
+
+async def test_a_former_instant_is_shown_as_it_was() -> None:
+    async with a_run(size=(200, 60)) as (pilot, app):
+        recording, mat = app.bridge.timeline.recording, app.bridge.mat
+        assert recording is not None
+        assert mat is not None
+        await pilot.press("g")
+        app.screen.query_one(Input).value = "2 s"
+        await pilot.press("enter")
+        await until(pilot, lambda: app.bridge.timeline.at == 200)
+        record = recording.telemetry.record(200)
+        then = instant_of(record, recording.spec, recording.spec.world.noise)
+        expected = snapshot_of(
+            then, recording.spec, mat.field, state=ENDED, end="finished", line=record.line, speed=0.0, pen_down=False
+        )
+        shown = app.bridge.snapshot()
+        plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None)
+        assert plain == expected
+        last = recording.telemetry.last()
+        assert last is not None
+        assert shown.now_pose == last.pose
+        await until(pilot, lambda: "past 2.00 s" in screen_text(app))
+        printed = [row.text for row in recording.rows.rows(0) if row.tick <= 200]
+        output = app.desk.output
+        assert output is not None
+        assert [row.text for row in output._past_log._rows] == printed
+        assert len(printed) < len(recording.rows)
+        assert app.desk.chart is not None
+        assert app.desk.chart._state.cursor_s == 2.0
+        await pilot.press("end")
+        await until(pilot, lambda: not output._past_log.display and output._log.display)
+
+
+async def test_the_pen_has_drawn_no_more_than_then() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.bridge.set_pen(True)
+        await until(pilot, lambda: app.bridge.timeline.newest > 300)
+        await pilot.press("comma")
+        await until(pilot, lambda: app.bridge.state == PAUSED)
+        app.bridge.timeline.go(150)
+        app.draw(force=True)
+        world = app.desk.world
+        assert world is not None
+        assert world._view.past_trace is not None
+        recording = app.bridge.timeline.recording
+        assert recording is not None
+        drawn = [piece.xs_mm for piece in world._view.past_trace.pieces(0)]
+        if drawn:
+            ahead = recording.spec.robot.pen.y_mm
+            assert max(float(xs[-1]) for xs in drawn) <= recording.telemetry.record(150).x_mm + abs(ahead)
+        await pilot.press("end", "S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+        assert world._view.past_trace is None
+
+
+async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.timeline.newest > 60)
+        await pilot.press("less_than_sign", "home")
+        await until(pilot, lambda: app.bridge.state == PAUSED)
+        newest = app.bridge.timeline.newest
+        assert app.bridge.timeline.at == 0
+        # Slowly, so that the past is not over before anybody looks.
+        await pilot.press(*["left_square_bracket"] * 3, "space")
+        await until(pilot, lambda: 0 < (app.bridge.timeline.at or 0))
+        await pilot.press("space")
+        at = app.bridge.timeline.at
+        assert at is not None
+        await pilot.press("full_stop")
+        assert (app.bridge.timeline.at, app.bridge.timeline.newest) == (at + 1, newest)
+        await pilot.press("space")
+        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.timeline.newest > newest)
+        assert not app.bridge.in_past
+        await pilot.press("S")
+        await until(pilot, lambda: app.bridge.state == ENDED)
+
+
+async def test_the_bar_is_clicked_and_dragged() -> None:
+    async with a_run() as (pilot, app):
+        world = app.desk.world
+        assert world is not None
+        bar = world.time_bar
+        await until(pilot, lambda: bar.display and bar.region.width > 0)
+        await pilot.mouse_down(bar, offset=(0, 0))
+        await until(pilot, lambda: app.bridge.timeline.at == 0)
+        await pilot.hover(bar, offset=(20, 0))
+        await until(pilot, lambda: (app.bridge.timeline.at or 0) > 0)
+        await pilot.mouse_up(bar, offset=(20, 0))
+        at = app.bridge.timeline.at
+        await pilot.hover(bar, offset=(5, 0))
+        assert app.bridge.timeline.at == at
+        await pilot.mouse_down(bar, offset=(bar.size.width - 2, 0))
+        await until(pilot, lambda: not app.bridge.in_past)
+
+
+async def test_words_that_are_no_place_are_answered() -> None:
+    table = {
+        "": "where to?", "tomorrow": "no place in time", "9999": "has come to", "tick 99999": "has come to",
+        "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "no place in time",
+        "print [": "no regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
+        "line 1": "not met after", "tick -1": "no place in time", "sample Colour < 1.2.3": "is no number",
+    }  # fmt: skip
+    async with a_run() as (_, app):
+        app.bridge.timeline.go(200)
+        for text, answer in table.items():
+            with pytest.raises(ConfigError, match=re.escape(answer)):
+                find(text, app.bridge.timeline)
+
+
+async def test_words_find_their_instants() -> None:
+    async with a_run(PEN) as (_, app):
+        timeline, recording = app.bridge.timeline, app.bridge.timeline.recording
+        assert recording is not None
+        rows = list(recording.rows.rows(0))
+        dark = next(row.tick for row in rows if row.text.startswith("Colour: ") and float(row.text[8:]) < 90)
+        waits = next(tick for tick in range(1, 400) if recording.telemetry.record(tick).line == 9)
+        table = {
+            "3.5": 350, " 3.5 s": 350, "3.5s": 350, "tick 120": 120, "start": 0, "end": timeline.newest,
+            "sample Colour < 90": dark, "print off": rows[1].tick, "line 9": waits, "line 4 back": None,
+            "sample back": None, "sample": rows[0].tick,
+        }  # fmt: skip
+        for text, tick in table.items():
+            timeline.go(0)
+            if tick is None:
+                with pytest.raises(ConfigError, match=re.escape("before 0.00 s")):
+                    find(text, timeline)
+            else:
+                assert find(text, timeline) == tick, text
+        newest = max(row.tick for row in rows)
+        timeline.go(None)
+        # At the end there is nothing after.
+        assert find("sample Colour", timeline) == find("sample", timeline) == newest
+        timeline.go(dark)
+        assert find("sample Colour back", timeline) == max(r.tick for r in rows if r.tick < dark)
+        assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)
+
+
+async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_sample() -> None:
+    async with a_run() as (pilot, app):
+        await pilot.press("g")
+        app.screen.query_one(Input).value = "nowhere"
+        await pilot.press("enter")
+        await until(pilot, lambda: "'nowhere' is no place in time" in screen_text(app))
+        await pilot.press("escape", "home")
+        recording = app.bridge.timeline.recording
+        assert recording is not None
+        ticks = sorted({row.tick for row in recording.rows.rows(0)})
+        await pilot.press("right_parenthesis", "right_parenthesis", "right_parenthesis", "left_parenthesis")
+        assert app.bridge.timeline.at == ticks[1]
+
+
+BAR = Moment(tick=200, newest=400, tick_hz=100, past=True, over=True)
+
+
+@pytest.mark.parametrize(
+    ("width", "text"),
+    [
+        (80, "past 2.00 s of 4.00 s  −2.00 s  end: back to now"),
+        (50, "past 2.00 s of 4.00 s  −2.00 s"),
+        (34, "past 2.00 of 4.00 s"),
+        (20, "2.00 s"),
+    ],
+)
+def test_the_words_fit_beside_the_bar(width: int, text: str) -> None:
+    assert words(BAR, width) == text
+
+
+def test_the_bar_has_cursor_and_marks() -> None:
+    marks = mark_cells(BAR, [(0, SAMPLE), (399, "error"), (400, SAMPLE)], 21)
+    text = "".join(run for run, _ in bar_cells(BAR, marks, 21))
+    assert text == "╵" + "━" * 9 + "▮" + "─" * 9 + "✗"
+    assert [BAR.tick_at(column, 21) for column in (0, 10, 20, 99)] == [0, 200, 400, 400]
+
+
+def test_the_bar_of_a_run_at_work_ends_at_a_round_time() -> None:
+    moment = replace(BAR, past=False, over=False, tick=400)
+    assert moment.end_s == 5.0
+    assert "".join(run for run, _ in bar_cells(moment, {}, 11)) == "━" * 9 + "··"
+
+
+def test_a_timeline_without_a_run_stands_still() -> None:
+    timeline = Timeline()
+    timeline.step(-1)
+    assert (timeline.at, timeline.record(), timeline.marks(), timeline.beat(1.0, 1.0)) == (None, None, [], False)
+    with pytest.raises(ConfigError, match="no run yet"):
+        find("1", timeline)

@@ -1,0 +1,214 @@
+"""The world panel."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from textual import events
+from textual.geometry import Region
+
+from tests.app.panel_help import PanelApp, moment, white_mat
+from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+
+POSE = Pose(1000.0, 500.0, 0.0)
+
+
+def cell_of(world: World, x_mm: float, y_mm: float) -> tuple[int, int]:
+    port = view(world)._port
+    assert port is not None
+    col, row = port.to_px(x_mm, y_mm)
+    return int(col), int(row / 2)
+
+
+def view(world: World) -> WorldView:
+    return world.query_one(WorldView)
+
+
+def colours(world: World) -> int:
+    return len(np.unique(view(world)._cells))
+
+
+@pytest.mark.parametrize("size", [(20, 6), (76, 27), (190, 50)], ids=str)
+async def test_it_shows_mat_and_robot(size: tuple[int, int]) -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=size) as pilot:
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment())
+        await pilot.pause()
+
+        assert view(app.panel)._cells.shape == (size[1], size[0])
+        assert colours(app.panel) > 5
+
+
+async def test_it_is_blank_until_the_mat_is_there() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(40, 12)) as pilot:
+        app.panel.show(moment())
+        await pilot.pause()
+        assert view(app.panel)._cells.size == 0
+
+        app.panel.set_mat(white_mat())
+        assert view(app.panel)._cells.size
+
+
+async def test_a_moment_like_the_last_one_costs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(40, 12)):
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment())
+        painted: list[object] = []
+        monkeypatch.setattr(view(app.panel), "set_picture", painted.append)
+
+        app.panel.show(moment(time_s=9.0))
+        assert not painted
+        app.panel.show(moment(Pose(1010.0, 500.0, 0.0)))
+        assert len(painted) == 1
+
+
+async def test_only_cells_about_the_robot_are_repainted(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(76, 27)):
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment())
+        regions: list[Region] = []
+        monkeypatch.setattr(view(app.panel), "refresh", lambda *changed, **_: regions.extend(changed))
+
+        app.panel.show(moment(Pose(1010.0, 500.0, 0.0)))
+
+    assert 0 < sum(region.area for region in regions) < 50
+
+
+async def test_rays_are_drawn_when_switched_on() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(76, 27)):
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment())
+        before = view(app.panel)._cells.copy()
+
+        app.panel.show_rays = True
+
+        assert (before != view(app.panel)._cells).sum() > 20
+
+
+async def test_the_trace_survives_another_mat_and_can_be_cleared() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(76, 27)):
+        app.panel.extend_trace([200.0, 400.0], [300.0, 300.0])
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment())
+        col, row = cell_of(app.panel, 300, 300)
+        plain = view(app.panel)._cells[row, 2]
+        assert view(app.panel)._cells[row, col] != plain
+
+        app.panel.set_mat(white_mat())
+        assert view(app.panel)._cells[row, col] != plain
+        app.panel.clear_trace()
+        assert view(app.panel)._cells[row, col] == plain
+
+
+async def test_where_the_robot_is_now_is_a_ghost_in_the_past() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(76, 27)):
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment())
+        before = view(app.panel)._cells.copy()
+
+        app.panel.show(moment(now_pose=Pose(300.0, 300.0, 90.0)))
+        assert (before != view(app.panel)._cells).any()
+        app.panel.show(moment())
+        assert (before == view(app.panel)._cells).all()
+
+
+async def test_zoom_goes_round_and_says_so() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(76, 27)):
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment())
+        seen = []
+        for _ in range(3):
+            app.panel.cycle_zoom()
+            seen.append((app.panel.zoom, app.panel.border_title))
+
+    assert seen == [(2, "World 2×"), (4, "World 4×"), (1, "World")]
+
+
+async def dragged(shift: bool, by: tuple[int, int]) -> list[World.PoseDragged]:
+    """Drag the robot by some cells from a point ahead of its middle."""
+    app = PanelApp(World())
+    async with app.run_test(size=(120, 30)) as pilot:
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment(POSE))
+        await pilot.pause()
+        col, row = cell_of(app.panel, POSE.x_mm + 40, POSE.y_mm)
+        start, end = (col, row), (col + by[0], row + by[1])
+        await pilot.mouse_down(view(app.panel), offset=start, shift=shift)
+        await pilot.hover(view(app.panel), offset=end)
+        await pilot.mouse_up(view(app.panel), offset=end, shift=shift)
+        await pilot.pause()
+        return app.heard(World.PoseDragged)
+
+
+async def test_dragging_moves_the_robot() -> None:
+    messages = await dragged(False, (10, -3))
+
+    assert [message.done for message in messages] == [False, True]
+    pose = messages[-1].pose
+    px_mm = FIELD_WIDTH_MM / 120
+    assert pose.x_mm == pytest.approx(POSE.x_mm + 10 * px_mm, abs=1)
+    assert pose.y_mm == pytest.approx(POSE.y_mm + 6 * px_mm, abs=1)
+    assert pose.heading_deg == POSE.heading_deg
+
+
+async def test_dragging_with_shift_turns_the_robot() -> None:
+    messages = await dragged(True, (-2, -5))
+
+    pose = messages[-1].pose
+    assert (pose.x_mm, pose.y_mm) == (POSE.x_mm, POSE.y_mm)
+    assert 45 < pose.heading_deg < 135
+
+
+async def test_the_robot_stays_on_the_field() -> None:
+    messages = await dragged(False, (-52, 12))
+
+    pose = messages[-1].pose
+    assert 0 <= pose.x_mm <= FIELD_WIDTH_MM
+    assert 0 <= pose.y_mm <= FIELD_HEIGHT_MM
+
+
+async def test_pressing_elsewhere_moves_nothing() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(120, 30)) as pilot:
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment(POSE))
+        await pilot.pause()
+        await pilot.mouse_down(view(app.panel), offset=(2, 2))
+        await pilot.hover(view(app.panel), offset=(20, 5))
+        await pilot.mouse_up(view(app.panel), offset=(20, 5))
+
+    assert not app.messages
+
+
+@pytest.mark.parametrize(
+    ("kind", "turn"), [(events.MouseScrollUp, TURN_STEP_DEG), (events.MouseScrollDown, -TURN_STEP_DEG)]
+)
+async def test_the_wheel_turns_the_robot(kind: type[events.MouseEvent], turn: float) -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(120, 30)) as pilot:
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment(POSE))
+        await pilot.pause()
+        target = view(app.panel)
+        for _ in range(2):
+            target.post_message(kind(target, 5, 5, 0, 0, 0, False, False, False))
+        await pilot.pause()
+
+    messages = app.heard(World.PoseDragged)
+    assert [message.pose for message in messages] == [
+        replace(POSE, heading_deg=turn),
+        replace(POSE, heading_deg=2 * turn),
+    ]
+    assert all(message.done for message in messages)

@@ -1,0 +1,109 @@
+"""Charts of awkward logs: whatever the values and names, every format is whole and nothing stands outside of it."""
+
+from __future__ import annotations
+
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from rich.cells import cell_len
+
+from tests.app.analyser.logs import long_log, model_of
+from tuisim.analysis.model import Model
+from tuisim.charts.figure import View, chart_of
+from tuisim.charts.layout import COLORS, Rule, Stroke, laid_out
+from tuisim.charts.png import image_of
+from tuisim.charts.svg import svg_of
+from tuisim.charts.text import text_of
+from tuisim.logs.columns import guess_columns
+from tuisim.logs.log import Log
+
+RAMP = np.arange(50.0)
+COLUMNS: dict[str, dict[str, object]] = {
+    "one sample": {"time": [1.0], "a": [5.0]},
+    "one of many digits": {"time": [1.0], "a": [1e149]},
+    "beyond measure": {"time": RAMP, "a": RAMP * 1e300, "b": RAMP * 1e-300},
+    "no number": {"time": RAMP, "a": RAMP, "b": RAMP * np.nan},
+    "at one time": {"time": RAMP * 0, "a": RAMP},
+    "backwards": {"time": RAMP[::-1], "a": RAMP},
+    "infinite now and then": {"time": RAMP, "a": np.where(RAMP % 7, RAMP, np.inf)},
+    "hostile names": {"time": RAMP, "new\nline": RAMP, "\x1b[31mred": RAMP, "<b>&\u202e": RAMP, "日本語" * 30: RAMP},
+    "two scales": {"time": RAMP, "red": RAMP, "way_mm": RAMP * 1e6, "turn_deg": -RAMP},
+}
+VIEWS = {
+    "one chart": View(),
+    "facets": View(facets=True, hold=True),
+    "points": View(marks=True),
+    "a path": View(against=("time", "time")),
+}
+
+
+def log_of(columns: dict[str, object]) -> Model:
+    table = pa.table(columns)
+    return model_of(Log("title\x1b]0;\n<title>", table, guess_columns(table)))
+
+
+@pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
+@pytest.mark.parametrize("columns", COLUMNS.values(), ids=COLUMNS)
+def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
+    model = log_of(columns)
+    for width, height in ((200, 150), (960, 420)):
+        drawing = laid_out(chart_of(model, view, width, height), width, height)
+        text = svg_of(drawing)
+        assert ElementTree.fromstring(text).attrib["width"] == str(width)
+        assert not re.search(r'="[^"]*(nan|inf)', text)
+        # One pixel for rounding.
+        strokes = [shape.points for shape in drawing.shapes if isinstance(shape, Stroke)]
+        assert all((-1 <= points).all() and (points <= (width + 1, height + 1)).all() for points in strokes)
+    assert image_of(drawing).size == (960, 420)
+    for width, height in ((20, 8), (80, 24)):
+        lines = text_of(chart_of(model, view, 2 * width, 4 * height), width, height).plain.split("\n")
+        assert max(map(cell_len, lines)) <= width
+        assert not re.search(r"[\x00-\x1f\x7f]", "".join(lines))
+
+
+def test_a_chart_is_cut_off_at_its_limits() -> None:
+    model = log_of({"time": [0.0, 10.0], "a": [0.0, 100.0]})
+    model.limits = 2.0, 4.0
+    (line,) = chart_of(model, View(), 800, 400).lines
+    assert (line.xs.tolist(), line.ys.tolist()) == ([2.0, 4.0], [20.0, 40.0])
+
+
+def test_held_values_have_corners() -> None:
+    (line,) = chart_of(log_of({"time": [0.0, 1.0], "a": [3.0, 5.0]}), View(hold=True), 800, 400).lines
+    assert (line.xs.tolist(), line.ys.tolist()) == ([0.0, 1.0, 1.0], [3.0, 3.0, 5.0])
+
+
+@pytest.mark.parametrize("rows", [10, 1_000_000])
+def test_points_that_nobody_could_see_are_left_out(rows: int) -> None:
+    time_s = np.arange(rows) / 1000.0
+    model = log_of({"time": time_s, "a": np.sin(time_s) + 9.0 * (np.arange(rows) == rows // 3)})
+    (line,) = chart_of(model, View(), 800, 400).lines
+    assert len(line.xs) == min(rows, len(line.xs)) <= 1602
+    assert line.ys.max() > 8.0
+
+
+def test_aligned_runs_say_what_they_lie_along() -> None:
+    model = model_of(long_log(runs=2))
+    assert chart_of(model, View(), 800, 400).x_label == "time (s)"
+    model.align("distance")
+    chart = chart_of(model, View(), 800, 400)
+    assert chart.x_label == "distance driven (mm)"
+    assert [line.name for line in chart.lines] == ["Colour #1", "Left #1", "Colour #2", "Left #2"]
+
+
+def test_facets_stand_below_each_other() -> None:
+    drawing = laid_out(chart_of(model_of(long_log()), View(facets=True), 800, 400), 800, 400)
+    first, second = (shape.points[:, 1] for shape in drawing.shapes if isinstance(shape, Stroke))
+    assert first.max() < second.min()
+    assert any(isinstance(shape, Rule) and shape.faint for shape in drawing.shapes)
+
+
+@pytest.mark.parametrize("view", [View(), View(facets=True), View(against=("x_mm", "Colour"))], ids=str)
+def test_only_data_have_colours_for_any_ground(view: View) -> None:
+    text = text_of(chart_of(model_of(long_log()), view, 160, 96), 80, 24, colors=True)
+    styles = {str(span.style) for span in text.spans}
+    assert {f"#{bytes(rgb).hex()}" for rgb in COLORS[: 1 if view.against else 2]} <= styles
+    assert styles <= {"none", "bold", *(f"#{bytes(rgb).hex()}" for rgb in COLORS)}

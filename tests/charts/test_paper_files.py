@@ -1,0 +1,77 @@
+"""Files of charts and reports: every format, whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.app.analyser.logs import long_log, model_of
+from tuisim.analysis.source import LogRequest, OpenedLog
+from tuisim.charts.figure import View
+from tuisim.charts.files import CHART_FORMATS, save_chart
+from tuisim.errors import ExportError, LogError
+from tuisim.logs.log import Log
+from tuisim.report.report import default_name, report_of, write_report
+
+each_format = pytest.mark.parametrize("suffix", CHART_FORMATS)
+
+
+@each_format
+@pytest.mark.parametrize("facets", [False, True], ids=["one", "facets"])
+def test_every_format_has_a_size_of_its_own(tmp_path: Path, suffix: str, facets: bool) -> None:
+    kind = CHART_FORMATS[suffix]
+    assert all(low <= side <= high for low, side, high in zip(kind.least, kind.size, kind.most, strict=True))
+    written = []
+    for name, size in (("own", None), ("least", kind.least), ("least_again", kind.least)):
+        target = tmp_path / f"{name}{suffix.upper()}"
+        save_chart(model_of(long_log()), View(facets=facets), target, size)
+        written.append(target.read_bytes())
+    assert len(written[0]) > len(written[1]) > 50
+    assert written[1] == written[2]
+
+
+def full(_: int) -> None:
+    raise OSError(28, "No space left on device")
+
+
+@each_format
+def test_a_failed_chart_leaves_what_was_there(tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / f"x{suffix}"
+    target.write_text("old")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(ExportError, match=f"cannot write .*x{suffix}: No space left on device"):
+        save_chart(model_of(long_log()), View(), target)
+    assert (target.read_text(), list(tmp_path.iterdir())) == ("old", [target])
+
+
+def test_a_failed_report_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "x.html"
+    target.write_text("old")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(ExportError, match=r"cannot write .*x\.html: No space left on device"):
+        write_report(OpenedLog(LogRequest(), long_log()), target)
+    assert (target.read_text(), list(tmp_path.iterdir())) == ("old", [target])
+
+
+@pytest.mark.parametrize(
+    ("file", "name"),
+    [("a/greys.csv", "greys-report.html"), ("-", "log-report.html"), (".csv", "csv-report.html")],
+)
+def test_a_report_is_called_after_its_log(file: str, name: str) -> None:
+    assert default_name(OpenedLog(LogRequest(file=file), long_log())) == name
+
+
+def test_what_an_export_says_of_its_runs_may_be_anything() -> None:
+    log = long_log()
+    odd = {"runs": [{"world": "<none>", "seed": {"x": 1}, "program": {"name": "<p>", "sha256": 3}}, 7, None]}
+    page = report_of(OpenedLog(LogRequest(), replace(log, metadata=odd)))
+    assert "<td>&lt;p&gt;</td>" in page and "<p>" not in page.split("<h2>Facts</h2>")[1].split("</section>")[0]
+
+
+def test_nothing_is_nothing_to_report_on() -> None:
+    empty = Log("test", long_log().table.slice(0, 0), long_log().layout)
+    with pytest.raises(LogError, match="no rows"):
+        report_of(OpenedLog(LogRequest(), empty))

@@ -1,0 +1,248 @@
+"""What a program is started with besides its text: arguments, a folder, and modules of its own."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from tests.app.app_help import ready, until
+from tests.conftest import Command
+from tests.running import until as until_so
+from tuisim.api import simulate
+from tuisim.app.actions.branch import Branch
+from tuisim.app.app import LabApp
+from tuisim.app.setup.fields import find
+from tuisim.app.start_options import AppSettings
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings, settings_of
+from tuisim.config.world_writer import save_world
+from tuisim.config.worlds import load_world
+from tuisim.core.profile import PROFILES
+from tuisim.runs.handle import Program, RunHandle
+from tuisim.runs.recording import Recording
+from tuisim.runs.store import RunStore
+
+SHOWS = "# %%sim_magic\nimport sys\nprint(sys.argv)\n"
+
+
+def until_line(handle: RunHandle) -> None:
+    """Wait until a program has printed a second line."""
+    until_so(handle, lambda: len(handle.output.all_rows()) > 1)
+
+
+pytestmark = pytest.mark.usefixtures("home")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a program that shows its arguments, and a world for it that holds some."""
+    (tmp_path / "p.py").write_text(SHOWS)
+    (tmp_path / "lab.toml").write_text('program = "p.py"\narguments = ["from", "a world"]\n')
+    (tmp_path / "none.toml").write_text("seed = 1\n")
+    (tmp_path / "cells.ipynb").write_text("{}")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "arguments"),
+    [
+        ("p.py", []),
+        ("p.py --", []),
+        ("p.py -- A B", ["A", "B"]),
+        ("p.py --seed 3 -- --seed 4 -- -x", ["--seed", "4", "--", "-x"]),
+        ("lab.toml", ["from", "a world"]),
+        ("lab.toml -- A", ["A"]),
+        ("lab.toml --", []),
+        ("p.py --world lab.toml", ["from", "a world"]),
+    ],
+)
+def test_the_program_finds_its_arguments(folder: Path, here: Command, words: str, arguments: list[str]) -> None:
+    done = here("run", *words.split())
+    (path, *found) = eval(done.stdout)
+    assert (Path(path).name, found, done.returncode) == ("p.py", arguments, 0)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("run p.py p.py -- A", "tuisim: --: arguments go to one program (got 2)"),
+        ("p.py p.py -- A", "tuisim: --: arguments go to one program (got 2)"),
+        ("run -- A", "tuisim: --: arguments need a program (tuisim PROGRAM -- ARGUMENTS)"),
+        ("-- A", "tuisim: --: arguments need a program (tuisim PROGRAM -- ARGUMENTS)"),
+        ("run cells.ipynb -- A", "tuisim: --: cells.ipynb is a notebook, whose cells take no arguments"),
+        ("open --run last -- A", "tuisim: --: a stored run has arguments of its own (leave them out)"),
+        ("none.toml -- A", "tuisim: --: none.toml names no program that could take arguments"),
+    ],
+)
+def test_arguments_of_nobody_are_refused(folder: Path, here: Command, words: str, message: str) -> None:
+    done = here(*words.split())
+    assert (done.returncode, done.stderr.strip(), done.stdout) == (2, message, "")
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ('"A"', "arguments: must be a list, got 'A'"),
+        ("[1]", 'arguments[1]: must be text, got 1 (in quotes, such as "5")'),
+        ('["a", "b\\u0000"]', "arguments[2]: must be text without null characters"),
+    ],
+)
+def test_wrong_arguments_in_a_world_file(folder: Path, here: Command, value: str, message: str) -> None:
+    (folder / "lab.toml").write_text(f'program = "p.py"\narguments = {value}\n')
+    done = here("run", "lab.toml")
+    assert (done.returncode, done.stderr.strip()) == (2, f"tuisim: lab.toml: {message}")
+
+
+def test_a_world_is_saved_with_the_arguments(folder: Path) -> None:
+    save_world(build_run_spec(Settings()), folder / "new.toml", "log_greys", ("A", "B 'C"))
+    assert settings_of(load_world(folder / "new.toml").settings).arguments == ("A", "B 'C")
+
+
+def test_arguments_are_shown_with_the_run(folder: Path, here: Command) -> None:
+    assert json.loads(here("run", "p.py", "--json", "--", "A", "B C").stdout)["arguments"] == ["A", "B C"]
+    assert "arguments: A 'B C'" in here("runs", "show", "last").stdout.splitlines()
+    assert json.loads(here("runs", "show", "last", "--json").stdout)["arguments"] == ["A", "B C"]
+    here("run", "p.py", "--", "A")
+    assert "program arguments" in here("log", "diff", "1", "2").stdout
+
+
+def test_a_script_gives_arguments(folder: Path) -> None:
+    assert eval(simulate(folder / "p.py", arguments=["A", "B"]).output)[1:] == ["A", "B"]
+
+
+# Folder and modules
+
+USES = """
+import os, sys, traceback
+import helper, tools.deep
+from on_path import WHO
+try:
+    import absent
+except ImportError as error:
+    print(error)
+print(sys.argv[1:], helper.NAME, helper.today(), tools.deep.DEPTH, WHO)
+try:
+    helper.fail()
+except ValueError:
+    print(traceback.format_exc())
+import importlib
+with open(helper.__file__, 'a') as file:
+    file.write('NAME = 2')
+print(importlib.reload(helper).NAME)
+helper.fail()
+"""
+HELPER = "from datetime import date\nNAME = 1\ndef today(): return date.today()\ndef fail(): raise ValueError('ä')\n"
+
+
+@pytest.fixture
+def stored(folder: Path, here: Command, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A run with modules beside it, in a folder and on the user's PYTHONPATH; returns their folder."""
+    made = {
+        "mine/uses.py": USES,
+        "mine/helper.py": HELPER,
+        "mine/tools/deep.py": "DEPTH = 3\n",
+        "elsewhere/on_path.py": "import datetime\nWHO = datetime.datetime.now().year\n",
+    }
+    for name, text in made.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    monkeypatch.setenv("PYTHONPATH", "elsewhere")
+    done = here("run", "mine/uses.py", "--", "A")
+    assert done.stdout.splitlines()[:2] == ["No module named 'absent'", "['A'] 1 2020-01-01 3 2020"]
+    assert done.stderr.count("helper.py\", line 4, in fail\n    def fail(): raise ValueError('ä')") == 1
+    monkeypatch.delenv("PYTHONPATH")
+    return folder
+
+
+def _change(folder: Path) -> None:
+    (folder / "mine/helper.py").write_text("NAME = 'other'\n" * 9)
+    (folder / "mine/tools/deep.py").write_text("DEPTH = 4\n")
+    (folder / "mine/absent.py").touch()
+
+
+def _remove(folder: Path) -> None:
+    for name in ("mine", "elsewhere"):
+        shutil.rmtree(folder / name)
+    # The program itself writes there.
+    (folder / "mine").mkdir()
+
+
+@pytest.mark.parametrize("change", [_change, _remove])
+def test_a_run_is_repeated_with_the_modules_that_it_had(
+    stored: Path, here: Command, change: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert callable(change)
+    change(stored)
+    monkeypatch.chdir(stored.parent)
+    done = here("runs", "rerun", "last")
+    assert (done.stdout, done.returncode) == ("equal to the last bit: recording, output, set-up\n", 0)
+
+
+def test_a_branch_has_the_arguments_and_modules_of_its_run(stored: Path) -> None:
+    _change(stored)
+    run = RunStore().load_run("last")
+    edited = Program("uses.py", "# edited\n" + USES, path=run.program.path)
+    branch = Branch(Recording(run), 0, edited, None, goes_on=False)
+    with closing(branch.start(0.0)) as handle:
+        until_line(handle)
+        assert [row.text for row in handle.output.all_rows()][1] == "['A'] 1 2020-01-01 3 2020"
+    assert (handle.program.text[:8], handle.program.modules_from) == ("# edited", run.folder)
+
+
+def test_what_is_stepped_through_is_the_program_as_it_was(stored: Path) -> None:
+    run = RunStore().load_run("last")
+    program = Recording(run).program
+    assert (program.arguments, program.python_path) == (("A",), (str(stored / "elsewhere"),))
+    assert (program.working_directory, program.modules_from) == (str(stored), run.folder)
+
+
+def test_a_run_of_before_has_no_arguments(folder: Path, here: Command) -> None:
+    here("run", "p.py", "--", "A")
+    file = RunStore().load_run("last").folder / "run.json"
+    data = json.loads(file.read_text())
+    for key in ("arguments", "python_path", "working_directory"):
+        del data["program"][key]
+    file.write_text(json.dumps(data))
+    assert json.loads(here("runs", "show", "last", "--json").stdout)["arguments"] == []
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_on_the_brick_a_program_starts_in_its_own_folder(folder: Path, here: Command, profile: str) -> None:
+    (folder / "own").mkdir()
+    (folder / "own/cfg.json").write_text("found")
+    reads = "# %%sim_magic\nimport os\nprint(os.path.exists('cfg.json'), os.path.exists(__file__))\n"
+    (folder / "own/reads.py").write_text(reads)
+    assert here("run", "own/reads.py", "--profile", profile).stdout == f"{profile == 'ev3'} True\n"
+
+
+# The app
+
+
+def shows(folder: Path, *arguments: str) -> AppSettings:
+    """The app with the program that shows its arguments."""
+    path = str(folder / "p.py")
+    settings = Settings(arguments=arguments, speed=0.0)
+    return AppSettings(build_run_spec(settings), settings, program=Program("p.py", SHOWS, path=path), speed=0.0)
+
+
+async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
+    async with LabApp(shows(folder, "A", "B C")).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        edit = find(app.bridge.plan, "arguments")
+        assert edit is not None
+        assert edit.read(app.bridge.plan) == "A 'B C'"
+        assert app.loading.attempt(lambda plan: edit.write(plan, "X 'Y Z'"))
+        await pilot.press("R")
+        await until(pilot, lambda: app.bridge.run is not None and app.bridge.run.ended is not None)
+        run = RunStore().load_run("last")
+        assert run.program.arguments == ("X", "Y Z")
+        assert app.bridge.timeline.recording is not None
+        assert app.bridge.timeline.recording.program.arguments == ("X", "Y Z")
+        assert not app.loading.attempt(lambda plan: edit.write(plan, "'open"))
+        (folder / "q.py").write_text(SHOWS)
+        app.loading.open_file(str(folder / "q.py"))
+        assert app.bridge.plan.settings.arguments == ()

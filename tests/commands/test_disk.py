@@ -1,0 +1,229 @@
+"""Disks that are full, folders that go, and ctrl-C while files are written: what was logged is not lost."""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import os
+import resource
+import shutil
+import signal
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+from tests.running import Start, over, until
+from tuisim.commands import run as run_command
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.core.state import TICK_RECORD
+from tuisim.errors import ExportError, LogError
+from tuisim.logs.export import export_samples, read_log
+from tuisim.runs import run_folder
+from tuisim.runs import store as store_module
+from tuisim.runs.handle import Program, RunOptions, field_files, start_run
+from tuisim.runs.packed import packer
+from tuisim.runs.packed.compact import PACKED_SUFFIX
+from tuisim.runs.packed.packer import LOCK_FILE
+from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE, OutputWriter, TelemetryWriter
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+from tuisim.runs.views import TelemetryView
+
+ENDLESS = """
+import time
+n = 0
+while True:
+    time.sleep(0.5)
+    n += 1
+    print("n:", n)
+"""
+SPEC = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
+
+
+@pytest.fixture
+def endless(tmp_path: Path) -> Path:
+    """A program that prints two samples a second for ever."""
+    path = tmp_path / "endless.py"
+    path.write_text(ENDLESS)
+    return path
+
+
+@pytest.fixture
+def short(tmp_path: Path) -> Path:
+    """A program that prints three samples."""
+    path = tmp_path / "short.py"
+    path.write_text("for n in range(3):\n    print('n:', n)\n")
+    return path
+
+
+@contextmanager
+def files_of_at_most(size: int) -> Iterator[None]:
+    """Let this process and those that it starts write no larger files: the end of a disk, without one."""
+    # What the runs need of the mats is larger.
+    for mat in ("Empty_Map", "Grey_bands"):
+        field_files(replace(SPEC, world=WorldSpec(background=mat)))
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+@pytest.mark.slow
+def test_run_that_fills_the_disk_stops_and_keeps_its_rows(endless: Path, tuisim: Command, tmp_path: Path) -> None:
+    with files_of_at_most(TELEMETRY_CHUNK + 300_000):
+        done = tuisim("run", endless, "--timeout", "1e5", "--export", "a.csv")
+    assert (done.returncode, done.stderr.count("\n")) == (3, 1), done.stderr
+    assert "disk full: the recording cannot grow" in done.stderr
+    printed = [float(line.removeprefix("n: ")) for line in done.stdout.splitlines()]
+    # The file did not have room for the double, but for what the limit leaves.
+    assert len(printed) > 1.2 * TELEMETRY_CHUNK / TICK_RECORD.size / 50
+    assert read_log(tmp_path / "a.csv")["value"].tolist() == printed
+    assert RunStore().find("last").end == "disk_full"
+
+
+def test_program_cannot_swallow_the_end_of_the_disk(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "import time\nwhile True:\n    try:\n        print('x' * 5000)\n    except Exception:\n        pass\n"
+    with files_of_at_most(TELEMETRY_CHUNK + 5000):
+        handle = start(text, time_limit_s=0.0)
+    assert over(handle).ended.end == "disk_full"
+    assert {len(row.text) for row in handle.output.all_rows()} == {5000}
+
+
+def test_run_without_room_to_begin_leaves_nothing_reserved(start: Start) -> None:
+    with files_of_at_most(TELEMETRY_CHUNK):
+        done = over(start("print(1)"))
+    assert (done.ended.end, done.ended.tick) == ("disk_full", 0)
+    assert not [name for name in (TELEMETRY_FILE, OUTPUT_FILE) if (done.run.folder / name).exists()]
+
+
+class _Full(Exception):
+    pass
+
+
+def _say_full(_: OSError) -> Exception:
+    return _Full()
+
+
+def test_writers_ask_for_less_and_lose_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    real, free = os.posix_fallocate, 1_500_000
+
+    def reserve(fd: int, start: int, size: int) -> None:
+        if start + size > free:
+            raise OSError(errno.ENOSPC, "full")
+        real(fd, start, size)
+
+    monkeypatch.setattr(os, "posix_fallocate", reserve)
+    writer = TelemetryWriter(tmp_path)
+    writer.full = _say_full
+    while True:
+        try:
+            room = writer.room(1)
+        except _Full:
+            break
+        at = 64 + 64 * writer.count
+        room[at : at + 4] = writer.count.to_bytes(4, "little")
+        writer.publish(writer.count + 1)
+    writer.close()
+    assert writer.count == (free - 64) // 64
+    assert TelemetryView(tmp_path).array()["tick"].tolist() == list(range(writer.count))
+
+
+def test_room_is_reserved_where_there_is_no_call_for_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "posix_fallocate")
+    writer = OutputWriter(tmp_path)
+    found = (tmp_path / OUTPUT_FILE).stat()
+    assert 512 * found.st_blocks >= found.st_size > 1 << 16
+    writer.close()
+
+
+def test_end_that_cannot_be_stored_costs_no_row(
+    short: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = run_folder.write_run_file
+
+    def fail(folder: Path, data: dict[str, object]) -> None:
+        if data["end"] is not None:
+            raise LogError("cannot write: No space left on device", file="run.json")
+        write(folder, data)
+
+    monkeypatch.setattr(store_module, "write_run_file", fail)
+    done = here("run", short, "--export", "a.csv")
+    assert (done.returncode, done.stdout) == (2, "n: 0\nn: 1\nn: 2\n")
+    assert "short.py: finished: its end cannot be stored: run.json: cannot write: No space" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert len(read_log(tmp_path / "a.csv")) == 3
+
+
+def test_export_that_fails_does_not_hinder_the_others(
+    short: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def export(runs: Sequence[StoredRun], target: str) -> None:
+        if target in ("a.csv", "b.csv"):
+            raise ExportError(f"cannot write {target}: No space left on device")
+        export_samples(runs, target)
+
+    monkeypatch.setattr(run_command, "export_samples", export)
+    done = here("run", short, "--export", "a.csv", "--export", "b.csv", "--export", "c.csv")
+    assert done.returncode == 2
+    assert [line.partition(":")[2] for line in done.stderr.splitlines()[1:]] == [
+        f" cannot write {name}: No space left on device" for name in ("b.csv", "a.csv")
+    ]
+    assert len(read_log(tmp_path / "c.csv")) == 3
+
+
+def test_folder_that_is_deleted_in_mid_run_is_told_in_one_line(endless: Path, home: Path, here: Command) -> None:
+    def delete() -> None:
+        give_up = time.monotonic() + 20
+        while not list((home / "runs").glob(f"*/{OUTPUT_FILE}")) and time.monotonic() < give_up:
+            time.sleep(0.01)
+        shutil.rmtree(home / "runs", ignore_errors=True)
+
+    field_files(SPEC)
+    deleting = threading.Thread(target=delete)
+    deleting.start()
+    done = here("run", endless, "--speed", "1", "--export", "a.csv")
+    deleting.join()
+    assert done.returncode == 2
+    assert done.stderr == "tuisim: endless.py: nothing of run 1 is kept: its folder was deleted while it ran\n"
+    assert not list(home.glob("runs/*"))
+    assert RunStore().runs() == []
+
+
+@pytest.mark.parametrize(("presses", "rows"), [(1, 3), (2, None)], ids=["once", "twice"])
+def test_ctrl_c_while_the_export_is_written(
+    short: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, presses: int, rows: int | None
+) -> None:
+    def export(runs: Sequence[StoredRun], target: str) -> None:
+        for _ in range(presses):
+            os.kill(os.getpid(), signal.SIGINT)
+        export_samples(runs, target)
+
+    monkeypatch.setattr(run_command, "export_samples", export)
+    assert here("run", short, "--export", "a.csv").returncode == 130
+    written = tmp_path / "a.csv"
+    assert (len(read_log(written)) if written.exists() else None) == rows
+
+
+def test_answer_does_not_wait_for_the_packing(home: Path) -> None:
+    home.mkdir()
+    with open(home / LOCK_FILE, "wb") as lock:
+        # As long as another one packs, this run's recording is not.
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        handle = start_run(Program("p.py", ENDLESS), SPEC, RunOptions(time_limit_s=0.0))
+        until(handle, lambda: handle.telemetry.count > 7000)
+        handle.stop()
+        assert over(handle).ended.end == "stopped"
+        assert handle.stored().state == "stopped"
+        assert (handle.folder / TELEMETRY_FILE).exists()
+    for waiting in packer.AT_WORK:
+        waiting.join()
+    assert (handle.folder / (TELEMETRY_FILE + PACKED_SUFFIX)).exists()

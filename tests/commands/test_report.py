@@ -1,0 +1,219 @@
+"""`tuisim log report`: one page that holds everything, of runs and of files."""
+
+from __future__ import annotations
+
+import base64
+import io
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from html.parser import HTMLParser
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+from PIL import Image
+
+from tests.conftest import Command
+from tuisim.cli import run_command
+from tuisim.logs.annotations import Note, notes_of_file, notes_of_run, write_notes
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+VOID = {"meta", "img", "br", "link", "input"}
+PROGRAM = """# %%sim_magic_preloaded -b Grey_bands
+# </script><script>alert(1)</script> &amp; "ünï" \x0c \u2028 日本
+import time
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+while colorLeft.reflected_light_intensity_pc > 5:
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+    print('Way_mm: ' + str(tank_drive.left_motor.position))
+    time.sleep(0.1)
+tank_drive.off()
+print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+"""
+
+
+class Page(HTMLParser):
+    """What stands in a page, as a browser would read it; every tag must be closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str]] = []
+        self.words: list[str] = []
+        self.section: dict[str, list[str]] = {}
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += [(name, value or "") for name, value in attrs]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] == "h2":
+            self.section[data] = []
+        elif self.section and data.strip():
+            next(reversed(self.section.values())).append(data)
+        if data.strip() and self.open[-1:] != ["style"]:
+            self.words.append(data)
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A run and the page about it."""
+
+    run: StoredRun
+    page: Page
+
+
+def page_of(path: Path) -> Page:
+    return Page(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory: pytest.TempPathFactory) -> Driven:
+    """A run whose program is hostile, with a note, and its page."""
+    folder = tmp_path_factory.mktemp("driven")
+    program, target = folder / "greys.py", folder / "page.html"
+    program.write_text(PROGRAM, encoding="utf-8")
+    with redirect_stdout(io.StringIO()):
+        assert run_command(["run", str(program)]) == 0
+        run = RunStore().load_run("last")
+        write_notes(notes_of_run(run.folder), [Note("the <i>first</i> white", 0.5, 1.25, "Colour")])
+        assert run_command(["log", "report", run.id, "--out", str(target)]) == 0
+    return Driven(run, page_of(target))
+
+
+def test_a_run_is_told_whole(driven: Driven) -> None:
+    facts, run = driven.page.section["Facts"], driven.run
+    told = dict(zip(facts[::2], facts[1::2], strict=True))
+    assert (told["mat"], told["profile"], told["seed"]) == ("Grey_bands", "robolab", "0")
+    assert (told["SHA-256"], told["end"], told["noise"]) == (run.program.sha256, "finished", "light 0, motor 0")
+    assert run.end is not None
+    assert told["simulated time"] == f"{run.end.time_ns / 1e9:.3f} s, tick {run.end.tick}"
+    assert list(driven.page.section)[:7] == [
+        *("Facts", "World", "Chart", "Bands", "Statistics", "Notes", "Program greys.py"),
+    ]
+    assert any("5 levels: 100.00 white (4x), 86.27 pale grey, 82.75 light grey, 50.20 grey" in text
+               for text in driven.page.section["Bands"])  # fmt: skip
+    assert driven.page.section["Statistics"].count("Colour") == 1
+    assert driven.page.section["Notes"][-3:] == ["0.50 to 1.25", "Colour", "the <i>first</i> white"]
+    assert {"Colour", "Way_mm (mm)", "time (s)", "86.27"} <= set(driven.page.section["Chart"])
+
+
+def test_the_program_has_its_line_numbers(driven: Driven) -> None:
+    cells = driven.page.section["Program greys.py"]
+    lines = PROGRAM.replace("\x0c", "\ufffd").split("\n")
+    numbered = dict(zip(cells[::2], cells[1::2], strict=False))
+    assert [numbered[str(at)] for at in range(1, 11)] == lines[:10]
+
+
+def test_a_page_needs_nothing_from_elsewhere(driven: Driven) -> None:
+    assert not {"script", "link", "iframe", "object", "i", "b"} & set(driven.page.tags)
+    for name, value in driven.page.attributes:
+        assert not name.startswith("on")
+        assert name not in ("href", "srcset") and (name != "src" or value.startswith("data:image/png;base64,"))
+
+
+def test_the_world_shows_the_way(driven: Driven) -> None:
+    (source,) = (value for name, value in driven.page.attributes if name == "src")
+    with Image.open(io.BytesIO(base64.b64decode(source.partition(",")[2]))) as picture:
+        colors = {color: count for count, color in picture.convert("RGB").getcolors(1 << 20) or ()}
+    # About 1.3 m at 3 mm a pixel, two pixels wide.
+    assert colors[(230, 90, 0)] > 500
+
+
+def test_several_runs_stand_side_by_side(here: Command, tmp_path: Path, driven: Driven) -> None:
+    assert here("log", "report", driven.run.id, driven.run.id, "--out", "two.html").returncode == 0
+    page = page_of(tmp_path / "two.html")
+    facts = page.section["Facts"]
+    assert facts[facts.index("seed") + 1 :][:2] == ["0", "0"]
+    assert page.tags.count("img") == 2
+    assert sum(name.startswith("Program") for name in page.section) == 1
+    assert {"Colour #1", "Colour #2"} <= set(page.section["Statistics"])
+
+
+def test_a_run_without_samples_shows_its_telemetry(here: Command, home: Path, tmp_path: Path) -> None:
+    (tmp_path / "quiet.py").write_text("tank_drive.on_for_rotations(20, 20, 1)\n1/0\n")
+    here("run", "quiet.py", "--preload", "preloaded")
+    here("log", "report", "last", "--out", "quiet.HTML")
+    page = page_of(tmp_path / "quiet.HTML")
+    assert any("printed no samples" in text for text in page.words)
+    assert "left_red" in page.section["Chart"]
+    assert any(text.endswith("ZeroDivisionError: division by zero") for text in page.section["Facts"])
+
+
+def test_a_mat_that_is_gone_costs_only_its_picture(here: Command, home: Path, tmp_path: Path, driven: Driven) -> None:
+    folder = home / "runs" / driven.run.id
+    copytree(driven.run.folder, folder)
+    path = folder / "run.json"
+    path.write_text(path.read_text().replace('"Grey_bands"', '"Gone"').replace(".rgb", ".gone"))
+    assert here("log", "report", driven.run.id).returncode == 0
+    page = page_of(tmp_path / "greys-report.html")
+    assert page.section["World"][0].startswith("No picture: ")
+    assert "Bands" in page.section
+
+
+def test_the_page_is_called_after_the_program(here: Command, tmp_path: Path, driven: Driven) -> None:
+    done = here("log", "report", driven.run.id)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "greys-report.html\n", "")
+    assert [path.name for path in tmp_path.iterdir()] == ["greys-report.html"]
+
+
+def test_a_file_is_told_without_program_and_world(here: Command, home: Path, tmp_path: Path) -> None:
+    log = tmp_path / "some.csv"
+    log.write_text("time,<b>\n" + "".join(f"{at},{50 * (at // 20)}\n" for at in range(40)) + "40,oops\n")
+    write_notes(notes_of_file(log), [Note("here", 3.0, 3.0)])
+    assert here("log", "report", "some.csv").stdout == "some-report.html\n"
+    page = page_of(tmp_path / "some-report.html")
+    assert list(page.section) == ["Facts", "Chart", "Bands", "Statistics", "Notes"]
+    assert page.section["Facts"][:4] == ["file", "some.csv", "rows", "41, and 1 that could not be read"]
+    assert "<b>" in page.section["Chart"]
+    assert "here" in page.section["Notes"]
+
+
+def test_an_export_tells_of_its_runs(here: Command, tmp_path: Path, driven: Driven) -> None:
+    here("runs", "export", driven.run.id, "x.parquet")
+    here("log", "report", "x.parquet", "--variable", "Colour")
+    facts = page_of(tmp_path / "x-report.html").section["Facts"]
+    assert facts[facts.index("SHA-256") + 1] == driven.run.program.sha256
+    assert facts[facts.index("mat") + 1] == "Grey_bands"
+
+
+BAD = {
+    "no log": ((), "which log?"),
+    "no such run": (("999",), "no run"),
+    "no such file": (("x.csv",), "no such file"),
+    "two files": (("a.csv", "b.csv"), "takes one file, or runs"),
+    "no such format": (("{log}", "--out", "x.pdf"), "a report ends in .html"),
+    "no such folder": (("{log}", "--out", "gone/x.html"), "there is no folder gone"),
+    "no such variable": (("{log}", "--variable", "up"), "no variable 'up'"),
+    "no numbers": (("{words}",), "no column of numbers"),
+    "telemetry of two": (("1", "2", "--telemetry"), "takes one run"),
+    "columns of a run": (("1", "--time", "x"), "are for files"),
+    "as JSON": (("{log}", "--json"), "does not take --json"),
+    "an option of another": (("{log}", "--facets"), "does not take --facets"),
+}
+
+
+@pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
+def test_bad_input(here: Command, home: Path, tmp_path: Path, words: tuple[str, ...], expected: str) -> None:
+    log, no_numbers = tmp_path / "log.csv", tmp_path / "words.csv"
+    log.write_text("time,a\n0,1\n1,2\n")
+    no_numbers.write_text("who,what\nme,this\nyou,that\n")
+    done = here("log", "report", *(word.format(log=log, words=no_numbers) for word in words))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert expected in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert not list(tmp_path.glob("*report*"))

@@ -1,0 +1,165 @@
+"""`tuisim runs`: sizes, age, links, and outputs that are too long to be read first."""
+
+from __future__ import annotations
+
+import json
+import re
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+from tests.runs.run_recorder import PROGRAM, Recorder
+from tuisim.commands import runs as runs_command
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.simulation import Simulation
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.runs import store as store_module
+from tuisim.runs.catalogue import CATALOGUE_FILE
+from tuisim.runs.records import TELEMETRY_FILE, OutputRow, OutputWriter, TelemetryWriter
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+from tuisim.runs.views import OutputView
+
+Make = Callable[..., StoredRun]
+"""The fixture `make`."""
+
+
+@pytest.fixture
+def make(home: Path) -> Make:
+    """`make(*lines)`: store a finished run that printed these lines."""
+
+    def record(*lines: str) -> StoredRun:
+        store, spec = RunStore(), RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
+        run = store.new_run(PROGRAM, spec)
+        telemetry = TelemetryWriter(run.folder)
+        recorder = Recorder(store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry))
+        for line in lines:
+            recorder.drive(100, 100, 1)
+            recorder.print(line)
+        return recorder.end()
+
+    return record
+
+
+def test_list_shows_sizes(make: Make, here: Command) -> None:
+    run = make("a: 1")
+    assert re.search(r"\d+\.\d kB", here("runs").stdout.splitlines()[1])
+    (listed,) = json.loads(here("runs", "--json").stdout)
+    assert listed["bytes"] == sum(path.stat().st_size for path in run.folder.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("count", "shown"), [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")]
+)
+def test_size(count: int, shown: str) -> None:
+    assert runs_command.size(count) == shown
+
+
+AGES = {
+    "none so old": ("9w", [1, 2, 3], "0 runs removed, 0.0 kB"),
+    "one": ("3w", [2, 3], "1 run removed"),
+    "days": ("10d", [3], "2 runs removed"),
+    "hours": ("0.5h", [], "3 runs removed"),
+}
+
+
+@pytest.mark.parametrize(("age", "left", "said"), AGES.values(), ids=AGES)
+def test_runs_of_an_age_are_removed(make: Make, here: Command, age: str, left: list[int], said: str) -> None:
+    home = make().folder.parent.parent
+    make(), make()
+    with closing(sqlite3.connect(home / CATALOGUE_FILE)) as connection, connection:
+        for number, days in ((1, 30), (2, 14), (3, 1)):
+            made = datetime.now(UTC) - timedelta(days=days)
+            connection.execute("UPDATE runs SET created = ? WHERE number = ?", (made.isoformat(), number))
+    done = here("runs", "rm", "--older-than", age)
+    assert said in done.stdout
+    assert [run.number for run in RunStore().runs()] == left
+
+
+BAD_AGES = {
+    "no age": (("rm", "--older-than", "soon"), "'soon'"),
+    "no unit": (("rm", "--older-than", "30"), "12h, 30d or 8w"),
+    "with a run": (("rm", "last", "--older-than", "30d"), "takes no run"),
+    "not for rm": (("list", "--older-than", "30d"), "belongs to rm"),
+}
+
+
+@pytest.mark.parametrize(("words", "said"), BAD_AGES.values(), ids=BAD_AGES)
+def test_bad_age(make: Make, here: Command, words: tuple[str, ...], said: str) -> None:
+    make()
+    done = here("runs", *words)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert len(RunStore().runs()) == 1
+
+
+def test_a_run_that_still_goes_on_is_not_too_old(make: Make, here: Command) -> None:
+    store = RunStore()
+    store.new_run(PROGRAM, make().spec)
+    assert "1 run removed" in here("runs", "rm", "--older-than", "0h").stdout
+    assert [run.number for run in store.runs()] == [2]
+
+
+def test_of_a_link_only_the_link_is_removed(make: Make, here: Command, tmp_path: Path) -> None:
+    folder = make("a: 1").folder
+    elsewhere = folder.rename(tmp_path / "elsewhere")
+    folder.symlink_to(elsewhere)
+    done = here("runs", "rm", "last")
+    assert (done.returncode, done.stderr.count("\n")) == (0, 1)
+    assert str(elsewhere) in done.stderr
+    assert list(folder.parent.iterdir()) == []
+    assert (elsewhere / "output.bin").exists()
+    assert RunStore().runs() == []
+
+
+@pytest.mark.parametrize("form", [(), ("--json",)], ids=["text", "json"])
+def test_output_is_shown_while_it_is_read(
+    make: Make, here: Command, monkeypatch: pytest.MonkeyPatch, form: tuple[str, ...]
+) -> None:
+    make("first", "second")
+    whole = OutputView.rows
+
+    def cut_short(self: OutputView) -> Iterator[OutputRow]:
+        yield next(whole(self))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(OutputView, "rows", cut_short)
+    assert "first" in here("runs", "show", "last", *form).stdout
+
+
+def test_samples_of_a_long_output_are_not_counted_first(
+    make: Make, here: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make("a: 1")
+    assert "1 sample · run 1" in here("runs", "show", "last").stdout
+    monkeypatch.setattr(runs_command, "QUICK_BYTES", 10)
+    assert "sample" not in here("runs", "show", "last").stdout
+
+
+def test_a_listing_counts_only_so_many_samples(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    home = [make("a: 1", "b"), make("a: 1", "a: 2")][0].folder.parent.parent
+    (home / CATALOGUE_FILE).unlink()
+    monkeypatch.setattr(store_module, "_COUNT_A_LISTING_BYTES", 70)
+    assert [[run.samples for run in RunStore().runs()] for _ in range(2)] == [[1, None], [1, 2]]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["runs", "rerun", "last"], "telemetry.bin was cut off: the last"),
+        (["log", "summary", "last", "--telemetry"], "no ticks: its recording is empty or cut off"),
+    ],
+    ids=["rerun", "log of every tick"],
+)
+def test_a_recording_that_lost_all_its_ticks_is_called_cut_off(
+    make: Make, here: Command, words: list[str], said: str
+) -> None:
+    telemetry = make("a: 1").folder / TELEMETRY_FILE
+    telemetry.write_bytes(telemetry.read_bytes()[:100])
+    done = here(*words)
+    assert (done.returncode, said in done.stderr) == (2, True), done.stderr

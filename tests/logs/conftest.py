@@ -1,0 +1,3 @@
+"""The recorded runs of `tests.runs`."""
+
+from tests.runs.conftest import *  # noqa: F403

@@ -1,0 +1,245 @@
+"""Figures, signals, crossings, expressions and dead reckoning of columns with known answers."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tuisim.analysis.events import crossings
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import RobotSpec
+from tuisim.errors import LogError
+from tuisim.logs.dead_reckoning import dead_reckoning, distance_mm, error_mm
+from tuisim.logs.expressions import FUNCTIONS, evaluate
+from tuisim.logs.signals import HOLD, LINEAR, Between, derivative, integral, moving_average, resample, value_at
+from tuisim.logs.statistics import summary_of
+
+NAN = float("nan")
+
+
+def column(*values: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    return np.array(values, np.float64)
+
+
+class TestSummary:
+    def test_figures(self) -> None:
+        got = summary_of(column(1, 2, 3, 4, NAN))
+        assert (got.count, got.left_out, got.min, got.mean, got.max) == (4, 1, 1.0, 2.5, 4.0)
+        assert got.std == pytest.approx(math.sqrt(5 / 3))
+        assert got.quantiles == pytest.approx((1.15, 1.75, 2.5, 3.25, 3.85))
+
+    def test_equal_values_are_exact(self) -> None:
+        got = summary_of(np.full(1001, 86.27450980392157))
+        assert (got.mean, got.std) == (86.27450980392157, 0.0)
+
+    def test_nothing(self) -> None:
+        got = summary_of(column(NAN, math.inf))
+        assert (got.count, got.left_out) == (0, 2)
+        assert math.isnan(got.mean)
+
+
+class TestSignals:
+    def test_derivative_of_a_parabola(self) -> None:
+        time = column(0, 0.5, 2, 3, 3.25)
+        assert_allclose(derivative(time, time**2)[1:-1], 2 * time[1:-1])
+
+    def test_derivative_passes_over_moments_that_repeat(self) -> None:
+        assert_allclose(derivative(column(0, 1, 1, 2), column(0, 2, 9, 4)), [2, 2, 2, 2])
+
+    @pytest.mark.parametrize("values", [column(), column(3.0)], ids=["none", "one"])
+    def test_derivative_of_too_little(self, values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
+        assert np.isnan(derivative(values, values)).all()
+
+    @pytest.mark.parametrize(
+        ("between", "expected"), [(LINEAR, [0, 1.5, 6.5]), (HOLD, [0, 1, 5])], ids=["linear", "hold"]
+    )
+    def test_integral(self, between: Between, expected: list[float]) -> None:
+        assert_allclose(integral(column(0, 1, 3), column(1, 2, 3), between), expected)
+
+    def test_moving_average_shrinks_at_the_ends(self) -> None:
+        assert_allclose(moving_average(column(1, 2, 6, NAN, 2), 3), [1.5, 3, 4, 4, 2])
+
+    def test_moving_average_keeps_digits(self) -> None:
+        values = 1e9 + np.tile(column(0, 1), 500)
+        assert_allclose(moving_average(values, 3)[1:-1] - 1e9, np.tile(column(1 / 3, 2 / 3), 499), atol=1e-6)
+
+    def test_moving_average_is_of_its_window_only(self) -> None:
+        values = np.full(40, 50.0)
+        values[3] = 1e20
+        assert_allclose(moving_average(values, 5)[6:], 50.0)
+
+    @pytest.mark.parametrize("width", [1, 3, 7, 8001])
+    def test_moving_average_of_any_width(self, width: int) -> None:
+        values = np.arange(20.0) ** 2
+        half = width // 2
+        expected = [values[max(at - half, 0) : at + half + 1].mean() for at in range(20)]
+        assert_allclose(moving_average(values, width), expected)
+
+    @pytest.mark.parametrize("width", [0, -3, 4])
+    def test_moving_average_needs_an_odd_width(self, width: int) -> None:
+        with pytest.raises(LogError, match="odd"):
+            moving_average(column(1, 2), width)
+
+    def test_resample_holds(self) -> None:
+        time, values = resample(column(0, 0.25, 1), column(5, 6, 7), 0.5)
+        assert_allclose(time, [0, 0.5, 1])
+        assert_allclose(values, [5, 6, 7])
+
+    def test_resample_reaches_the_last_moment_in_spite_of_rounding(self) -> None:
+        times, _ = resample(np.arange(31, dtype=np.float64) * 0.1, np.zeros(31), 0.1)
+        assert len(times) == 31
+
+    def test_value_before_the_first_sample(self) -> None:
+        got = value_at(column(1, 2), column(5, 7), column(0.5, 1.5, 9), LINEAR)
+        assert_allclose(got, [NAN, 6, 7])
+
+    @pytest.mark.parametrize("period", [0.0, -1.0, NAN, math.inf, 1e-9])
+    def test_resample_refuses(self, period: float) -> None:
+        with pytest.raises(LogError, match="period"):
+            resample(column(0, 100), column(1, 2), period)
+
+
+SPARSE = column(0, 1, 2, 3, 4, 5), column(1, NAN, 3, NAN, 7, NAN)
+"""Every second cell is empty, as where two sensors are read by turns."""
+BACK = column(0, 2, 1, 3), column(0, 4, 1, 9)
+"""A parabola, its times in no order."""
+
+
+class TestOrder:
+    def test_empty_cells_are_passed_over(self) -> None:
+        assert_allclose(derivative(*SPARSE), [1, NAN, 1.5, NAN, 2, NAN])
+        assert_allclose(integral(*SPARSE), [0, NAN, 4, NAN, 14, NAN])
+        assert_allclose(integral(*SPARSE, HOLD), [0, NAN, 2, NAN, 8, NAN])
+        assert_allclose(resample(*SPARSE, 1)[1], [1, 1, 3, 3, 7, 7])
+        assert_allclose(resample(*SPARSE, 1, LINEAR)[1], [1, 2, 3, 5, 7, 7])
+
+    def test_times_may_go_back(self) -> None:
+        assert_allclose(derivative(*BACK), [1, 4, 2, 5])
+        assert_allclose(integral(*BACK), [0, 3, 0.5, 9.5])
+        assert_allclose(resample(*BACK, 1)[1], [0, 1, 4, 9])
+        assert [(one.at, one.time_s) for one in crossings(*BACK, 2.5)] == [(1, 1.5)]
+
+    def test_very_large_values(self) -> None:
+        found = crossings(column(0, 1), column(-1e308, 1e308), 0)
+        assert [one.time_s for one in found] == [0.5]
+        assert_allclose(integral(column(0, 1), column(1e308, 1e308)), [0, 1e308])
+        assert summary_of(np.array([3e38, 3e38, 0], np.float32)).mean == pytest.approx(2e38)
+
+
+class TestCrossings:
+    def test_up_and_down(self) -> None:
+        found = crossings(column(0, 1, 2, 3), column(0, 10, 10, 0), 5)
+        assert [(c.at, c.time_s, c.rising) for c in found] == [(1, 0.5, True), (3, 2.5, False)]
+
+    def test_a_touch_from_above_is_none(self) -> None:
+        assert crossings(column(0, 1, 2), column(9, 5, 9), 5) == []
+
+    def test_hysteresis_passes_over_jitter(self) -> None:
+        values = column(0, 4.9, 5.1, 4.9, 5.1, 9, 5.1, 4.9, 0)
+        time = np.arange(9.0)
+        assert len(crossings(time, values, 5)) == 4
+        found = crossings(time, values, 5, hysteresis=1)
+        assert [(c.at, c.rising) for c in found] == [(4, True), (7, False)]
+
+    def test_values_that_are_no_numbers_are_passed_over(self) -> None:
+        found = crossings(column(0, 1, 2), column(0, NAN, 10), 5)
+        assert [(c.at, c.time_s) for c in found] == [(2, 1.0)]
+
+    def test_refuses_a_negative_hysteresis(self) -> None:
+        with pytest.raises(LogError, match="negative"):
+            crossings(column(0), column(0), 5, -1)
+
+
+COLUMNS = {"left": column(1, 2, 3), "right": column(4, 0, 6), "odd name": column(7, 8, 9)}
+VALUES = {
+    "(left + right) / 2": [2.5, 1, 4.5],
+    "left - -right * 2 ** 2": [17, 2, 27],
+    "left < right": [1, 0, 1],
+    "1 < left <= 2": [0, 1, 0],
+    "left > 1 and not right > 5": [0, 1, 0],
+    "left == 1 or right == 6": [1, 0, 1],
+    "`odd name` % 4": [3, 0, 1],
+    "left if right else -1": [1, -1, 3],
+    "7 // left": [7, 3, 2],
+    "right / (left - 2)": [-4, NAN, 6],
+    "1 / right": [0.25, math.inf, 1 / 6],
+    "diff(left)": [NAN, 1, 1],
+    "shift(right)": [NAN, 4, 0],
+    "clip(right, 1, 5)": [4, 1, 5],
+    "where(left > 2, 10, left)": [1, 2, 10],
+    "sqrt(left * left) + abs(-1)": [2, 3, 4],
+    "hypot(3, 4) + round(0.6) + floor(0.6) + sign(-3)": [5, 5, 5],
+    "min(left, 2) + max(right, 1)": [5, 3, 8],
+    "sin(90) + cos(0) + exp(0) + log(1) + atan2(1, 1)": [48, 48, 48],
+    "2 * pi": [2 * math.pi] * 3,
+    "9" * 400: [math.inf] * 3,
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), VALUES.items(), ids=VALUES)
+def test_expression(text: str, expected: list[float]) -> None:
+    assert_allclose(evaluate(text, COLUMNS), expected)
+
+
+def test_every_function_is_tried() -> None:
+    assert all(any(f"{name}(" in text for text in VALUES) for name in FUNCTIONS)
+
+
+REFUSED = {
+    "a call of something else": "open('x')",
+    "an attribute": "left.__class__",
+    "an index": "left[0]",
+    "a text": "'a' * 1000",
+    "a lambda": "(lambda: 1)()",
+    "a list": "[x for x in left]",
+    "a statement": "import os",
+    "no column": "lft + 1",
+    "no function": "eval(left)",
+    "too few values": "clip(left)",
+    "a name for a value": "abs(x=left)",
+    "nothing": "",
+    "an open bracket": "(left",
+    "an open backtick": "`odd name + 1",
+    "too deep": "(" * 400 + "1" + ")" * 400,
+    "too long": "1+" * 1000 + "1",
+    "a null character": "left\0",
+    "a complex number": "left * 2j",
+    "an assignment": "(left := 1)",
+    "f-string": "f'{left}'",
+}
+
+
+@pytest.mark.parametrize("text", REFUSED.values(), ids=REFUSED)
+def test_expression_is_refused(text: str) -> None:
+    with pytest.raises(LogError):
+        evaluate(text, COLUMNS)
+
+
+class TestReckoning:
+    def test_straight_and_turn(self) -> None:
+        robot = RobotSpec()
+        per_degree = math.pi * robot.wheel_diameter_mm / 360
+        quarter = math.pi / 2 * robot.wheel_spacing_mm / 2 / per_degree
+        left = column(0, 100 / per_degree, 100 / per_degree - quarter)
+        right = column(0, 100 / per_degree, 100 / per_degree + quarter)
+        got = dead_reckoning(left, right, Pose(10, 20, 0), robot)
+        assert_allclose(got.x_mm, [10, 110, 110], atol=1e-9)
+        assert_allclose(got.y_mm, [20, 20, 20], atol=1e-9)
+        assert_allclose(got.heading_deg, [0, 0, 90])
+
+    def test_an_arc_is_round(self) -> None:
+        robot = RobotSpec()
+        per_degree = math.pi * robot.wheel_diameter_mm / 360
+        radius = 200.0
+        inner = math.pi / 2 * (radius - robot.wheel_spacing_mm / 2) / per_degree
+        outer = math.pi / 2 * (radius + robot.wheel_spacing_mm / 2) / per_degree
+        got = dead_reckoning(column(0, inner), column(0, outer), Pose(0, 0, 0), robot)
+        assert_allclose([got.x_mm[1], got.y_mm[1], got.heading_deg[1]], [radius, radius, 90])
+
+    def test_error_and_distance(self) -> None:
+        got = dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
+        assert_allclose(error_mm(got, column(0, 3), column(0, 4)), [0, 5])
+        assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])

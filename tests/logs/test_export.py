@@ -1,0 +1,279 @@
+"""Exports: read back to the last bit, byte-identical between identical runs, whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import tuisim
+from tests.runs.run_recorder import Recorder
+from tuisim.core.field import Field
+from tuisim.core.spec import RunSpec
+from tuisim.errors import ExportError, LogError
+from tuisim.logs.export import (
+    EXPORTERS,
+    check_target,
+    companion_of,
+    export_frame,
+    export_samples,
+    export_telemetry,
+    read_log,
+    read_metadata,
+)
+from tuisim.runs.frames import samples_frame, telemetry_frame
+from tuisim.runs.run_folder import StoredRun
+
+each_format = pytest.mark.parametrize("suffix", EXPORTERS)
+
+
+def noisy_run(record: Callable[..., Recorder], spec: RunSpec, **options: object) -> StoredRun:
+    """A run of which nothing is a round number."""
+    recorder = record(spec, **options)
+    for step in range(30):
+        recorder.drive(300, 280, 4, line=3)
+        recorder.print(f"Colour: {recorder.simulation.x_mm!r}", line=step)
+        recorder.print(f"Größe: {step}", line=step)
+    return recorder.end()
+
+
+# The contract of every format
+
+
+@each_format
+def test_samples_come_back_to_the_last_bit(
+    record: Callable[..., Recorder], noisy_spec: RunSpec, tmp_path: Path, suffix: str
+) -> None:
+    run = noisy_run(record, noisy_spec)
+    target = tmp_path / f"log{suffix}"
+    export_samples([run, run], target)
+    pd.testing.assert_frame_equal(read_log(target), samples_frame([run, run]), check_exact=True)
+
+
+@each_format
+def test_telemetry_comes_back_to_the_last_bit(
+    record: Callable[..., Recorder], noisy_spec: RunSpec, field: Field, tmp_path: Path, suffix: str
+) -> None:
+    run = noisy_run(record, noisy_spec)
+    target = tmp_path / f"log{suffix}"
+    export_telemetry(run, target, field)
+    pd.testing.assert_frame_equal(read_log(target), telemetry_frame(run, field), check_exact=True)
+
+
+@each_format
+def test_values_that_are_hard_to_write(tmp_path: Path, suffix: str) -> None:
+    values = [0.1 + 0.2, 5e-324, 1.7976931348623157e308, -0.0, np.nan, 1e22, 100.0, 2 / 3]
+    nanoseconds = [0, 1, 10**18 + 1, 999, 1_000_000, 86_400_000_000_000, 33_333_334, 5]
+    frame = pd.DataFrame({
+        "index": np.array(nanoseconds, "m8[ns]"),
+        "variable": pd.Series(["NA", "nan", "None", "null", "true", "Größe", "x", "inf"], dtype="str"),
+        "value": values,
+        "time": [np.nan] * len(values),
+        "run": np.arange(1, len(values) + 1),
+        "line": np.full(len(values), 2**40),
+    })  # fmt: skip
+    export_frame(frame, tmp_path / f"x{suffix}", {})
+    found = read_log(tmp_path / f"x{suffix}")
+    pd.testing.assert_frame_equal(found, frame, check_exact=True)
+    assert np.signbit(found["value"][3])
+
+
+@each_format
+def test_frame_without_rows_comes_back_with_its_types(
+    record: Callable[..., Recorder], spec: RunSpec, tmp_path: Path, suffix: str
+) -> None:
+    run = record(spec).end()
+    export_samples([run], tmp_path / f"x{suffix}")
+    pd.testing.assert_frame_equal(read_log(tmp_path / f"x{suffix}"), samples_frame([run]))
+
+
+@each_format
+@pytest.mark.parametrize("table", ["samples", "telemetry"])
+def test_identical_runs_give_identical_files(
+    record: Callable[..., Recorder], noisy_spec: RunSpec, field: Field, tmp_path: Path, suffix: str, table: str
+) -> None:
+    written = []
+    for name in ("one", "two"):
+        run = noisy_run(record, noisy_spec, live=name == "two", options={"speed": len(name)})
+        folder = tmp_path / name
+        folder.mkdir()
+        if table == "samples":
+            export_samples([run], folder / f"log{suffix}")
+        else:
+            export_telemetry(run, folder / f"log{suffix}", field)
+        written.append({path.name: path.read_bytes() for path in folder.iterdir()})
+    assert written[0] == written[1]
+    assert len(written[0]) == 1 + EXPORTERS[suffix].companion
+
+
+@each_format
+def test_what_travels_with_a_log(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
+    export_samples([logged], tmp_path / f"x{suffix}")
+    found = read_metadata(tmp_path / f"x{suffix}")
+    (run,) = found["runs"]
+    assert (found["table"], found["units"]["x_mm"], found["units"]["time"]) == ("samples", "mm", "s, simulated")
+    assert (run["program"]["sha256"], run["seed"]) == (logged.program.sha256, 3)
+    assert (run["world"]["background"], run["profile"]["name"]) == ("Empty_Map", "robolab")
+    text = json.dumps(found)
+    assert not any(secret in text for secret in (logged.id, logged.created, logged.program.path, str(tmp_path)))
+
+
+@each_format
+def test_existing_file_is_replaced_with_common_rights(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
+    target = tmp_path / f"x{suffix}"
+    target.write_text("old")
+    export_samples([logged], target)
+    assert len(read_log(target)) == 4
+    mask = os.umask(0)
+    os.umask(mask)
+    assert target.stat().st_mode & 0o777 == 0o666 & ~mask
+
+
+@each_format
+def test_failure_leaves_what_was_there(tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / f"x{suffix}"
+    target.write_text("old")
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(ExportError, match=f"cannot write .*x{suffix}: No space left on device"):
+        export_frame(pd.DataFrame({"value": [1.0]}), target, {})
+    assert [path.name for path in tmp_path.iterdir()] == [target.name]
+    assert target.read_text() == "old"
+
+
+@each_format
+def test_suffix_in_capitals_is_the_same_format(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
+    export_samples([logged], tmp_path / f"X{suffix.upper()}")
+    assert len(read_log(tmp_path / f"X{suffix.upper()}")) == 4
+
+
+@each_format
+def test_damaged_file_is_named(tmp_path: Path, suffix: str) -> None:
+    target = tmp_path / f"x{suffix}"
+    target.write_bytes(b'\xff\x00"rubbish\n{"')
+    with pytest.raises(LogError, match=target.name):
+        read_log(target)
+
+
+# One format each
+
+
+def test_csv_is_plain(logged: StoredRun, tmp_path: Path) -> None:
+    export_samples([logged], tmp_path / "x.csv")
+    lines = (tmp_path / "x.csv").read_text().split("\n")
+    assert lines[0] == "index,variable,value,time,run,x_mm,y_mm,heading_deg,line"
+    assert lines[1] == "0 days 00:00:00.000000,Colour,100.0,0.0,1,5.0,1110.0,-7.0,4"
+    assert lines[2].startswith("0 days 00:00:00.100000,Colour,86.27450980392157,0.1,1,")
+    assert (len(lines), lines[-1]) == (6, "")
+
+
+def test_pandas_alone_reads_the_same_rows(logged: StoredRun, tmp_path: Path) -> None:
+    for suffix in EXPORTERS:
+        export_samples([logged], tmp_path / f"x{suffix}")
+    parquet = pd.read_parquet(tmp_path / "x.parquet")
+    pd.testing.assert_frame_equal(pd.read_feather(tmp_path / "x.arrow"), parquet)
+    for text in (pd.read_csv(tmp_path / "x.csv"), pd.read_json(tmp_path / "x.jsonl", lines=True)):
+        assert pd.to_timedelta(text["index"]).tolist() == parquet["index"].tolist()
+        assert text["value"].tolist() == pytest.approx(parquet["value"].tolist())
+
+
+def test_link_is_followed_not_replaced(logged: StoredRun, tmp_path: Path) -> None:
+    (tmp_path / "link.csv").symlink_to(tmp_path / "real.csv")
+    export_samples([logged], tmp_path / "link.csv")
+    assert (tmp_path / "link.csv").is_symlink()
+    assert len(read_log(tmp_path / "real.csv")) == 4
+
+
+def test_read_log_is_where_users_look_for_it(logged: StoredRun, tmp_path: Path) -> None:
+    export_samples([logged], tmp_path / "x.parquet")
+    assert tuisim.read_log(tmp_path / "x.parquet").equals(read_log(str(tmp_path / "x.parquet")))
+
+
+def test_csv_without_companion_is_read_all_the_same(logged: StoredRun, tmp_path: Path) -> None:
+    export_samples([logged], tmp_path / "x.csv")
+    companion_of(tmp_path / "x.csv").unlink()
+    assert len(read_log(tmp_path / "x.csv")) == 4
+    assert read_metadata(tmp_path / "x.csv") == {}
+
+
+# Targets
+
+
+def test_good_target_is_checked_without_a_trace(tmp_path: Path) -> None:
+    assert check_target(tmp_path / "x.csv") == tmp_path / "x.csv"
+    assert list(tmp_path.iterdir()) == []
+
+
+BAD_TARGETS = {
+    "unknown suffix": ("x.xlsx", re.escape(f"unknown format '.xlsx' (a file ends in {', '.join(EXPORTERS)})")),
+    "no suffix": ("x", r"unknown format ''"),
+    "only a suffix": (".csv", r"unknown format ''"),
+    "no such folder": ("gone/x.csv", r"there is no folder .*gone"),
+    "file as folder": ("file/x.csv", r"there is no folder .*file"),
+    "folder": ("folder.csv", r"it is a folder"),
+    "companion is a folder": ("y.csv", r"y\.csv\.json: it is a folder"),
+    "pipe": ("pipe.csv", r"it is there and may not be replaced"),
+}
+
+
+@pytest.mark.parametrize(("name", "message"), BAD_TARGETS.values(), ids=BAD_TARGETS)
+def test_bad_target_is_refused_before_anything_is_done(tmp_path: Path, name: str, message: str) -> None:
+    (tmp_path / "folder.csv").mkdir()
+    (tmp_path / "y.csv.json").mkdir()
+    (tmp_path / "file").write_text("")
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(ExportError, match=message):
+        check_target(tmp_path / name)
+
+
+def test_folder_that_cannot_be_written_is_refused() -> None:
+    # Nobody can make a file there, not even root.
+    with pytest.raises(ExportError, match=r"cannot write /proc/self/x\.csv"):
+        check_target("/proc/self/x.csv")
+
+
+READ_ERRORS = {"no such file": ("gone.csv", "no such file"), "unknown format": ("x.txt", r"a log ends in \.csv")}
+
+
+@pytest.mark.parametrize(("name", "message"), READ_ERRORS.values(), ids=READ_ERRORS)
+def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> None:
+    with pytest.raises(LogError, match=message):
+        read_log(tmp_path / name)
+
+
+# Imports
+
+
+@pytest.mark.parametrize(
+    "module", ["runs.records", "runs.samples", "runs.lock", "runs.views", "runs.store", "logs.export"]
+)
+def test_importing_is_light(module: str) -> None:
+    code = (
+        f"import sys, tuisim.{module}\n"
+        "heavy = {'numpy', 'pandas', 'pyarrow', 'PIL', 'platformdirs', 'msgspec'} & sys.modules.keys()\n"
+        "sys.exit(', '.join(heavy) or 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@each_format
+def test_words_and_truths_of_other_tables_come_back(tmp_path: Path, suffix: str) -> None:
+    frame = pd.DataFrame(
+        {"grey": ["white", "=1+1", "pale, grey"], "sure": [True, False, True], "level": [100.0, 5.5, 1 / 3]}
+    )
+    export_frame(frame, tmp_path / f"a{suffix}", {"columns": list(frame.columns)})
+    got = read_log(tmp_path / f"a{suffix}")
+    assert got.to_dict("list") == frame.to_dict("list")
+    assert got["sure"].dtype == bool

@@ -1,0 +1,95 @@
+"""The bands of a log have the levels, greys, places and widths of what the robot drove over."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from tuisim.core.noise import disturb_pixels
+from tuisim.logs.bands import band_report, greys, in_words, light_noise, light_scale, nearest_grey, without_clamping
+from tuisim.logs.columns import guess_columns
+from tuisim.logs.log import Log
+
+
+@pytest.mark.parametrize("value", [0, 3, 10, 128, 240, 250, 255])
+@pytest.mark.parametrize("noise", [5, 20, 128])
+def test_clamping_is_undone(value: int, noise: int) -> None:
+    pixels = disturb_pixels(bytes([value]) * 200_000, noise, 1, 1, "left")
+    mean_percent = sum(pixels) / len(pixels) / 2.55
+    assert without_clamping(mean_percent, noise) == pytest.approx(value / 2.55, abs=0.8 if noise < 128 else 4.0)
+
+
+def test_greys_have_names() -> None:
+    assert {grey.name for value, grey in greys().items() if value in (0, 128, 211, 220, 255)} == {
+        "black",
+        "grey",
+        "light grey",
+        "pale grey",
+        "white",
+    }
+    grey = nearest_grey(86.0)
+    assert grey is not None and grey.name == "pale grey"
+    assert nearest_grey(9.0) is None
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [([0.0, 100.0], 1.0), ([0.0, 255.0], 100 / 255), ([0.0, 2550.0], 0.0), ([-3.0, 5.0], 0.0), ([], 0.0)],
+    ids=["percent", "bytes", "distance", "angle", "nothing"],
+)
+def test_scale_of_light(values: list[float], expected: float) -> None:
+    assert light_scale(np.array(values)) == expected
+
+
+def test_places_and_widths() -> None:
+    light = [100.0] * 5 + [60.0] + [50.0] * 10 + [100.0] * 5
+    table = pa.table(
+        {
+            "time": np.arange(21) / 10,
+            "variable": ["Light"] * 21,
+            "value": light,
+            "x_mm": np.arange(21) * 10.0,
+            "y_mm": np.zeros(21),
+        }
+    )
+    report = band_report(Log("log", table, guess_columns(table)), "Light")
+    middle = report.bands[1]
+    assert [(band.level, band.grey) for band in report.bands] == [(100, "white"), (50, "grey"), (100, "white")]
+    assert (middle.start_s, middle.stop_s, middle.samples) == (0.6, 1.5, 10)
+    assert (middle.start_mm, middle.stop_mm, middle.width_mm) == (60.0, 150.0, 100.0)
+    assert (middle.first_row, middle.last_row) == (6, 15)
+    assert (report.transitions, report.total) == (1, 21)
+
+
+@pytest.mark.parametrize(
+    "metadata",
+    [{}, {"runs": []}, {"runs": [{"world": {}}]}, {"runs": ["x"]}, {"runs": [{"world": {"noise": {"light": "?"}}}]}],
+)
+def test_log_that_does_not_know_its_noise(metadata: dict[str, object]) -> None:
+    assert light_noise(metadata, 0) == 0
+
+
+def test_empty_cells_belong_to_no_band() -> None:
+    table = pa.table({"time": np.arange(12.0), "light": [50.0, None] * 3 + [100.0, None] * 3})
+    report = band_report(Log("log", table, guess_columns(table)), "light")
+    assert [(band.level, band.samples) for band in report.bands] == [(50, 3), (100, 3)]
+    assert (report.transitions, report.total) == (0, 6)
+
+
+@pytest.mark.parametrize(
+    ("light", "levels"),
+    [
+        ([100.0] * 5 + [50.0] * 5 + [0.0], [(100, 5), (50, 5), (0, 1)]),
+        ([0.0] + [100.0] * 5 + [50.0] * 5, [(0, 1), (100, 5), (50, 5)]),
+        ([100.0] * 5 + [50.0] * 5 + [20.0, 0.0], [(100, 5), (50, 5), (0, 1)]),
+        ([100.0] * 5 + [50.0] * 6, [(100, 5), (50, 6)]),
+        (list(np.linspace(100.0, 0.0, 12)), []),
+    ],
+    ids=["at the end", "at the start", "after an edge", "none", "a ramp"],
+)
+def test_one_sample_at_an_end_is_a_level(light: list[float], levels: list[tuple[float, int]]) -> None:
+    table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
+    report = band_report(Log("log", table, guess_columns(table)), "Light")
+    assert [(band.level, band.samples) for band in report.bands] == levels
+    assert ("0.00 black (one sample)" in in_words(report)) is any(samples == 1 for _, samples in levels)

@@ -1,0 +1,55 @@
+"""A recorder of runs by hand: what the child is to a run folder, with its writers and the real simulation."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+from tuisim.core.simulation import Simulation
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.runs.records import ACTIONS_FILE, STDOUT, OutputWriter, TelemetryWriter
+from tuisim.runs.run_folder import RunEnd, StoredProgram, StoredRun
+from tuisim.runs.store import NewRun, RunStore
+
+PROGRAM = StoredProgram("log.py", "/somewhere/log.py", "print('Colour: 100.0')\n", "preloaded")
+
+
+@dataclass
+class Recorder:
+    """What the child is to a run folder."""
+
+    store: RunStore
+    run: NewRun
+    spec: RunSpec
+    telemetry: TelemetryWriter
+    output: OutputWriter
+    simulation: Simulation
+
+    def drive(self, left_dps: float, right_dps: float, ticks: int, line: int = 0) -> None:
+        """Let the wheels turn for some ticks."""
+        self.simulation.line = line
+        self.simulation.left.run(left_dps)
+        self.simulation.right.run(right_dps)
+        self.simulation.advance(ticks)
+
+    def print(self, text: str, line: int = 0, stream: int = STDOUT) -> None:
+        """Write a row of output at the present tick."""
+        tick = self.simulation.tick
+        self.output.write(text.encode(), tick, self.simulation.due_ns(tick), line, stream)
+
+    def act(self, kind: str, **fields: int) -> None:
+        """Do and record a user action, which counts from the present tick on."""
+        if kind == "set_noise":
+            self.simulation.noise = NoiseSpec(**fields)
+        self.simulation.actions += 1
+        self.simulation.rewrite_record()
+        with open(self.run.folder / ACTIONS_FILE, "a", encoding="utf-8") as handle:
+            handle.write(json.dumps({"tick": self.simulation.tick, "kind": kind, **fields}) + "\n")
+
+    def end(self, end: str = "finished", summary: str = "") -> StoredRun:
+        """Close the files, record the end and return the run as stored."""
+        self.telemetry.close()
+        self.output.close()
+        tick = self.simulation.tick
+        self.store.finish(self.run.id, RunEnd(end, tick, self.simulation.due_ns(tick), summary=summary))
+        return self.store.load_run(self.run.id)

@@ -1,0 +1,125 @@
+"""The catalogue of runs: made again from the folders when it is lost, and used by two processes at once."""
+
+from __future__ import annotations
+
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.runs.run_recorder import PROGRAM, Recorder
+from tuisim.core.spec import RunSpec
+from tuisim.runs.catalogue import CATALOGUE_FILE
+from tuisim.runs.run_folder import RunEnd
+from tuisim.runs.store import RunStore
+
+FINISHED = RunEnd("finished", 100, 1_000_000_000)
+
+MANY = """
+import sys
+from pathlib import Path
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.runs.run_folder import RunEnd, StoredProgram
+from tuisim.runs.store import RunStore
+store = RunStore(Path(sys.argv[1]))
+spec = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
+for _ in range(12):
+    run = store.new_run(StoredProgram("p.py", "", "", "none"), spec)
+    store.runs()
+    store.finish(run.id, RunEnd("finished", 1, 1))
+    print(run.number, flush=True)
+"""
+
+
+def _cut_in_half(path: Path) -> None:
+    with closing(sqlite3.connect(path)) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 + 100])
+
+
+def _scribble(path: Path) -> None:
+    with closing(sqlite3.connect(path)) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    content = bytearray(path.read_bytes())
+    content[4096:] = b"\xa5" * (len(content) - 4096)
+    path.write_bytes(bytes(content))
+
+
+def _other_version(path: Path) -> None:
+    with closing(sqlite3.connect(path)) as connection:
+        connection.execute("PRAGMA user_version = 77")
+
+
+HARM: dict[str, Callable[[Path], object]] = {
+    "missing": Path.unlink,
+    "empty": lambda path: path.write_bytes(b""),
+    "not a database": lambda path: path.write_bytes(b"rubbish" * 1000),
+    "cut in half": _cut_in_half,
+    "pages overwritten": _scribble,
+    "other version": _other_version,
+}
+
+
+@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
+def test_catalogue_is_made_again_from_the_folders(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore, harm: Callable[[Path], object]
+) -> None:
+    for number in range(4):
+        recorder = record(replace(spec, seed=number))
+        recorder.print("a: 1")
+        recorder.end(summary=f"run {number}")
+    store.remove(store.find("2").id)
+    before = store.runs()
+    harm(store.home / CATALOGUE_FILE)
+    assert store.runs() == before
+    assert [info.number for info in before] == [1, 3, 4]
+    assert store.new_run(PROGRAM, spec).number == 5
+
+
+def test_runs_are_listed_and_removed_also_where_no_catalogue_can_be_written(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore
+) -> None:
+    for number in range(3):
+        recorder = record(replace(spec, seed=number))
+        recorder.print("a: 1")
+        recorder.end(summary=f"run {number}")
+    before = store.runs()
+    catalogue = store.home / CATALOGUE_FILE
+    catalogue.unlink()
+    # Nothing can take its place, as on a disk that is full or can only be read.
+    catalogue.mkdir()
+    assert store.runs() == before
+    assert store.find("last") == before[-1]
+    store.remove(before[0].id)
+    assert store.runs() == before[1:]
+
+
+@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
+def test_harm_to_the_catalogue_does_not_stop_a_run(
+    store: RunStore, spec: RunSpec, harm: Callable[[Path], object]
+) -> None:
+    run = store.new_run(PROGRAM, spec)
+    harm(store.home / CATALOGUE_FILE)
+    store.finish(run.id, FINISHED)
+    assert [(info.number, info.end) for info in store.runs()] == [(1, "finished")]
+
+
+def test_seed_may_be_larger_than_the_integers_of_the_catalogue(store: RunStore, spec: RunSpec) -> None:
+    store.new_run(PROGRAM, replace(spec, seed=1 << 80))
+    assert store.runs()[0].seed == 1 << 80
+
+
+def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", MANY, str(tmp_path / "home")]
+    children = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
+    numbers = [int(line) for child in children for line in child.communicate()[0].split()]
+    assert [child.returncode for child in children] == [0, 0]
+    assert sorted(numbers) == list(range(1, 25))
+    infos = RunStore(tmp_path / "home").runs()
+    assert [(info.number, info.end) for info in infos] == [(number, "finished") for number in range(1, 25)]

@@ -1,0 +1,233 @@
+"""Stored runs done again give the same bits: varied programs, noise, threads, users' actions, stopped ones."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.running import Start, over, until_tick
+from tuisim.cli import run_command
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.errors import LogError
+from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
+from tuisim.runs.brick_state import BrickState, face_after
+from tuisim.runs.diff import diff_runs
+from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.records import MOTORS, STOP_FILE
+from tuisim.runs.rerun import rerun, same
+from tuisim.runs.store import RunStore
+
+LOOP = """
+import random, time
+for turn in range({turns}):
+    tank_drive.on(SpeedPercent(random.randint(-{speed}, {speed})), SpeedPercent({speed}))
+    print('Light:', colorLeft.reflected_light_intensity_pc, time.time())
+    time.sleep(random.random() * 0.1)
+"""
+MOVES = """
+for turn in range({turns} // 5):
+    tank_drive.on_for_rotations({speed}, {speed} - 10, 0.3)
+    tank_turn.on_for_degrees(-100, {speed}, 90)
+    print('Gyro:', gyro.angle)
+"""
+THREADS = """
+import threading, time
+def watch():
+    for turn in range({turns}):
+        print('Far:', ultrasonic.distance_centimeters)
+        time.sleep(0.02)
+watcher = threading.Thread(target=watch)
+watcher.start()
+for turn in range({turns} // 4):
+    tank_drive.on_for_seconds({speed}, -20, 0.05)
+watcher.join()
+"""
+ASKS = """
+for turn in range({turns} // 10):
+    tank_drive.on_for_seconds({speed}, 30, 0.1)
+    print('hello', input('who? '))
+"""
+RAISES = LOOP + "raise ValueError('over')\n"
+PROGRAMS = (LOOP, MOVES, THREADS, ASKS, RAISES)
+WAYS = ("headless", "live", "stopped", "limited")
+
+
+def _action(chance: random.Random) -> Message:
+    return chance.choice(
+        (
+            SetPose(chance.uniform(100, 2000), chance.uniform(100, 1000), chance.uniform(-180, 180)),
+            SetNoise(chance.randint(0, 128), chance.randint(0, 500)),
+            SetPen(chance.random() < 0.5),
+            SetButtons(("enter", "up") if chance.random() < 0.5 else ()),
+        )
+    )
+
+
+def _check(number: int, start: Start, scratch: Path) -> None:
+    chance = random.Random(number)
+    way = WAYS[number % len(WAYS)]
+    text = PROGRAMS[number % len(PROGRAMS)].format(turns=chance.randint(20, 40), speed=chance.randint(20, 60))
+    live = way in ("live", "stopped")
+    answers = () if live else ("Ada",) * 2
+    handle = start(
+        text,
+        seed=number,
+        noise=(chance.randint(0, 40), chance.randint(0, 100)),
+        profile=chance.choice(("robolab", "nbev3devsim", "ev3")),
+        live=live,
+        speed=8.0,
+        asks_user=live,
+        answers=answers,
+        time_limit_s=0.5 if way == "limited" else 30.0,
+    )
+    if live:
+        for at in range(3):
+            until_tick(handle, 5 + 6 * at)
+            handle.send(_action(chance))
+            handle.send(Answer(f"name {at}"))
+    if way == "stopped":
+        until_tick(handle, 25)
+        handle.stop()
+    elif live:
+        for _ in range(4):
+            handle.send(Answer("more"))
+    over(handle)
+    stored = RunStore().load_run(handle.run_id)
+    store = RunStore(scratch)
+    again = rerun(stored, store)
+    over(again)
+    found = same(stored, store.load_run(again.run_id))
+    assert found.same, (way, text, found)
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_runs_again(number: int, start: Start, tmp_path: Path) -> None:
+    _check(number, start, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(10, 50))
+def test_many_runs_again(number: int, start: Start, tmp_path: Path) -> None:
+    _check(number, start, tmp_path)
+
+
+def test_a_difference_is_found(start: Start) -> None:
+    text = LOOP.format(turns=20, speed=40)
+    ids = []
+    for seed in (1, 2):
+        handle = start(text, seed=seed, noise=(0, 50))
+        over(handle)
+        ids.append(handle.run_id)
+    one, two = (RunStore().load_run(run_id) for run_id in ids)
+    found = diff_runs(one, two)
+    assert not found.same
+    assert found.setup == (("seed", "1", "2"),)
+    assert found.tick is not None and "x_mm" in found.tick.fields
+    assert found.divergence is not None and found.divergence.table[0][1] == 0.0 < found.divergence.max_mm
+    assert diff_runs(one, one).same
+
+
+def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
+    run_command(["run", "log_greys"])
+    run_command(["run", "log_greys", "--seed", "4", "-M", "50"])
+    capsys.readouterr()
+    assert run_command(["runs", "rerun", "last"]) == 0
+    assert "equal to the last bit" in capsys.readouterr().out
+    one, two = (str(info.number) for info in RunStore().runs()[-2:])
+    assert run_command(["log", "diff", one, two]) == 1
+    said = capsys.readouterr().out
+    assert "set-up, seed: 0 | 4" in said and "first differing tick: tick 1," in said and "over 1 mm: from" in said
+    assert run_command(["log", "diff", one]) == 2
+
+
+CLEANS_UP = """
+import time
+try:
+    while True:
+        tank_drive.on(20, 40)
+        time.sleep(0.05)
+        print('Light:', colorLeft.reflected_light_intensity_pc)
+finally:
+    tank_drive.on_for_seconds(-30, 10, 0.3)
+    print('Far:', ultrasonic.distance_centimeters)
+"""
+
+
+@pytest.mark.parametrize("live", [True, False], ids=["live", "headless"])
+def test_a_stop_is_given_again_at_its_tick(start: Start, tmp_path: Path, live: bool) -> None:
+    text = CLEANS_UP if live else CLEANS_UP.replace("time.sleep(0.05)", "time.sleep(1e6)")
+    handle = start(text, noise=(10, 20), live=live, time_limit_s=0.0)
+    until_tick(handle, 20)
+    handle.stop()
+    assert over(handle).ended.end == "stopped"
+    stored = RunStore().load_run(handle.run_id)
+    assert any(row.text.startswith("Far:") for row in stored.output.rows())
+    stopped_at = json.loads((handle.folder / STOP_FILE).read_text())["tick"]
+    assert stored.telemetry.count > stopped_at + 30
+    store = RunStore(tmp_path)
+    again = rerun(stored, store)
+    assert over(again).ended.end == "stopped"
+    second = store.load_run(again.run_id)
+    assert second.telemetry.array().tobytes() == stored.telemetry.array().tobytes()
+    assert second.output.all_rows() == stored.output.all_rows()
+    assert same(stored, second).same
+    (stored.folder / STOP_FILE).write_text("rubbish")
+    with pytest.raises(LogError, match=STOP_FILE):
+        rerun(stored, store)
+
+
+def test_a_killed_run_is_compared_up_to_its_last_record(start: Start, tmp_path: Path) -> None:
+    handle = start(CLEANS_UP, live=True)
+    until_tick(handle, 20)
+    os.kill(handle._process.pid, signal.SIGKILL)
+    assert over(handle).ended.end == "crashed"
+    stored = RunStore().load_run(handle.run_id)
+    store = RunStore(tmp_path)
+    again = rerun(stored, store)
+    over(again)
+    second = store.load_run(again.run_id)
+    assert second.telemetry.count > 20
+    assert same(stored, second).same
+
+
+ARM = """
+from ev3dev2.motor import MediumMotor, OUTPUT_A
+from ev3dev2.sensor.lego import InfraredSensor
+import time
+arm = MediumMotor(OUTPUT_A)
+arm.on(50)
+time.sleep(0.1)
+arm.position = 7
+arm.on_for_degrees(20, -90)
+time.sleep(0.0137)
+"""
+
+
+def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: Path) -> None:
+    spec = build_run_spec(Settings(robot="Explorer"))
+    live = start_run(Program("arm.py", ARM), spec, RunOptions(live=True, speed=16.0))
+    over(live)
+    run = RunStore().load_run(live.run_id)
+    turns = [row for row in run.output.rows() if row.stream == MOTORS]
+    ((position_deg, speed_dps),) = face_after(BrickState(), turns).turns
+    assert (round(position_deg), speed_dps) == (-83, 0.0)
+    again = rerun(run, RunStore())
+    over(again)
+    assert same(run, RunStore().load_run(again.run_id)).same
+
+
+def test_a_differing_line_is_numbered_as_people_see_it(home: Path) -> None:
+    spec, runs = build_run_spec(Settings(robot="Explorer")), []
+    for word in ("one", "two"):
+        handle = start_run(Program("arm.py", f"print('first'){ARM}print('{word}')\n"), spec, RunOptions())
+        over(handle)
+        runs.append(RunStore().load_run(handle.run_id))
+    found = diff_runs(*runs).output
+    assert found is not None
+    assert (found.row, found.first, found.second) == (2, "one", "two")

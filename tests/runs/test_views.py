@@ -1,0 +1,257 @@
+"""Reading a recording while it is written, and after its writer was killed or the file cut off."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.runs.run_recorder import Recorder
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.state import TICK_RECORD
+from tuisim.errors import LogError
+from tuisim.runs.records import (
+    HEADER_BYTES,
+    OUTPUT_FILE,
+    STDOUT,
+    TELEMETRY_FILE,
+    TICK_FIELDS,
+    OutputWriter,
+    TelemetryWriter,
+)
+from tuisim.runs.store import RunStore
+from tuisim.runs.views import OutputView, TelemetryView, TickRecord, instant_of
+
+CHILD = """
+import sys
+from pathlib import Path
+from tuisim.core.state import TICK_RECORD
+from tuisim.runs.records import HEADER_BYTES, OutputWriter, TelemetryWriter
+telemetry, output = TelemetryWriter(Path(sys.argv[1])), OutputWriter(Path(sys.argv[1]))
+for tick in range(int(sys.argv[2])):
+    at = HEADER_BYTES + 64 * tick
+    telemetry.room(1)[at:at + 64] = TICK_RECORD.pack(tick, tick, *[float(tick)] * 5, 0, 0, 0, 0, 0)
+    telemetry.publish(tick + 1)
+    if tick % 10 == 0:
+        output.write(b"n: %d" % tick, tick, tick, 1, 1)
+print("written", flush=True)
+sys.stdin.read()
+"""
+
+
+def put(writer: TelemetryWriter, count: int) -> None:
+    """Append records whose fields tell their tick."""
+    for tick in range(writer.count, writer.count + count):
+        at = HEADER_BYTES + tick * TICK_RECORD.size
+        record = TICK_RECORD.pack(tick, 7, tick + 0.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 1, 2)
+        writer.room(1)[at : at + TICK_RECORD.size] = record
+        writer.publish(tick + 1)
+
+
+def test_fields_are_those_of_the_record() -> None:
+    assert np.dtype(list(TICK_FIELDS)).itemsize == TICK_RECORD.size
+    assert [field.name for field in fields(TickRecord)] == [name for name, _ in TICK_FIELDS]
+
+
+def test_run_without_files_is_empty(tmp_path: Path) -> None:
+    telemetry, output = TelemetryView(tmp_path), OutputView(tmp_path)
+    assert (telemetry.count, telemetry.last(), len(telemetry.array())) == (0, None, 0)
+    assert (output.new_rows(), output.all_rows(), output.length) == ([], [], 0)
+    assert telemetry.array().dtype.names == tuple(name for name, _ in TICK_FIELDS)
+
+
+@pytest.mark.parametrize("content", [b"", bytes(4096)], ids=["empty", "no header yet"])
+def test_file_that_is_just_made_is_empty(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / TELEMETRY_FILE).write_bytes(content)
+    assert TelemetryView(tmp_path).count == 0
+
+
+def test_view_finds_the_file_when_it_comes(tmp_path: Path) -> None:
+    view = TelemetryView(tmp_path)
+    assert view.last() is None
+    writer = TelemetryWriter(tmp_path)
+    put(writer, 3)
+    assert view.last() == TickRecord(2, 7, 2.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 1, 2)
+    writer.close()
+
+
+def test_view_follows_a_file_beyond_its_map(tmp_path: Path) -> None:
+    writer = TelemetryWriter(tmp_path)
+    put(writer, 10)
+    view = TelemetryView(tmp_path)
+    early = view.array()
+    put(writer, 20_000)
+    assert view.count == 20_010
+    assert view.record(20_009).tick == 20_009
+    writer.close()
+    assert view.array()["tick"].tolist() == list(range(20_010))
+    assert early["tick"].tolist() == list(range(10))
+
+
+def test_last_record_written_anew_is_read_anew(tmp_path: Path) -> None:
+    writer = TelemetryWriter(tmp_path)
+    put(writer, 2)
+    view = TelemetryView(tmp_path)
+    array = view.array()
+    at = HEADER_BYTES + TICK_RECORD.size
+    writer.room(0)[at : at + 4] = (99).to_bytes(4, "little")
+    put(writer, 1)
+    assert view.array()["tick"].tolist() == [0, 99, 2]
+    assert not array.flags.writeable
+    writer.close()
+
+
+SHRUNK = """
+import os, sys
+from pathlib import Path
+from tuisim.runs.store import RunStore
+from tuisim.runs.views import OutputView, TelemetryView
+folder = Path(sys.argv[1])
+telemetry, output = TelemetryView(folder), OutputView(folder)
+array, rows = telemetry.array(), output.rows()
+next(rows)
+for name in ("telemetry.bin", "output.bin"):
+    os.truncate(folder / name, int(sys.argv[2]))
+print(array["tick"].sum(), telemetry.record(19_999).tick, telemetry.count, sum(1 for _ in rows))
+"""
+
+
+@pytest.mark.parametrize("size", [0, 10, HEADER_BYTES, 5000], ids=["empty", "half a header", "header", "some"])
+def test_recording_that_shrinks_under_its_reader_stays_read(tmp_path: Path, size: int) -> None:
+    telemetry, output = TelemetryWriter(tmp_path), OutputWriter(tmp_path)
+    put(telemetry, 20_000)
+    for number in range(2000):
+        output.write(b"x" * 100, number, 0, 0, STDOUT)
+    command = [sys.executable, "-c", SHRUNK, str(tmp_path), str(size)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.stdout.split(), done.returncode) == (["199990000", "19999", "20000", "1999"], 0), done.stderr
+
+
+@pytest.mark.parametrize("index", [-1, 2, 5000])
+def test_no_such_record(tmp_path: Path, index: int) -> None:
+    writer = TelemetryWriter(tmp_path)
+    put(writer, 2)
+    writer.close()
+    with pytest.raises(IndexError, match=f"no telemetry record {index}, there are 2"):
+        TelemetryView(tmp_path).record(index)
+
+
+def test_new_rows_come_once_and_in_portions(tmp_path: Path) -> None:
+    writer, view = OutputWriter(tmp_path), OutputView(tmp_path)
+    for number in range(5):
+        writer.write(f"line {number} é".encode(), number, number * 10, number, STDOUT)
+    assert [row.text for row in view.new_rows(2)] == ["line 0 é", "line 1 é"]
+    assert view.new_rows(0) == []
+    assert [row.tick for row in view.new_rows()] == [2, 3, 4]
+    assert view.new_rows() == []
+    writer.write(b"x" * 100_000, 9, 9, 9, STDOUT)
+    assert [len(row.text) for row in view.new_rows()] == [100_000]
+    writer.close()
+    assert len(view.all_rows()) == 6
+
+
+def test_cut_off_telemetry_keeps_whole_records(tmp_path: Path) -> None:
+    writer = TelemetryWriter(tmp_path)
+    put(writer, 10)
+    writer.close()
+    os.truncate(tmp_path / TELEMETRY_FILE, HEADER_BYTES + 7 * TICK_RECORD.size + 30)
+    view = TelemetryView(tmp_path)
+    assert view.array()["tick"].tolist() == list(range(7))
+    assert view.note == "telemetry.bin was cut off: the last 3 of 10 records are lost"
+
+
+def test_cut_off_output_keeps_whole_rows(tmp_path: Path) -> None:
+    writer = OutputWriter(tmp_path)
+    for number in range(3):
+        writer.write(b"0123456789", number, 0, 0, STDOUT)
+    writer.close()
+    os.truncate(tmp_path / OUTPUT_FILE, (tmp_path / OUTPUT_FILE).stat().st_size - 4)
+    view = OutputView(tmp_path)
+    assert [row.tick for row in view.all_rows()] == [0, 1]
+    assert view.note == "output.bin was cut off: its last 4 bytes are lost"
+
+
+def test_row_that_was_never_published_is_not_read(tmp_path: Path) -> None:
+    writer = TelemetryWriter(tmp_path)
+    put(writer, 4)
+    writer.room(1)[HEADER_BYTES + 4 * 64 : HEADER_BYTES + 4 * 64 + 32] = b"\xff" * 32
+    view = TelemetryView(tmp_path)
+    assert (view.count, view.note) == (4, "")
+    writer.close()
+
+
+@pytest.mark.parametrize("content", [b"x" * 200, b"TUISIMTL" + b"\x09\0\0\0" + bytes(80)], ids=["foreign", "version"])
+def test_other_file_is_refused_by_name(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / TELEMETRY_FILE).write_bytes(content)
+    with pytest.raises(LogError, match=TELEMETRY_FILE):
+        _ = TelemetryView(tmp_path).count
+
+
+def test_reader_beside_a_writing_process_sees_whole_records_only(tmp_path: Path) -> None:
+    total = 60_000
+    command = [sys.executable, "-c", CHILD, str(tmp_path), str(total)]
+    telemetry, output = TelemetryView(tmp_path), OutputView(tmp_path)
+    seen, rows = -1, []
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+        while seen < total - 1:
+            assert child.poll() is None
+            last = telemetry.last()
+            if last is not None:
+                assert last.x_mm == last.line == last.tick >= seen
+                assert telemetry.array()[-1]["right_position_deg"] >= last.tick
+                seen = last.tick
+            rows += output.new_rows(50)
+        child.communicate()
+    rows += output.new_rows()
+    assert [row.text for row in rows] == [f"n: {tick}" for tick in range(0, total, 10)]
+
+
+def test_nothing_is_lost_when_the_writer_is_killed(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", CHILD, str(tmp_path), "1003"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == b"written\n"
+        child.send_signal(signal.SIGKILL)
+    assert (tmp_path / TELEMETRY_FILE).stat().st_size > HEADER_BYTES + 64 * 1003
+    assert TelemetryView(tmp_path).array()["tick"].tolist() == list(range(1003))
+    assert len(OutputView(tmp_path).all_rows()) == 101
+
+
+def test_instant_has_what_the_sensors_need(spec: RunSpec) -> None:
+    record = TickRecord(12, 3, 1.0, 2.0, 30.0, 4.0, 5.0, 100.0, 200.0, 8.0, 0, 0)
+    instant = instant_of(record, spec, NoiseSpec(5, 6))
+    assert (instant.tick, instant.pose, instant.seed, instant.noise) == (12, record.pose, 3, NoiseSpec(5, 6))
+    assert instant.turn_rate_dps == 100.0 * 56 / (2 * 180)
+
+
+def test_runs_that_are_over_keep_no_files_open(record: Callable[..., Recorder], spec: RunSpec) -> None:
+    recorder = record(spec)
+    recorder.drive(50, 50, 3)
+    recorder.print("a: 1")
+    recorder.end()
+    before = len(os.listdir("/proc/self/fd"))
+    views = [(TelemetryView(recorder.run.folder), OutputView(recorder.run.folder)) for _ in range(5)]
+    assert {(ticks.array().size, len(output.all_rows())) for ticks, output in views} == {(4, 1)}
+    assert len(os.listdir("/proc/self/fd")) == before
+
+
+@pytest.mark.parametrize(("name", "rows", "ticks"), [(TELEMETRY_FILE, 1, 0), (OUTPUT_FILE, 0, 11)])
+def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
+    name: str, rows: int, ticks: int, store: RunStore, spec: RunSpec, record: Callable[[RunSpec], Recorder]
+) -> None:
+    recorder = record(spec)
+    recorder.print("A: 1")
+    recorder.drive(100.0, 100.0, 10)
+    file = recorder.end().folder / name
+    with file.open("r+b") as handle:
+        handle.write(b"XXXXXXXX")
+    run = store.load_run(file.parent.name)
+    assert run.notes == (f"{file}: not a tuisim recording: nothing of it can be read",)
+    assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)

@@ -1,0 +1,101 @@
+"""The language of breaks."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.breakpoints import (
+    Breakpoint,
+    BreakRule,
+    LineBreak,
+    PrintBreak,
+    SampleBreak,
+    StallBreak,
+    TimeBreak,
+    ValueBreak,
+    break_line_of,
+    break_lines,
+    moved,
+    parse_break,
+    parse_breakpoints,
+    quantities,
+)
+from tuisim.core.spec import RobotSpec
+from tuisim.errors import ConfigError
+
+ROBOT = RobotSpec()
+
+RULES: dict[str, tuple[BreakRule, str]] = {
+    "12": (LineBreak(12), "12"),
+    "line 12": (LineBreak(12), "12"),
+    "12 if x > 3": (LineBreak(12, "x > 3"), "12 if x > 3"),
+    "  7   if  a[0] ": (LineBreak(7, "a[0]"), "7 if a[0]"),
+    "left.red% < 10": (ValueBreak("left.red%", "<", 10.0), "left.red% < 10"),
+    "left sensor red % < 10": (ValueBreak("left.red%", "<", 10.0), "left.red% < 10"),
+    "right.color changes": (ValueBreak("right.color", "changes"), "right.color changes"),
+    "left.color == Blue": (ValueBreak("left.color", "==", 2.0), "left.color == Blue"),
+    "ultrasonic<200": (ValueBreak("ultrasonic", "<", 200.0), "ultrasonic < 200"),
+    "ultrasonic sensor <= 2.5e2": (ValueBreak("ultrasonic", "<=", 250.0), "ultrasonic <= 250"),
+    "gyro > 90": (ValueBreak("gyro", ">", 90.0), "gyro > 90"),
+    "gyro.rate != 0": (ValueBreak("gyro.rate", "!=", 0.0), "gyro.rate != 0"),
+    "x_mm > 1000": (ValueBreak("x_mm", ">", 1000.0), "x_mm > 1000"),
+    "time 3.5": (TimeBreak(3.5), "time 3.5"),
+    "time 3.5 s": (TimeBreak(3.5), "time 3.5"),
+    "sample Colour": (SampleBreak("Colour", "is seen"), "sample Colour"),
+    "sample Colour changes": (SampleBreak("Colour", "changes"), "sample Colour changes"),
+    "sample Colour >= -1.5": (SampleBreak("Colour", ">=", -1.5), "sample Colour >= -1.5"),
+    "print matches a|b c": (PrintBreak("a|b c"), "print matches a|b c"),
+    "stall": (StallBreak(), "stall"),
+}
+
+
+@pytest.mark.parametrize(("text", "rule", "common"), [(t, *r) for t, r in RULES.items()], ids=RULES)
+def test_a_text_is_a_rule_and_back(text: str, rule: BreakRule, common: str) -> None:
+    found = parse_break(text, ROBOT)
+    assert found == Breakpoint(rule, common)
+    assert parse_break(found.written(), ROBOT) == found
+    off = parse_break("# " + text, ROBOT)
+    assert off.disabled
+    assert parse_break(off.written(), ROBOT) == off
+
+
+WRONG = {
+    "": "says nothing",
+    "#": "says nothing",
+    "0": "count from 1",
+    "hello": "is no break",
+    "12 if": "is no break",
+    "12 if x >": "is no expression",
+    "12 if " + "(" * 500: "is no expression",
+    "left.purple < 3": "has no 'left.purple'",
+    "middle.red < 3": "has no 'middle.red'",
+    "ultrasonic < far": "'far' is no number",
+    "ultrasonic < nan": "not possible",
+    "time -1": "not possible",
+    "time": "is no number",
+    "print hello": "only be matched",
+    "print matches (": "no regular expression",
+    "sample 1x < 3": "a sample has a name",
+    "sample": "a sample has a name",
+}
+
+
+@pytest.mark.parametrize(("text", "why"), WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
+def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> None:
+    with pytest.raises(ConfigError, match="break: ") as refused:
+        parse_break(text, ROBOT)
+    assert why in refused.value.message
+    assert refused.value.hint
+
+
+def test_every_quantity_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
+    for name in quantities(ROBOT):
+        assert parse_break(f"{name} > 1", ROBOT).rule == ValueBreak(name, ">", 1.0)
+    assert parse_break("middle.red > 1").rule == ValueBreak("middle.red", ">", 1.0)
+
+
+def test_lines_with_a_break_and_breaks_that_move() -> None:
+    breaks = parse_breakpoints(["# 3", "3 if x", "# 5", "stall"])
+    assert {line: one.text for line, one in break_lines(breaks).items()} == {3: "3 if x", 5: "5"}
+    assert [break_line_of(one) for one in breaks] == [3, 3, 5, 0]
+    assert [moved(one, 9).written() for one in breaks] == ["# 9", "9 if x", "# 9", "stall"]

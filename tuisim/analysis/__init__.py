@@ -1,0 +1,1 @@
+"""An open log that is analysed: cursor, selection, table, traces, events. Without Textual."""

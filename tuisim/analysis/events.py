@@ -1,0 +1,209 @@
+"""Events: where a variable crosses a threshold."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.errors import LogError, listed
+from tuisim.logs.signals import known_in_order
+from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
+    from tuisim.logs.log import Log, Series
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """One crossing."""
+
+    at: int
+    """Position of the first sample beyond the threshold."""
+    time_s: float
+    """When the straight line between the samples on either side meets the threshold."""
+    value: float
+    """The sample at `at`."""
+    rising: bool
+
+
+def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteresis: float = 0.0) -> list[Crossing]:
+    """Return where a signal crosses a threshold, in order of time.
+
+    A value on the threshold counts as beyond it when the signal comes from below, so
+    that a signal that only touches it from above crosses nothing.
+
+    Args:
+        time_s: Shape (n,), in any order.
+        values: Shape (n,); those that are not finite are passed over.
+        threshold: Where.
+        hysteresis: A crossing counts if the signal is so far from the threshold before it and after it.
+
+    Raises:
+        LogError: the hysteresis is negative.
+    """
+    if not hysteresis >= 0.0:
+        raise LogError(f"the hysteresis must not be negative, got {hysteresis:g}")
+    known = np.arange(len(values))[known_in_order(time_s, values)]
+    signal = values[known]
+    above = signal >= threshold
+    # The side on which the signal certainly is; 0 while it is too near the threshold to tell.
+    side = np.where(signal >= threshold + hysteresis, 1, np.where(signal < threshold - hysteresis, -1, 0))
+    decided = np.flatnonzero(side)
+    turns = side[decided[1:]] != side[decided[:-1]]
+    before, changes = decided[:-1][turns], decided[1:][turns]
+    found = []
+    for start, end in zip(before.tolist(), changes.tolist(), strict=True):
+        rising = bool(side[end] > 0)
+        beyond = above[start + 1 : end + 1] == rising
+        # Where it went over for good, not where that became certain.
+        at = start + 1 + (0 if beyond.all() else int(np.flatnonzero(~beyond)[-1]) + 1)
+        first, last = int(known[at - 1]), int(known[at])
+        found.append(Crossing(last, _meets(time_s, values, first, last, threshold), float(values[last]), rising))
+    return found
+
+
+def _meets(time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float) -> float:
+    # Halves, whose difference is finite.
+    start, stop = float(values[first]) / 2.0, float(values[last]) / 2.0
+    part = (threshold / 2.0 - start) / (stop - start) if stop != start else 1.0
+    return float(time_s[first]) + min(max(part, 0.0), 1.0) * float(time_s[last] - time_s[first])
+
+
+FORM = "such as `Colour < 50`, `Colour > 50 +- 2`, or `Colour = 50` for both ways; several with `,` between them"
+_NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_THRESHOLD = re.compile(
+    rf"\s*(?P<name>.+?)\s*(?P<op>[<>=])\s*(?P<value>{_NUMBER})\s*(?:(?:\+-|±)\s*(?P<width>{_NUMBER})\s*)?"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Threshold:
+    """What a variable is watched for."""
+
+    name: str
+    op: str
+    """`<`: comes below; `>`: comes above; `=`: either."""
+    value: float
+    hysteresis: float = 0.0
+    """So far from the value before and after, for a crossing to count."""
+
+    def __str__(self) -> str:
+        width = f" +- {self.hysteresis:g}" if self.hysteresis else ""
+        return f"{self.name} {self.op} {self.value:g}{width}"
+
+    def among(self, series: Sequence[Series]) -> list[Series]:
+        """Return those that it is about: of several runs all, unless one of them is named."""
+        return [one for one in series if self.name in (one.name, one.name.partition(" #")[0])]
+
+    def crossings(self, series: Series) -> list[Crossing]:
+        """Return where a series crosses it, in order of time."""
+        found = crossings(series.time_s, series.values, self.value, self.hysteresis)
+        return [one for one in found if self.op == "=" or one.rising is (self.op == ">")]
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One crossing of one variable."""
+
+    variable: str
+    threshold: Threshold
+    rising: bool
+    row: int
+    """Of the table: the first sample beyond the threshold."""
+    sample: int
+    """Of the variable: the same."""
+    time_s: float
+    """When it crosses, between two samples."""
+    since_s: float
+    """Time since the same variable's event before; not a number for the first."""
+    value: float
+    """At the row."""
+
+
+def threshold_of(text: str) -> Threshold | None:
+    """Return what a text such as `Colour < 50` says, None if it says nothing of the kind."""
+    match = _THRESHOLD.fullmatch(text)
+    if match is None:
+        return None
+    return Threshold(match["name"], match["op"], float(match["value"]), float(match["width"] or 0.0))
+
+
+def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
+    """Return the thresholds in a text, as `FORM` says; none in an empty one.
+
+    Raises:
+        LogError: one is none, or there is no such variable.
+    """
+    found = []
+    for part in text.split(",") if text.strip() else ():
+        threshold = threshold_of(part)
+        if threshold is None:
+            raise LogError(f"no threshold: {part.strip()!r}", FORM)
+        names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
+        if threshold.name not in log.names and threshold.name not in names:
+            raise LogError(f"no variable {threshold.name!r}", f"there are {listed(names)}", file=log.title)
+        found.append(threshold)
+    return tuple(found)
+
+
+def events_of(log: Log, thresholds: Sequence[Threshold]) -> list[Event]:
+    """Return where variables cross thresholds, in the order of the rows."""
+    found = []
+    series = [log.series(name) for name in log.names] if thresholds else []
+    for threshold in thresholds:
+        for one in threshold.among(series):
+            before_s = float("nan")
+            for crossing in threshold.crossings(one):
+                row = int(one.rows[crossing.at])
+                since_s = crossing.time_s - before_s
+                found.append(
+                    Event(
+                        one.name, threshold, crossing.rising, row, crossing.at, crossing.time_s, since_s, crossing.value
+                    )
+                )
+                before_s = crossing.time_s
+    return sorted(found, key=lambda event: event.row)
+
+
+class Events:
+    """The events that are looked at, found anew when the log has changed."""
+
+    def __init__(self) -> None:
+        self.thresholds: tuple[Threshold, ...] = ()
+        self._of: tuple[Log | None, tuple[Threshold, ...]] = (None, ())
+        self._found: list[Event] = []
+
+    def take(self, log: Log, thresholds: tuple[Threshold, ...], found: list[Event]) -> None:
+        """Have events that were found."""
+        self.thresholds, self._of, self._found = thresholds, (log, thresholds), found
+
+    def found(self, log: Log) -> list[Event]:
+        """Return the events of a log, in the order of its rows."""
+        if self._of[0] is not log or self._of[1] != self.thresholds:
+            self.take(log, self.thresholds, events_of(log, self.thresholds))
+        return self._found
+
+
+def place_of_event(model: Model, event: Event) -> float:
+    """Return where an event stands along the chart."""
+    trace = model.traces.named(event.variable)
+    return event.time_s + float(trace.places[event.sample] - trace.series.time_s[event.sample])
+
+
+def marks(model: Model, limits: tuple[float, float], columns: int) -> str:
+    """Return a line with a mark at each column of the chart in which there are events."""
+    from tuisim.charts import axes
+
+    line = [" "] * columns
+    events = model.events.found(model.log)
+    places = np.array([place_of_event(model, event) for event in events])
+    for at in np.flatnonzero((places >= limits[0]) & (places <= limits[1])).tolist():
+        column = min(max(axes.column_of(float(places[at]), limits, columns), 0), columns - 1)
+        mark = "▲" if events[at].rising else "▼"
+        line[column] = mark if line[column] in (" ", mark) else "◆"
+    return "".join(line)

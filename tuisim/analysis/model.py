@@ -1,0 +1,410 @@
+"""The state of an analysis: one cursor in time, the selection, derived variables and the notes."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.analysis.alignment import TIME, aligned
+from tuisim.analysis.events import Events
+from tuisim.analysis.table import Rows
+from tuisim.analysis.traces import LogTrace, LogTraces
+from tuisim.charts.axes import Limits
+from tuisim.errors import LogError, listed
+from tuisim.logs.annotations import Note, read_notes, write_notes
+from tuisim.logs.bands import Band, BandReport, band_report, in_words
+from tuisim.logs.columns import is_numeric
+from tuisim.logs.dead_reckoning import RECKONED, reckoned_series
+from tuisim.logs.derived import definition_of, derived
+from tuisim.logs.plateaus import Plateau, plateaus
+from tuisim.logs.signals import known_at
+from tuisim.logs.statistics import Summary, summary_of
+from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tuisim.analysis.source import OpenedLog
+    from tuisim.logs.log import Log
+
+_LEAST_SPAN = 1e-9
+"""Of the whole time: the chart zooms in no further."""
+_SORTED_AT_ONCE = 200_000
+"""So many values have their quantiles found within a few hundredths of a second."""
+
+
+class Model:
+    """One log as it is looked at.
+
+    Args:
+        subject: The log.
+
+    Raises:
+        LogError: it has rows but no numbers, or its notes cannot be read.
+    """
+
+    def __init__(self, subject: OpenedLog) -> None:
+        self.subject = subject
+        self.log = subject.log
+        self.rows = Rows(subject.log)
+        self.traces = LogTraces(subject.log)
+        ticked = self.traces.ticked()
+        if self.log.rows and not ticked:
+            raise LogError("no column of numbers", "there is nothing to draw", file=self.log.title)
+        self.selected: str = ticked[0].name if ticked else ""
+        """Variable whose samples the cursor goes along."""
+        self.row: int = 0
+        """Row of the table that everything shows."""
+        self.mark_s: float | None = None
+        """The other cursor of the chart."""
+        self.limits: Limits | None = None
+        """Times that the chart shows, None for all."""
+        self.alignment = TIME
+        """How runs are laid over each other."""
+        self._reports: dict[str, BandReport] = {}
+        self._reported: tuple[list[BandReport], list[Band]] = ([], [])
+        """The bands of the reports that were last asked for."""
+        self.events = Events()
+        self.definitions: dict[str, str] = {}
+        """What was derived, as it was typed, by its name."""
+        self._words: dict[str, str] = {}
+        """What was found, in a sentence for each variable."""
+        self._summaries: dict[str, Summary] = {}
+        self._places = subject.notes_places()
+        self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]
+        if ticked and len(self.trace.series.rows):
+            self.row = int(self.trace.series.rows[0])
+
+    # The cursor
+
+    @property
+    def trace(self) -> LogTrace:
+        """The selected variable."""
+        return self.traces.named(self.selected)
+
+    def trace_of_row(self, row: int) -> LogTrace:
+        """Return the trace that a row belongs to."""
+        layout, table = self.log.layout, self.log.table
+        if not layout.variable:
+            name = self.selected.partition(" #")[0] if layout.run else self.selected
+        else:
+            name = str(table.column(layout.variable)[row].as_py())
+        if layout.run and (key := f"{name} #{table.column(layout.run)[row].as_py()}") in self.traces:
+            name = key
+        # What a row without a name or a run belongs to is not known.
+        return self.traces.named(name if name in self.traces else self.selected)
+
+    @property
+    def cursor_s(self) -> float:
+        """Where the row that is looked at stands along the chart: its time, unless it was aligned in another way."""
+        trace = self.trace_of_row(self.row)
+        return float(trace.places[self._sample(trace, self.row)])
+
+    def time_of(self, row: int) -> float:
+        """Return the time of a row in its run."""
+        trace = self.trace_of_row(row)
+        return float(trace.series.time_s[self._sample(trace, row)])
+
+    @staticmethod
+    def _sample(trace: LogTrace, row: int) -> int:
+        """Which sample of a variable stands in a row, or is the next one after it."""
+        rows = trace.series.rows
+        return min(int(np.searchsorted(rows, row)), len(rows) - 1)
+
+    @property
+    def sample(self) -> int:
+        """Which sample of the selected variable is looked at, or comes next."""
+        return self._sample(self.trace, self.row)
+
+    def along(self, name: str) -> FloatArray:
+        """Return the values of a variable or column at each sample of the selected variable, shape (n,).
+
+        Raises:
+            LogError: there is none of that name, or it holds no numbers.
+        """
+        series = self.trace.series
+        if name in self.traces:
+            other = self.traces.named(name).series
+            if other is series:
+                return other.values
+            return known_at(other.time_s, other.values, series.time_s)
+        if name not in self.log.table.column_names or not is_numeric(self.log.table.column(name).type):
+            numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
+            known = dict.fromkeys((*self.log.names, *numbers))
+            raise LogError(f"no variable {name!r}", f"there are {listed(known)}", file=self.log.title)
+        return self.log.numbers(name)[series.rows]
+
+    def run_of(self, row: int) -> int:
+        """Return which run a row is of, from 0."""
+        return max(0, self.trace_of_row(row).series.run - 1)
+
+    def printed_line(self) -> int:
+        """Return the line of the program that printed the row, 0 if the log does not say."""
+        if "line" not in self.log.table.column_names:
+            return 0
+        return int(self.log.table.column("line")[self.row].as_py() or 0)
+
+    def go_to_time(self, time_s: float) -> None:
+        """Go to the sample of the selected variable that is nearest to a place of the chart."""
+        if len(self.trace.pyramid.times_s):
+            self.row = int(self.trace.series.rows[self.trace.pyramid.nearest(time_s)])
+
+    def go_to_moment(self, time_s: float) -> None:
+        """Go to the sample of the selected variable that is nearest to a time of its run."""
+        series = self.trace.series
+        if len(series.rows):
+            self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s - time_s)))])
+
+    def step(self, samples: int) -> None:
+        """Go to a sample of the selected variable before or after the one that is looked at."""
+        rows = self.trace.series.rows
+        if len(rows):
+            # The row may be one of another variable, between two samples.
+            at = int(np.searchsorted(rows, self.row, "right" if samples > 0 else "left")) + samples - (samples > 0)
+            self.row = int(rows[min(max(at, 0), len(rows) - 1)])
+
+    def take_over(self, other: Model) -> None:
+        """Go on where one was in the same log, of which there is more now."""
+        self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
+        if other.row == other.log.rows - 1:
+            # Whoever looks at the end of a log that grows goes on looking at its end.
+            self.row = self.log.rows - 1
+        self.define_as(other)
+        for trace in other.traces:
+            if trace.name in self.traces:
+                self.traces.named(trace.name).on = trace.on
+        if other.selected in self.traces:
+            self.selected = other.selected
+        self.events.thresholds = other.events.thresholds
+        self.rows.take_over(other.rows)
+        if other.alignment != TIME:
+            self._align_again(other.alignment)
+
+    def define_as(self, other: Model) -> None:
+        """Derive what another model of the same log has derived. Slow for a long log: call it in a thread before."""
+        for name, text in other.definitions.items():
+            if name not in self.definitions:
+                # Other columns may be variables by now: what needs those that are gone goes with them.
+                with suppress(LogError):
+                    derive(self, text)
+
+    def take_log(self, log: Log) -> None:
+        """Turn to the same log with other derived variables."""
+        self.log, self.subject = log, replace(self.subject, log=log)
+        before = {trace.name: trace for trace in self.traces}
+        self.traces.take_log(log)
+        self.rows.take_log(log)
+        for name, trace in before.items():
+            if name not in self.traces or self.traces.named(name) is not trace:
+                self._reports.pop(name, None)
+                self._summaries.pop(name, None)
+        if self.selected not in self.traces:
+            self.selected = next(iter(self.traces)).name
+        if self.alignment != TIME:
+            self._align_again(self.alignment)
+
+    def _align_again(self, way: str) -> None:
+        limits, mark_s = self.limits, self.mark_s
+        self.align(way)
+        self.limits, self.mark_s = limits, mark_s
+
+    def go_to_row(self, row: int) -> None:
+        """Go to a row of the table, the nearest there is."""
+        self.row = min(max(row, 0), max(self.log.rows - 1, 0))
+
+    def select(self, step: int) -> None:
+        """Choose another variable."""
+        names = [trace.name for trace in self.traces]
+        if names:
+            self.selected = names[(names.index(self.selected) + step) % len(names)]
+
+    def align(self, way: str) -> None:
+        """Lay the runs over each other.
+
+        Args:
+            way: `time`; `distance`, so far as each has driven; or an event such as `Colour < 50`.
+
+        Raises:
+            LogError: the log does not say how far the robot drove, or no run has such an event.
+        """
+        places_of_all = aligned(self.log, [trace.series for trace in self.traces], way)
+        for trace, places in zip(self.traces, places_of_all, strict=True):
+            trace.align(places)
+        self.alignment, self.limits, self.mark_s = way, None, None
+
+    # The part of the time that the chart shows
+
+    def x_limits(self) -> Limits:
+        """Return the times at the chart's edges."""
+        return self.limits or self.traces.span_s()
+
+    def zoom(self, factor: float) -> None:
+        """Show more or less time around the cursor."""
+        (low, high), (first, last) = self.x_limits(), self.traces.span_s()
+        width = max((high - low) * factor, (last - first) * _LEAST_SPAN)
+        if width >= last - first:
+            self.limits = None
+            return
+        share = (min(max(self.cursor_s, low), high) - low) / (high - low)
+        self._show_from(self.cursor_s - share * width, width)
+
+    def pan(self, share: float) -> None:
+        """Move what is shown by a part of its width."""
+        low, high = self.x_limits()
+        if self.limits:
+            self._show_from(low + share * (high - low), high - low)
+
+    def _show_from(self, low: float, width: float) -> None:
+        first, last = self.traces.span_s()
+        low = min(max(low, first), last - width)
+        self.limits = low, low + width
+
+    def follow_cursor(self) -> None:
+        """Bring the cursor into what the chart shows."""
+        if self.limits and not self.limits[0] <= self.cursor_s <= self.limits[1]:
+            width = self.limits[1] - self.limits[0]
+            self._show_from(self.cursor_s - width / 2, width)
+
+    # Bands
+
+    def unsearched(self) -> list[str]:
+        """Return the ticked variables whose bands have not been searched for."""
+        return [trace.name for trace in self.traces.ticked() if trace.name not in self._reports]
+
+    def find_bands(self, names: Sequence[str], search: Callable[[FloatArray], list[Plateau]] = plateaus) -> None:
+        """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
+        for name in names:
+            report = band_report(self.log, name, search)
+            self._words[name], self._reports[name] = in_words(report), report
+
+    def reports(self) -> list[BandReport]:
+        """Return what was found in the ticked variables."""
+        return [self._reports[trace.name] for trace in self.traces.ticked() if trace.name in self._reports]
+
+    def bands_in_words(self) -> list[str]:
+        """Return what was found in the ticked variables, a sentence each."""
+        return [self._words[report.variable] for report in self.reports()]
+
+    def bands(self) -> Sequence[Band]:
+        """Return the bands of the ticked variables, as far as they were searched for."""
+        reports = self.reports()
+        if reports != self._reported[0]:
+            self._reported = reports, [band for report in reports for band in report.bands]
+        return self._reported[1]
+
+    def measured(self) -> Limits | None:
+        """Return the part of the chart between the two cursors, None if there is one cursor only."""
+        if self.mark_s is None or not self.log.rows:
+            return None
+        return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)
+
+    def unsummed(self) -> list[str]:
+        """Return the ticked variables whose figures are shown and have not been reckoned."""
+        if self.measured() is not None:
+            return []
+        return [trace.name for trace in self.traces.ticked() if trace.name not in self._summaries]
+
+    def sum_up(self, names: Sequence[str]) -> None:
+        """Reckon the figures of variables. Slow for a long log: call it in a thread."""
+        for name in names:
+            self._summaries[name] = summary_of(self.traces.named(name).series.values)
+
+    def summary(self, name: str) -> Summary:
+        """Return the figures of a variable: of what is between the two cursors, or of all, reckoned once."""
+        span = self.measured()
+        if span is not None:
+            pyramid = self.traces.named(name).pyramid
+            values = pyramid.between(*span)[1]
+            # The quantiles of many would hold up the keys that move the cursor.
+            return summary_of(values) if len(values) <= _SORTED_AT_ONCE else pyramid.figures(*span)
+        if name not in self._summaries:
+            self.sum_up([name])
+        return self._summaries[name]
+
+    # Notes
+
+    @property
+    def notes(self) -> list[tuple[int, Note]]:
+        """Every note with the number of its run, from 0, in order of time."""
+        return [(run, note) for run, notes in enumerate(self._notes) for note in notes]
+
+    def add_note(self, text: str, start_s: float, stop_s: float, variable: str, run: int) -> None:
+        """Write a note to its run's file.
+
+        Raises:
+            LogError: it cannot be written, or the log is none that can be found again.
+        """
+        place = self._place(run)
+        notes = [*self._notes[run]]
+        note = Note(text, start_s, stop_s, variable)
+        notes.insert(bisect_right(notes, start_s, key=lambda other: other.start_s), note)
+        write_notes(place, notes)
+        self._notes[run] = notes
+
+    def drop_note(self, run: int, note: Note) -> None:
+        """Delete a note.
+
+        Raises:
+            LogError: the others cannot be written.
+        """
+        notes = [other for other in self._notes[run] if other is not note]
+        write_notes(self._place(run), notes)
+        self._notes[run] = notes
+
+    def _place(self, run: int) -> Path:
+        if run >= len(self._places):
+            raise LogError("notes cannot be kept", "only with a file or a run, not what comes from a pipe")
+        return self._places[run]
+
+
+RECKONING = "reckoning"
+"""Line that asks for what the wheels say."""
+
+
+def derive(model: Model, text: str) -> None:
+    """Derive a variable, at once.
+
+    Raises:
+        LogError: as for `with_definition`.
+    """
+    take(model, *with_definition(model, text))
+
+
+def take(model: Model, text: str, log: Log) -> None:
+    """Let a model have what was derived."""
+    name = RECKONING if text == RECKONING else definition_of(text).name
+    model.definitions.pop(name, None)
+    if text == RECKONING or definition_of(text).expression:
+        model.definitions[name] = text
+    model.take_log(log)
+    shown = RECKONED[-1] if name == RECKONING else name
+    model.selected = next((one for one in log.derived if one.partition(" #")[0] == shown), model.selected)
+
+
+def with_definition(model: Model, text: str) -> tuple[str, Log]:
+    """Return a line as it was typed, and the log with what it defines.
+
+    Raises:
+        LogError: the line cannot be read, names what there is not, or there is no such variable to take away.
+    """
+    text = text.strip()
+    log = model.log
+    if text == RECKONING:
+        for column in RECKONED:
+            log = log.without_derived(column)
+        for series in reckoned_series(log):
+            log = log.with_derived(series.name, [series])
+        return text, log
+    definition = definition_of(text)
+    bare = log.without_derived(definition.name)
+    if definition.expression:
+        return text, bare.with_derived(definition.name, derived(bare, definition, model.selected))
+    if bare is log:
+        made = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
+        raise LogError(f"no derived variable {definition.name!r}", f"there are {', '.join(made) or 'none'}")
+    return text, bare

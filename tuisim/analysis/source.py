@@ -1,0 +1,88 @@
+"""What the analyser looks at: a log, and the runs it comes from if they are in the store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.logs.annotations import notes_of_file, notes_of_run
+
+if TYPE_CHECKING:
+    from tuisim.logs.log import Log
+    from tuisim.runs.run_folder import StoredRun
+
+
+@dataclass(frozen=True, slots=True)
+class LogRequest:
+    """What was asked for: a file, or runs."""
+
+    file: str = ""
+    """Path, or `-` for the standard input; empty for runs."""
+    runs: tuple[str, ...] = ()
+    """Numbers, ids, or `last`."""
+    telemetry: bool = False
+    """Every tick of the first run instead of the samples."""
+    time: str | None = None
+    """Column with the time, None to guess."""
+    values: tuple[str, ...] = ()
+    """Columns with values, none to guess."""
+    unit: str = ""
+    """Of times that are numbers, empty to guess."""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedLog:
+    """A log that was opened, perhaps in part."""
+
+    wanted: LogRequest
+    log: Log
+    runs: tuple[StoredRun, ...] = ()
+    """In the order of the log's run column; none for a file."""
+    part: float = 1.0
+    """How much of it has been read, 0 to 1; not a number where that is not known."""
+    done: bool = True
+
+    def notes_places(self) -> tuple[Path, ...]:
+        """Return the file of the notes on each run, one for a file, none for a log that nobody can find again.
+
+        Raises:
+            LogError: the file is not there any more.
+        """
+        if self.runs:
+            return tuple(notes_of_run(run.folder) for run in self.runs)
+        file = Path(self.wanted.file)
+        return (notes_of_file(file),) if file.is_file() else ()
+
+    def stamp(self) -> object:
+        """Return something that changes when there is more to read."""
+        if self.runs:
+            return tuple((run.telemetry.count if self.wanted.telemetry else run.output.length) for run in self.runs)
+        try:
+            return Path(self.wanted.file).stat().st_size
+        except OSError:
+            return None
+
+
+def opening(wanted: LogRequest) -> Iterator[OpenedLog]:
+    """Open what was asked for; yield what there is of it, soon after the start and then now and then.
+
+    Slow for a large file: call it in a thread.
+
+    Raises:
+        LogError: there is no such run or file, or it cannot be read.
+    """
+    from tuisim.logs.reader import read_pieces
+    from tuisim.logs.stored_runs import log_of_runs, telemetry_log
+    from tuisim.runs.store import RunStore
+
+    if not wanted.file:
+        store = RunStore()
+        runs = tuple(store.load_run(word) for word in wanted.runs)
+        log = telemetry_log(runs[0]) if wanted.telemetry else log_of_runs(runs)
+        yield OpenedLog(wanted, log, runs[:1] if wanted.telemetry else runs)
+        return
+    for loaded in read_pieces(wanted.file, wanted.time, wanted.values, wanted.unit):
+        if loaded.log is not None:
+            yield OpenedLog(wanted, loaded.log, (), loaded.part, loaded.done)

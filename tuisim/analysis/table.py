@@ -1,0 +1,335 @@
+"""The table of a log as rows of text: columns, order, filters. Only the rows that are shown are read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tuisim.errors import LogError, listed
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from tuisim.logs.log import Log
+    from tuisim.runs.arrays import IntArray
+
+AT_ONCE = 200_000
+"""Rows that are worked through within a few hundredths of a second."""
+
+
+@dataclass(slots=True)
+class TableTask:
+    """One piece of work while it is done."""
+
+    word: str
+    part: float = 0.0
+    """Of it that is done, 0 to 1; 0 where that is not known."""
+    stopped: bool = False
+    """Whether nobody waits for it any more."""
+
+    def __str__(self) -> str:
+        return f"{self.word} {self.part:.0%}" if self.part else self.word
+
+
+FORM = "column, one of < <= > >= == != ~ and a value; several with `and`"
+_CONDITION = re.compile(r"\s*(?P<column>[^<>=!~]+?)\s*(?P<op><=|>=|==|!=|=|<|>|~)\s*(?P<value>.*?)\s*")
+_STRETCH = 100_000
+"""So many rows are searched at once."""
+_COMPARED: Mapping[str, str] = {
+    "<": "less", "<=": "less_equal", ">": "greater", ">=": "greater_equal", "==": "equal", "=": "equal",
+    "!=": "not_equal",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What a row must fulfil."""
+
+    column: str
+    op: str
+    value: str
+
+    def __str__(self) -> str:
+        return f"{self.column} {self.op} {self.value}"
+
+
+def conditions_of(text: str, columns: list[str]) -> list[Condition]:
+    """Return the conditions in a text such as `variable == Colour and value > 50`.
+
+    Raises:
+        LogError: one is none, or there is no such column.
+    """
+    found = []
+    for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
+        match = _CONDITION.fullmatch(part)
+        if match is None:
+            raise LogError(f"no condition: {part!r}", FORM)
+        condition = Condition(match["column"], match["op"], match["value"].strip("'\""))
+        if condition.column not in columns:
+            raise LogError(f"no column {condition.column!r}", f"there are {listed(columns)}")
+        found.append(condition)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class TableView:
+    """Which rows of a log a table shows, in which order."""
+
+    conditions: tuple[Condition, ...]
+    fulfilled: IntArray | None
+    """Rows that fulfil the conditions, rising; None for all."""
+    sorted_by: str
+    descending: bool
+    order: IntArray | None
+    """Those rows as they are shown; None for all as they are in the log."""
+
+
+class Rows:
+    """What the table shows.
+
+    Args:
+        log: The log.
+    """
+
+    def __init__(self, log: Log) -> None:
+        self._log = log
+        self.columns: list[str] = list(log.table.column_names)
+        """Those that are shown, the frozen ones first."""
+        self.frozen = 0
+        """So many columns stay at the left."""
+        self.column = 0
+        """Position of the chosen one in `columns`."""
+        self.conditions: tuple[Condition, ...] = ()
+        self.sorted_by = ""
+        self.descending = False
+        self._fulfilled: IntArray | None = None
+        self._order: IntArray | None = None
+        """Rows of the log that are shown, in order; None for all as they are."""
+
+    def __len__(self) -> int:
+        return self._log.rows if self._order is None else len(self._order)
+
+    @property
+    def chosen(self) -> str:
+        """Name of the chosen column."""
+        return self.columns[self.column]
+
+    def row(self, place: int) -> int:
+        """Return the row of the log that stands at a place of the table."""
+        return place if self._order is None else int(self._order[place])
+
+    def place(self, row: int) -> int:
+        """Return the place at which a row of the log stands, or else the nearest to it."""
+        if self._order is None or not len(self._order):
+            return row
+        if self.sorted_by:
+            found = np.flatnonzero(self._order == row)
+            return int(found[0]) if len(found) else 0
+        return min(int(np.searchsorted(self._order, row)), len(self._order) - 1)
+
+    def text(self, row: int, column: str) -> str:
+        """Return a cell as text."""
+        import pyarrow as pa
+
+        cell = self._log.table.column(column)[row]
+        if pa.types.is_duration(cell.type):
+            # As an object of Python's it would be one of pandas, whose import takes longer than a whole screen.
+            return f"{cell.value / _per_s(cell.type.unit):.3f}" if cell.is_valid else ""
+        return text_of(cell.as_py())
+
+    def shown(self) -> pa.Table:
+        """Return what is shown as a table of its own."""
+        table = self._log.table.select(self.columns)
+        return table if self._order is None else table.take(self._order)
+
+    # Which rows, in which order
+
+    def filter(self, conditions: tuple[Condition, ...]) -> None:
+        """Show only the rows that fulfil all conditions.
+
+        Raises:
+            LogError: a value is none that its column could have.
+        """
+        self.arrange(self.filtered(conditions))
+
+    def sort(self, column: str, descending: bool) -> None:
+        """Put the rows in the order of a column; empty for that of the log."""
+        self.arrange(self.sorted(column, descending))
+
+    def filtered(self, conditions: tuple[Condition, ...]) -> TableView:
+        """Return the rows that fulfil all conditions, in the order that they have. Slow for a long log.
+
+        Raises:
+            LogError: a value is none that its column could have.
+        """
+        masks = [_mask(self._log.table.column(condition.column), condition) for condition in conditions]
+        fulfilled = np.flatnonzero(np.logical_and.reduce(masks)) if masks else None
+        return self._arrangement(conditions, fulfilled, self.sorted_by, self.descending)
+
+    def sorted(self, column: str, descending: bool) -> TableView:
+        """Return the same rows in the order of a column; empty for that of the log. Slow for a long log."""
+        return self._arrangement(self.conditions, self._fulfilled, column, descending)
+
+    def arrange(self, arrangement: TableView) -> None:
+        """Show rows that were chosen and put in order."""
+        self.conditions, self._fulfilled = arrangement.conditions, arrangement.fulfilled
+        self.sorted_by, self.descending = arrangement.sorted_by, arrangement.descending
+        self._order = arrangement.order
+
+    def _arrangement(
+        self, conditions: tuple[Condition, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
+    ) -> TableView:
+        import pyarrow as pa
+        import pyarrow.compute as pc
+
+        order = fulfilled
+        if sorted_by:
+            column = self._log.table.column(sorted_by)
+            column = _texts(column) if pa.types.is_dictionary(column.type) else column
+            taken = column if order is None else column.take(order)
+            way = "descending" if descending else "ascending"
+            places = pc.sort_indices(taken, sort_keys=[("", way)]).to_numpy().astype(np.int64)
+            order = places if order is None else order[places]
+        return TableView(conditions, fulfilled, sorted_by, descending, order)
+
+    # Which columns
+
+    def choose(self, step: int) -> None:
+        """Go to another column."""
+        self.column = min(max(self.column + step, 0), len(self.columns) - 1)
+
+    def hide(self) -> None:
+        """Hide the chosen column, unless it is the only one."""
+        if len(self.columns) > 1:
+            self.frozen -= self.column < self.frozen
+            del self.columns[self.column]
+            self.column = min(self.column, len(self.columns) - 1)
+
+    def show_all(self) -> None:
+        """Show every column in the order of the log."""
+        self.columns = list(self._log.table.column_names)
+        self.frozen = self.column = 0
+
+    def freeze(self) -> None:
+        """Keep the chosen column at the left, or let it go."""
+        name = self.columns.pop(self.column)
+        if self.column < self.frozen:
+            self.frozen -= 1
+            self.column = self.frozen
+        else:
+            self.column = self.frozen
+            self.frozen += 1
+        self.columns.insert(self.column, name)
+
+    def take_log(self, log: Log) -> None:
+        """Turn to the same log with columns more or less; those that are new are shown."""
+        before, names = self._log.table.column_names, log.table.column_names
+        chosen = self.chosen
+        self._log = log
+        self.frozen = sum(name in names for name in self.columns[: self.frozen])
+        self.columns = [name for name in self.columns if name in names] or list(names)
+        self.columns += [name for name in names if name not in before and name not in self.columns]
+        self.column = self.columns.index(chosen) if chosen in self.columns else 0
+        gone = [at for at in (self.sorted_by, *(one.column for one in self.conditions)) if at and at not in names]
+        if gone:
+            self.sorted_by = "" if self.sorted_by in gone else self.sorted_by
+            self.filter(tuple(one for one in self.conditions if one.column not in gone))
+
+    def take_over(self, other: Rows) -> None:
+        """Show the same columns and conditions as another table of the same log."""
+        self.columns, self.frozen, self.column = other.columns, other.frozen, other.column
+        self.sorted_by, self.descending = other.sorted_by, other.descending
+        self.filter(other.conditions)
+
+    # Search
+
+    def find(self, text: str, from_place: int, step: int, task: TableTask | None = None) -> int | None:
+        """Return the next place whose row has a text in one of the shown columns, going round; None if none has.
+
+        Slow for a long log that has it nowhere.
+
+        Args:
+            text: In any case of letters.
+            from_place: Where to begin; looked at last.
+            step: 1 for onwards, -1 for backwards.
+            task: Told how far the search has come, and asked whether anybody still waits.
+        """
+        seen = 0
+        for first, last in _stretches(from_place, len(self), step):
+            places = self._places_with(text, first, last)
+            if len(places):
+                return int(places[0] if step > 0 else places[-1])
+            seen += last - first
+            if task is not None:
+                task.part = seen / len(self)
+                if task.stopped:
+                    return None
+        return None
+
+    def _places_with(self, text: str, first: int, last: int) -> IntArray:
+        """The places from `first` to before `last` whose rows have a text."""
+        import pyarrow.compute as pc
+
+        table = self._log.table.select(self.columns)
+        part = table.slice(first, last - first) if self._order is None else table.take(self._order[first:last])
+        found = np.zeros(last - first, bool)
+        for column in part.columns:
+            matched = pc.match_substring(_texts(column), text, ignore_case=True)
+            found |= np.asarray(pc.fill_null(matched, False).to_numpy(), bool)
+        return first + np.flatnonzero(found)
+
+
+def _stretches(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
+    """Yield all places in stretches, first and one after the last, from the one beside a place on, going round."""
+    middle = from_place + 1 if step > 0 else from_place
+    onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]
+    before = [(first, min(first + _STRETCH, middle)) for first in range(0, middle, _STRETCH)]
+    yield from [*onwards, *before] if step > 0 else [*reversed(before), *reversed(onwards)]
+
+
+def _texts(column: Any) -> Any:
+    import pyarrow as pa
+
+    kind = column.type
+    if pa.types.is_duration(kind):
+        column = column.cast(pa.int64()).cast(pa.float64(), safe=False)
+    return column.cast(pa.string())
+
+
+def _mask(column: Any, condition: Condition) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    if condition.op == "~":
+        made = pc.match_substring(_texts(column), condition.value, ignore_case=True)
+    else:
+        compare: Callable[[Any, Any], Any] = getattr(pc, _COMPARED[condition.op])
+        kind = column.type
+        if pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_duration(kind):
+            try:
+                value = float(condition.value)
+            except ValueError as error:
+                raise LogError(f"{condition}: no number", f"{condition.column} has numbers") from error
+            if pa.types.is_duration(kind):
+                column = pc.divide(column.cast(pa.int64()).cast(pa.float64(), safe=False), _per_s(kind.unit))
+            made = compare(column.cast(pa.float64(), safe=False), value)
+        else:
+            made = compare(_texts(column), condition.value)
+    return np.asarray(pc.fill_null(made, False).to_numpy(zero_copy_only=False), bool)
+
+
+def _per_s(unit: str) -> float:
+    return {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[unit]
+
+
+def text_of(value: Any) -> str:
+    """Return a value as a cell shows it."""
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return str(value)

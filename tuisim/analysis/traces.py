@@ -1,0 +1,185 @@
+"""The variables of a log as traces of a chart: read when they are first drawn, drawn from few points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.charts.axes import Limits
+from tuisim.charts.decimation import Pyramid
+from tuisim.charts.traces import Trace, Traces
+from tuisim.logs.signals import value_at
+from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.logs.log import Log, Series
+
+MOST_ON = 4
+"""So many variables are ticked at first."""
+_LIGHT = "_red"
+"""End of the names of what a colour sensor measures in red light."""
+_ANGLES = ("_deg", "_mm", "_dps")
+"""Ends of names whose values do not fit the scale of light."""
+_SEEN = 5.0
+"""A variable that takes up less than one such part of a scale has the other one."""
+
+
+_LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
+"""Times that differ by less than this part of themselves, or by less than this, are one moment."""
+
+
+class LogTrace(Trace):
+    """One variable of one run.
+
+    Args:
+        log: Where it is.
+        name: As in `Log.names`.
+        number: Chooses colour and mark.
+    """
+
+    def __init__(self, log: Log, name: str, number: int) -> None:
+        super().__init__(name, number)
+        self.number = number
+        self.on = number < MOST_ON
+        self.other_scale = self.other_scale or name.partition(" #")[0].endswith(_ANGLES)
+        self._places: FloatArray | None = None
+        self._log = log
+        self._series: Series | None = None
+        self._pyramid: Pyramid | None = None
+        self._shown: tuple[FloatArray, FloatArray] = (np.empty(0), np.empty(0))
+
+    @property
+    def series(self) -> Series:
+        """All its samples."""
+        if self._series is None:
+            self._series = self._log.series(self.name)
+        return self._series
+
+    @property
+    def pyramid(self) -> Pyramid:
+        """Its finite points, in the order in which they stand along the chart."""
+        if self._pyramid is None:
+            self._pyramid = Pyramid(self.places, self.series.values)
+        return self._pyramid
+
+    @property
+    def places(self) -> FloatArray:
+        """Where its samples stand along the chart, shape (n,): their times, unless it was aligned in another way."""
+        return self.series.time_s if self._places is None else self._places
+
+    def is_derived_otherwise(self, log: Log) -> bool:
+        """Whether a log has another derived variable of this name."""
+        return self.name in log.derived and log.derived[self.name] is not self.series
+
+    def is_like(self, others: Sequence[LogTrace]) -> bool:
+        """Whether its values can be seen on the scale of others that are on the left one."""
+        own = self._least_and_greatest()
+        left = [other._least_and_greatest() for other in others if not other.other_scale]
+        low, high = min((at[0] for at in left), default=0.0), max((at[1] for at in left), default=0.0)
+        least, greatest = min(low, own[0]), max(high, own[1])
+        return min(high - low, own[1] - own[0]) * _SEEN >= greatest - least
+
+    def _least_and_greatest(self) -> Limits:
+        values = self.pyramid.values
+        return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
+
+    def align(self, places: FloatArray | None) -> None:
+        """Put its samples elsewhere along the chart; None: at their times."""
+        self._places, self._pyramid = places, None
+
+    def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
+        """Choose the points that a chart of that width shows."""
+        times_s, values = self.pyramid.points(x_limits, columns)
+        self._shown = held(times_s, values) if hold else (times_s, values)
+
+    @property
+    def times_s(self) -> FloatArray:
+        """Times of the points to be drawn."""
+        return self._shown[0]
+
+    @property
+    def values(self) -> FloatArray:
+        """Values of the points to be drawn."""
+        return self._shown[1]
+
+    def at(self, time_s: float) -> float | None:
+        """Return the last value at or before a time, None before the first."""
+        found = self.pyramid
+        if not len(found.times_s) or time_s < found.times_s[0]:
+            return None
+        return float(value_at(found.times_s, found.values, np.array([time_s]))[0])
+
+
+def held(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the corners of a line that keeps each value until the next one comes."""
+    if len(times_s) < 2:
+        return times_s, values
+    return np.repeat(times_s, 2)[1:], np.repeat(values, 2)[:-1]
+
+
+class LogTraces(Traces):
+    """The traces of a log, in its order."""
+
+    def __init__(self, log: Log) -> None:
+        super().__init__()
+        # A row may lack the name of its variable: then there is a name without samples.
+        names = (name for name in log.names if not log.layout.variable or len(log.series(name).rows))
+        self._all = [LogTrace(log, name, number) for number, name in enumerate(names)]
+        self._tick_light()
+        self._by_log_name = {trace.name: trace for trace in self._all}
+
+    def take_log(self, log: Log) -> None:
+        """Turn to the same log with other derived variables; those that are new are ticked."""
+        kept = [trace for trace in self._all if trace.name in log.names and not trace.is_derived_otherwise(log)]
+        known = {trace.name for trace in kept}
+        number = max((trace.number for trace in kept), default=-1)
+        added = [name for name in log.derived if name not in known]
+        new = [LogTrace(log, name, number + at) for at, name in enumerate(added, 1)]
+        shown = [trace for trace in kept if trace.on]
+        for trace in new:
+            trace.on = True
+            trace.other_scale = bool(shown) and not trace.is_like(shown)
+        self._all = [*kept, *new]
+        self._by_log_name = {trace.name: trace for trace in self._all}
+
+    def _tick_light(self) -> None:
+        """Of the many columns of a recording, what colour sensors saw says most."""
+        light = [trace for trace in self._all if trace.name.endswith(_LIGHT)]
+        for trace in self._all:
+            trace.on = trace in light[:MOST_ON] if light else trace.on
+
+    def __iter__(self) -> Iterator[LogTrace]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._by_log_name
+
+    def named(self, name: str) -> LogTrace:
+        """Return the trace of a variable.
+
+        Raises:
+            KeyError: there is none.
+        """
+        return self._by_log_name[name]
+
+    def ticked(self) -> list[LogTrace]:
+        """Return the traces that are drawn if they have points."""
+        return [trace for trace in self._all if trace.on]
+
+    def span_s(self) -> Limits:
+        """Return the first and the last time of the ticked traces, with room for a moment where they are one."""
+        ends = [trace.pyramid.times_s[[0, -1]] for trace in self.ticked() if len(trace.pyramid.times_s)]
+        if not ends:
+            return 0.0, 1.0
+        low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
+        size = max(abs(low), abs(high))
+        if high - low > max(_LEAST_OF_TIMES * size, _LEAST_S):
+            return low, high
+        # Half a second more or less makes no difference to a very large time.
+        room = max(0.5, size * _LEAST_OF_TIMES)
+        return low - room, high + room

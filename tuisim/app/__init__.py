@@ -1,0 +1,1 @@
+"""The app: Textual screens, panels and dialogs over a run."""

@@ -1,0 +1,34 @@
+"""Keys of the app: help, suspend, quit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+
+
+def show_help(lab: LabApp) -> None:
+    """Show every key."""
+    from tuisim.app.keys.app_help import HelpScreen
+
+    lab.push_screen(HelpScreen())
+
+
+def suspend(lab: LabApp) -> None:
+    """Stop as a job of the shell, a run paused."""
+    lab.action_suspend_process()
+
+
+def leave(lab: LabApp) -> None:
+    """Quit, after a question if there are unsaved changes or a program runs."""
+    lab.work.when_safe(lambda: _leave(lab))
+
+
+def _leave(lab: LabApp) -> None:
+    if not lab.bridge.in_run:
+        lab.exit()
+        return
+    from tuisim.app.dialogs.question import LeaveQuestion
+
+    lab.push_screen(LeaveQuestion(), lambda yes: lab.exit() if yes else None)

@@ -1,0 +1,192 @@
+"""From a former instant into another future: the run is done again up to there, and goes on live.
+
+What the user did until then is done again too, each thing at its tick, so that the
+world is the same to the last bit when the branch leaves it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from tuisim import protocol
+from tuisim.app.snapshot import PAUSED
+from tuisim.core.spec import NoiseSpec
+from tuisim.errors import TuisimError
+from tuisim.protocol import BEFORE_NEXT_TICK, ScriptedAction
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.store import RunStore
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.runs.handle import Program, RunHandle
+    from tuisim.runs.recording import Recording
+
+BRANCH_TAG = "branch-of-"
+"""Begins the tag that says from which run another one branched off."""
+
+_WORLD_FIELDS = (
+    "x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps",
+    "gyro_zero_deg", "flags", "actions",
+)  # fmt: skip
+"""Fields of a tick record that do not change when lines are put into the program."""
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """A run that leaves another one at an instant."""
+
+    of: Recording
+    tick: int
+    program: Program
+    then: protocol.Message | None
+    """What the user does at that instant, if anything."""
+    goes_on: bool
+    """Whether time goes on at once; otherwise the run stands still there."""
+
+    @property
+    def time_s(self) -> float:
+        """The instant in simulated seconds."""
+        return self.tick / self.of.spec.profile.tick_hz
+
+    @property
+    def edited(self) -> bool:
+        """Whether the program is another one than that of the former run."""
+        return (self.program.text, self.program.prelude) != (self.of.program.text, self.of.program.prelude)
+
+    @property
+    def title(self) -> str:
+        """What it is, in words."""
+        return f"branch of {self.of.name} at {self.time_s:.2f} s"
+
+    @property
+    def tags(self) -> tuple[str, str]:
+        """The title as tags of the run."""
+        return f"{BRANCH_TAG}{self.of.number or self.of.run_id}", f"at-{self.time_s:.2f}s"
+
+    @property
+    def noise(self) -> NoiseSpec:
+        """The noise with which time goes on from there."""
+        if isinstance(self.then, protocol.SetNoise):
+            return NoiseSpec(self.then.light, self.then.motor)
+        return self.of.noise_at(self.of.telemetry.record(self.tick))
+
+    def script(self) -> tuple[ScriptedAction, ...]:
+        """Return what the user had done until then."""
+        return tuple(
+            ScriptedAction.from_plain({"tick": action.tick, "kind": action.kind, **action.fields})
+            for action in self.of.actions()
+            if action.tick <= self.tick
+        )
+
+    def start(self, speed: float) -> RunHandle:
+        """Start the run: it comes to the instant as fast as possible, and stands still there.
+
+        Args:
+            speed: From there on: 1.0 is real time, 0 as fast as possible.
+
+        Raises:
+            TuisimError: it cannot be started.
+        """
+        options = RunOptions(
+            live=True, speed=speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True, answers=self.of.answers,
+            actions=self.script(), hold_at=(self.tick, BEFORE_NEXT_TICK),
+        )  # fmt: skip
+        # Edited or not, it is given what it was given then.
+        program = replace(self.of.program, name=self.program.name, text=self.program.text, prelude=self.program.prelude)
+        run = start_run(program, self.of.spec, options)
+        RunStore().tag(run.run_id, self.tags)
+        return run
+
+
+def first_difference(before: Recording, now: Recording, tick: int) -> int | None:
+    """Return the first tick, up to one that both have come to, at which the world of two runs differs; or None."""
+    import numpy as np
+
+    old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
+    both = min(len(old), len(new))
+    differs = np.zeros(both, bool)
+    for name in _WORLD_FIELDS:
+        differs |= old[name][:both] != new[name][:both]
+    if differs.any():
+        return int(np.argmax(differs))
+    return both if both <= tick else None
+
+
+def told(branch: Branch, now: Recording) -> str:
+    """Return what to say when a branch has come to its instant, or has ended before."""
+    differs = first_difference(branch.of, now, branch.tick)
+    words = f"This is a {branch.title}" + (", of the edited program" if branch.edited else "")
+    if differs is None:
+        return words
+    hz = now.spec.profile.tick_hz
+    if branch.edited:
+        return f"{words}: it went another way from {differs / hz:.2f} s on"
+    return f"{words}, but the program does not repeat itself: it went another way from {differs / hz:.2f} s on"
+
+
+def _what(action: protocol.Message | None) -> str:
+    match action:
+        case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
+            return f" with the robot at x {x:.0f}, y {y:.0f}, {heading:.0f}°"
+        case protocol.SetNoise(light=light, motor=motor):
+            return f" with noise {light} in the light and {motor} in the motors"
+        case protocol.SetPen(down=down):
+            return f" with the pen {'down' if down else 'up'}"
+        case _:
+            return ""
+
+
+def propose(lab: LabApp, then: protocol.Message | None, anew: bool = False) -> None:
+    """Ask whether to branch from the instant that is looked at.
+
+    Args:
+        lab: The app.
+        then: What the user wants to do there.
+        anew: Whether running the program from its start is offered besides.
+    """
+    from tuisim.app.dialogs.question import ANEW, BRANCH, BranchQuestion
+
+    timeline = lab.bridge.timeline
+    recording, tick = timeline.recording, timeline.at
+    if isinstance(lab.screen, BranchQuestion):
+        return
+    if recording is None or tick is None or not lab.work.apply() or (program := lab.bridge.program) is None:
+        return
+    timeline.stand()
+    branch = Branch(recording, tick, program, then, lab.bridge.state != PAUSED)
+
+    def answered(answer: str | None) -> None:
+        if answer == BRANCH:
+            _start(lab, branch)
+        elif answer == ANEW:
+            lab.bridge.stop_now()
+            lab.start_run()
+        else:
+            # Panels that showed what was asked for show the past again.
+            lab.draw(force=True)
+
+    lab.push_screen(BranchQuestion(branch, _what(then), lab.bridge.in_run, anew), answered)
+
+
+def _start(lab: LabApp, branch: Branch) -> None:
+    try:
+        lab.bridge.branch(branch)
+    except TuisimError as error:
+        lab.complain(error)
+        return
+    lab.run_changed()
+    lab.draw(force=True)
+
+
+def from_here(lab: LabApp) -> None:
+    """Branch from the instant that is looked at, with nothing changed but perhaps the program."""
+    propose(lab, None)
+
+
+def run(lab: LabApp) -> None:
+    """Start the program; in the past ask whether from there."""
+    if lab.bridge.in_past:
+        propose(lab, None, anew=True)
+    else:
+        lab.start_run()

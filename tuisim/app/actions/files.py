@@ -1,0 +1,154 @@
+"""Keys of the group Files: open, save, export, compare, analyse, edit."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.app.actions.time_travel import to_tick
+from tuisim.app.setup import next_run as plans
+from tuisim.errors import TuisimError
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.runs.diff import RunDiff
+    from tuisim.runs.recording import Recording
+
+
+def clear_log(lab: LabApp) -> None:
+    """Wipe what was logged off the output and the chart; the run keeps it."""
+    lab.desk.clear_log()
+    lab.say("Output and chart are clear; the run keeps its log: l analyses it, e exports it")
+
+
+def open_program(lab: LabApp) -> None:
+    """Ask for a program and open it."""
+    from tuisim.app.dialogs.chooser import program_chooser
+
+    def take(path: str | None) -> None:
+        if path:
+            lab.loading.open_file(path)
+
+    lab.push_screen(program_chooser(), take)
+
+
+def save_robot(lab: LabApp) -> None:
+    """Ask for a file and write the robot to it."""
+    from tuisim.app.dialogs.save import SaveDialog
+    from tuisim.config.robots import save_robot as write
+
+    def save(path: Path) -> None:
+        write(plans.robot_to_save(lab.bridge.plan), path)
+        lab.loading.saved(path)
+
+    proposed = lab.bridge.plan.words.get("robot", "")
+    name = proposed if proposed.endswith(".toml") else f"{lab.bridge.plan.robot_choice.spec.name}.toml"
+    lab.push_screen(SaveDialog("robot", name, save))
+
+
+def save_obstacles(lab: LabApp) -> None:
+    """Ask for a file and write the obstacles to it."""
+    from tuisim.app.dialogs.save import SaveDialog
+    from tuisim.config.obstacles import save_obstacles as write
+
+    def save(path: Path) -> None:
+        write(lab.bridge.plan.spec.world.obstacles, path)
+        lab.loading.saved(path)
+
+    proposed = lab.bridge.plan.words.get("obstacles", "")
+    lab.push_screen(SaveDialog("obstacles", proposed if proposed.endswith(".toml") else "obstacles.toml", save))
+
+
+def save_world(lab: LabApp) -> None:
+    """Ask for a file and write the world to it, with the program that is open."""
+    from tuisim.app.dialogs.save import SaveDialog
+    from tuisim.config.world_writer import save_world as write
+
+    def save(path: Path) -> None:
+        program = lab.bridge.program
+        plan = lab.bridge.plan
+        write(plan.spec, path, program.path if program and program.path else None, plan.settings.arguments)
+        lab.loading.saved_world(path)
+
+    lab.push_screen(SaveDialog("world", str(lab.loading.world_file or "lab.toml"), save))
+
+
+def export(lab: LabApp) -> None:
+    """Ask for a file and write the log to it."""
+    from tuisim.app.dialogs.export import ExportDialog
+
+    run_id = lab.bridge.run_id
+    program = lab.bridge.program
+    if run_id and program:
+        lab.push_screen(ExportDialog(run_id, program.name))
+
+
+def edit(lab: LabApp) -> None:
+    """Show the code, and let letters go into it."""
+    if not lab.desk.shown("code"):
+        lab.desk.toggle("code")
+    lab.call_after_refresh(_type, lab)
+
+
+def _type(lab: LabApp) -> None:
+    if lab.desk.shown("code") and (code := lab.desk.code):
+        # A panel that has just been made has not been given the program yet.
+        lab.work.introduce()
+        code.start_typing(at_error=True)
+
+
+def new_program(lab: LabApp) -> None:
+    """Begin a new program in the code panel."""
+    if not lab.desk.shown("code"):
+        lab.desk.toggle("code")
+    lab.call_after_refresh(lab.work.new)
+
+
+def compare(lab: LabApp) -> None:
+    """Ask for a run and tell where the one at hand differs from it."""
+    from tuisim.app.dialogs.runs import RunChooser
+
+    recording = lab.bridge.timeline.recording
+    if recording is None:
+        return
+
+    def take(run_id: str | None) -> None:
+        if run_id:
+            work = partial(_diff_in_thread, lab, recording, run_id)
+            lab.run_worker(work, thread=True, group="diff", exclusive=True)
+
+    lab.push_screen(RunChooser(recording), take)
+
+
+def _diff_in_thread(lab: LabApp, recording: Recording, other_id: str) -> None:
+    from tuisim.runs.diff import diff_runs
+    from tuisim.runs.store import RunStore
+
+    try:
+        store = RunStore()
+        other = store.load_run(other_id)
+        diff = diff_runs(store.load_run(recording.run_id), other)
+    except TuisimError as error:
+        lab.call_from_thread(lab.complain, error)
+        return
+    lab.call_from_thread(_show, lab, recording, f"run {other.number}", diff)
+
+
+def _show(lab: LabApp, recording: Recording, other: str, diff: RunDiff) -> None:
+    from tuisim.app.dialogs.differences import Differences
+
+    def go(there: bool | None) -> None:
+        if there and diff.tick and lab.bridge.timeline.recording is recording:
+            to_tick(lab, diff.tick.tick)
+
+    lab.push_screen(Differences(recording.name.capitalize(), other, diff), go)
+
+
+def analyse(lab: LabApp) -> None:
+    """Show the log of the run at hand."""
+    # The analyser costs time to import, and many never ask for it.
+    from tuisim.analysis.source import LogRequest
+    from tuisim.app.analyser.screen import Analyser
+
+    lab.push_screen(Analyser(LogRequest(runs=(lab.bridge.run_id,))))

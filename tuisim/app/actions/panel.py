@@ -1,0 +1,51 @@
+"""Keys of the group Panels: show, hide, enlarge, zoom."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tuisim.app.panels import PANELS
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.app.panels.world import World
+
+
+def toggle(lab: LabApp, panel: str) -> None:
+    """Show a panel, which takes the focus, or hide it."""
+    lab.desk.toggle(panel)
+    lab.situation_changed()
+    lab.call_after_refresh(lab.attend, panel)
+
+
+def enlarge(lab: LabApp) -> None:
+    """Let the panel with the focus fill the desk, or give the others their places back."""
+    focused = lab.focused
+    panel = next(
+        (name for name, widget in lab.desk.panels.items() if focused and widget in focused.ancestors_with_self), ""
+    )
+    if panel or lab.desk.alone:
+        lab.desk.give_all("" if lab.desk.alone else panel)
+    else:
+        lab.say("No panel has the focus: tab or a click gives it to one")
+
+
+def _world(lab: LabApp) -> World | None:
+    if lab.desk.shown("world"):
+        return lab.desk.world
+    lab.say(f"The world is hidden: {PANELS['world'].key} shows it")
+    return None
+
+
+def rays(lab: LabApp) -> None:
+    """Draw the ultrasonic rays, or not."""
+    if world := _world(lab):
+        world.show_rays = not world.show_rays
+        lab.draw(force=True)
+
+
+def zoom(lab: LabApp) -> None:
+    """Next zoom of the world."""
+    if world := _world(lab):
+        world.cycle_zoom()
+        lab.draw(force=True)

@@ -1,0 +1,120 @@
+"""Keys of the group Robot and world: place, pen, mat, robot, profile, obstacles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from tuisim.app.actions.panel import _world
+from tuisim.app.setup import next_run as plans
+from tuisim.app.setup.next_run import NextRun
+from tuisim.core.geometry import Pose
+from tuisim.errors import TuisimError
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.app.dialogs.chooser import Chooser
+
+
+def pen(lab: LabApp) -> None:
+    """Pen up if it is down, down if it is up."""
+    lab.bridge.set_pen(not lab.bridge.pen_down)
+
+
+def home(lab: LabApp) -> None:
+    """Put the robot back to where the mat or the command line has it start."""
+    lab.bridge.place(lab.bridge.home)
+
+
+def nudge(lab: LabApp, right_mm: float, up_mm: float, turn_deg: float) -> None:
+    """Move the robot a little."""
+    pose = lab.bridge.pose
+    lab.bridge.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
+
+
+def clear_trace(lab: LabApp) -> None:
+    """Wipe the pen's trace off."""
+    if world := _world(lab):
+        world.clear_trace()
+        lab.draw(force=True)
+
+
+def random_place(lab: LabApp) -> None:
+    """Put the robot somewhere on the field."""
+    from random import Random
+
+    from tuisim.app.setup.poses import random_pose
+
+    if pose := random_pose(lab.bridge.spec, Random()):
+        lab.bridge.place(pose)
+    else:
+        lab.say("No free place was found: there are many obstacles, or the robot is large")
+
+
+def saved_poses(lab: LabApp) -> None:
+    """Go to a saved pose, or save this one."""
+    from tuisim.app.dialogs.poses import SavedPoses
+
+    def go(pose: Pose | None) -> None:
+        if pose:
+            lab.bridge.place(pose)
+
+    lab.push_screen(SavedPoses(lab.bridge.pose), go)
+
+
+def choose_mat(lab: LabApp) -> None:
+    """Ask for a mat and lay it out."""
+    from tuisim.app.dialogs.mats import MatPicker
+    from tuisim.config.own_mats import mats
+
+    folder = lab.bridge.plan.settings.mats
+    try:
+        known = mats(folder)
+    except TuisimError as error:
+        lab.complain(error)
+        return
+
+    def lay(name: str | None) -> None:
+        if name:
+            lab.loading.change_mat(name)
+
+    lab.push_screen(MatPicker(lab.bridge.spec.world.background, known, folder), lay)
+
+
+def _choose(lab: LabApp, chooser: Chooser, take: Callable[[NextRun, str], NextRun]) -> None:
+    """Ask for a name or a file, and take what it stands for into the plan."""
+
+    def chosen(word: str | None) -> None:
+        if word:
+            lab.loading.attempt(lambda plan: take(plan, word))
+
+    lab.push_screen(chooser, chosen)
+
+
+def choose_robot(lab: LabApp) -> None:
+    """Ask for a robot."""
+    from tuisim.app.dialogs.chooser import robot_chooser
+
+    _choose(lab, robot_chooser(lab.bridge.plan), plans.with_robot)
+
+
+def choose_profile(lab: LabApp) -> None:
+    """Ask for a profile."""
+    from tuisim.app.dialogs.chooser import profile_chooser
+
+    _choose(lab, profile_chooser(lab.bridge.plan), plans.with_profile)
+
+
+def choose_obstacles(lab: LabApp) -> None:
+    """Ask for a set of obstacles."""
+    from tuisim.app.dialogs.chooser import obstacle_chooser
+
+    _choose(lab, obstacle_chooser(lab.bridge.plan), plans.with_obstacle_set)
+
+
+def reset_robot(lab: LabApp) -> None:
+    """Undo what was edited of the robot."""
+    if lab.bridge.plan.robot_is_edited:
+        lab.loading.attempt(plans.with_robot_as_chosen)
+    else:
+        lab.say("Nothing of the robot is edited")

@@ -1,0 +1,273 @@
+"""Every key: what it does, what it is called, and when it works.
+
+To add a key: write its function in `ui.verbs` and add a line to `ACTIONS`. Binding,
+footer, help and command palette follow from the line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from textual.message import Message
+
+from tuisim.app.actions import app, branch, debug, files, panel, program, robot, time_travel
+from tuisim.app.actions.files import analyse
+from tuisim.app.panels import PANELS
+from tuisim.app.snapshot import PAUSED, RUNNING, STARTING, WAITING
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+
+ACT = "act"
+"""Key of the style meta data that names the action of a word that can be clicked on."""
+
+
+class Act(Message):
+    """A word that stands for an action was clicked on."""
+
+    def __init__(self, action: str) -> None:
+        super().__init__()
+        self.action = action
+
+
+IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
+"""States in which there is a child process."""
+
+PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
+FILES, APP = "Files", "App"
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """What decides whether a key works."""
+
+    state: str
+    has_program: bool
+    has_run: bool
+    """Whether there has been a run, so that there is a log, and a past."""
+    in_past: bool = False
+    """Whether an instant before the newest is looked at."""
+    looks_back: bool = False
+    """The same, or a former line of the newest tick, or it is on its way there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One line of `ACTIONS`."""
+
+    id: str
+    key: str
+    """As Textual names it, or several with commas between them."""
+    title: str
+    group: str
+    do: Callable[[LabApp], None]
+    why_not: Callable[[Situation], str] = lambda _: ""
+    """Why it does nothing now; empty if it works."""
+    footer: str = ""
+    """Short word for the footer; empty keeps it out."""
+    shown_key: str = ""
+    """How the key is written for people, if not as in `key`."""
+    footer_key: str = ""
+    """How it is written in the footer, if it stands there for two."""
+
+    @property
+    def key_label(self) -> str:
+        """The key as people write it."""
+        return self.shown_key or _KEY_LABELS.get(self.key, self.key)
+
+
+_KEY_LABELS = {
+    "space": "space",
+    "full_stop": ".",
+    "left_square_bracket": "[",
+    "right_square_bracket": "]",
+    "question_mark": "?",
+    "comma": ",",
+    "equals_sign": "=",
+    "less_than_sign": "<",
+    "greater_than_sign": ">",
+    "left_parenthesis": "(",
+    "right_parenthesis": ")",
+}
+
+
+def _can_run(now: Situation) -> str:
+    if not now.has_program:
+        return "No program yet: o opens one"
+    if now.in_past:
+        return ""
+    return "The program is running already: S stops it" if now.state in IN_RUN else ""
+
+
+def _can_stop(now: Situation) -> str:
+    return "" if now.state in IN_RUN else "Nothing is running: R runs the program"
+
+
+def _can_pause(now: Situation) -> str:
+    return "" if now.in_past else _can_stop(now)
+
+
+def _can_step(now: Situation) -> str:
+    if now.state == PAUSED or now.in_past:
+        return ""
+    if now.state in IN_RUN:
+        return "One tick works while paused: space pauses"
+    return "This is the end of the run: , goes back" if now.has_run else _can_stop(now)
+
+
+def _can_look_back(now: Situation) -> str:
+    return "" if now.has_run else "No run yet to look back on: R runs the program"
+
+
+def _can_look_on(now: Situation) -> str:
+    return "" if now.in_past else _can_look_back(now) or "This is the newest instant"
+
+
+def _can_come_back(now: Situation) -> str:
+    return "" if now.looks_back else _can_look_on(now)
+
+
+def _can_change_world(now: Situation) -> str:
+    return "Not during a run: S stops it" if now.state in IN_RUN else ""
+
+
+def _can_export(now: Situation) -> str:
+    return "" if now.has_run else "No log yet: R runs the program"
+
+
+def _nudge(key: str, words: str, forward: tuple[float, float], turn_deg: float = 0.0) -> Action:
+    label = key.replace("shift+", "⇧").replace("ctrl+", "ctrl ")
+    for name, arrow in (("left", "←"), ("right", "→"), ("up", "↑"), ("down", "↓")):
+        label = label.replace(name, arrow)
+    do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=turn_deg)
+    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, shown_key=label)
+
+
+def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> Action:
+    # Some terminals send an arrow with ctrl as the arrow alone.
+    action = _nudge(arrow, words, (0.0, 0.0), turn_deg)
+    shown = f"{letter}, {action.key_label}"
+    return replace(action, key=f"{letter},{arrow}", title=f"Turn the robot {words}", shown_key=shown)
+
+
+def _nudges() -> list[Action]:
+    ways = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
+    coarse = [_nudge(key, f"10 mm {key}", (10 * x, 10 * y)) for key, (x, y) in ways.items()]
+    fine = [_nudge(f"shift+{key}", f"1 mm {key}", (x, y)) for key, (x, y) in ways.items()]
+    turns = [
+        _turn("a", "ctrl+left", "5° counter-clockwise", 5.0),
+        _turn("f", "ctrl+right", "5° clockwise", -5.0),
+    ]
+    return coarse + fine + turns
+
+
+def _toggles() -> list[Action]:
+    return [
+        Action(f"panel-{p.id}", p.key, f"{p.title} on or off", PANEL, partial(panel.toggle, panel=p.id), footer=p.id)
+        for p in PANELS.values()
+    ]
+
+
+def _can_branch(now: Situation) -> str:
+    return "" if now.in_past else "A branch begins in the past: , goes back"
+
+
+def _can_debug(now: Situation) -> str:
+    return "" if now.has_program or now.has_run else "No program yet: o opens one"
+
+
+def _debugs() -> list[Action]:
+    can = _can_debug
+    return [
+        Action("next-line", "n", "Next line", DEBUG, debug.next_line, can, "next"),
+        Action("step-into", "s", "Next line, into calls", DEBUG, debug.step_into, can, "into"),
+        Action("step-out", "u", "On until this function is left", DEBUG, debug.step_out, can, "out"),
+        Action("line-back", "N", "One line back", DEBUG, debug.line_back, _can_look_back, "line back"),
+        Action("break", "t", "Breakpoint at the cursor's line, or none", DEBUG, debug.toggle_break, can, "break"),
+        Action("breaks", "T", "Breakpoints: add, edit, switch, delete", DEBUG, debug.list_breaks, can),
+        Action("watches", "w", "Watches: expressions to look at", DEBUG, debug.list_watches, can),
+        Action("to-cursor", "L", "Run to the cursor's line", DEBUG, debug.to_cursor, can),
+        Action("ten-ticks", "colon", "Ten ticks on, while paused", TIME, debug.ten_ticks, _can_step, shown_key=":"),
+    ]
+
+
+def _travels() -> list[Action]:
+    back, on = _can_look_back, _can_look_on
+    keys = "< >"
+    go = time_travel
+    return [
+        Action("now", "end", "Back to now (also escape)", TIME, go.to_now, _can_come_back, "now"),
+        Action("second-back", "less_than_sign", "One second back", TIME, go.second_back, back, "1 s", "", keys),
+        Action("second-on", "greater_than_sign", "One second on", TIME, go.second_on, on),
+        Action("sample-before", "left_parenthesis", "The sample before", TIME, go.sample_before, back),
+        Action("next-sample", "right_parenthesis", "The next sample", TIME, go.next_sample, on),
+        Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
+        Action("branch", "y", "Branch: go on from this instant", TIME, branch.from_here, _can_branch, "branch"),
+        Action("start-of-run", "home", "Start of the run", TIME, go.to_start, back),
+    ]
+
+
+# The footer shows them in this order, as far as they fit; `help` and `quit` always.
+ACTIONS: Mapping[str, Action] = {
+    action.id: action
+    for action in (
+        Action("run", "R", "Run the program", PROGRAM, branch.run, _can_run, "run"),
+        Action("stop", "S", "Stop the program", PROGRAM, program.stop, _can_stop, "stop"),
+        Action("pause", "space", "Pause or go on; play the past", PROGRAM, time_travel.pause, _can_pause, "pause"),
+        Action("tick", "full_stop", "One tick on, while paused", TIME, time_travel.tick_on, _can_step, "tick"),
+        Action("back", "comma", "One tick back", TIME, time_travel.tick_back, _can_look_back, "back"),
+        *_debugs(),
+        *_travels(),
+        Action("open", "o", "Open a program or a world", FILES, files.open_program, _can_change_world, "open"),
+        Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
+        Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
+        Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
+        Action("home", "m", "Robot back to its start", ROBOT, robot.home, footer="start"),
+        Action("random", "j", "Robot to a random place", ROBOT, robot.random_place),
+        Action("poses", "P", "Saved poses: go there, save, delete", ROBOT, robot.saved_poses),
+        Action("robot", "r", "Choose a robot", ROBOT, robot.choose_robot, _can_change_world, "robot"),
+        Action("reset-robot", "ctrl+n", "Undo the robot's edits", ROBOT, robot.reset_robot, _can_change_world),
+        Action("obstacles", "k", "Choose obstacles", ROBOT, robot.choose_obstacles, _can_change_world),
+        Action("profile", "F", "Choose a profile", ROBOT, robot.choose_profile, _can_change_world),
+        Action("pen", "p", "Pen up or down", ROBOT, robot.pen, footer="pen"),
+        Action("slower", "left_square_bracket", "Slower", PROGRAM, program.slower, footer="speed", footer_key="[ ]"),
+        Action("faster", "right_square_bracket", "Faster", PROGRAM, program.faster),
+        Action("compare", "equals_sign", "Compare this run with another", FILES, files.compare, _can_look_back),
+        Action("runs", "h", "Open a stored run", FILES, time_travel.choose_run, _can_change_world, "runs"),
+        Action("analyse", "l", "Analyse the log: table, chart, bands, notes", FILES, analyse, _can_export, "analyse"),
+        Action("export", "e", "Export the log to a file", FILES, files.export, _can_export, "export"),
+        Action("save-world", "ctrl+s", "Save the world to a file", FILES, files.save_world, footer="save"),
+        Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, files.save_robot),
+        Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
+        Action("zoom", "v", "Zoom the world", ROBOT, panel.zoom, footer="zoom"),
+        Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
+        Action("clear-log", "ctrl+l", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
+        *_toggles(),
+        Action("enlarge", "plus", "The panel with the focus alone, and back", PANEL, panel.enlarge, shown_key="+"),
+        Action("rays", "U", "Ultrasonic rays on or off", PANEL, panel.rays, footer="rays"),
+        *_nudges(),
+        Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
+        Action("suspend", "ctrl+z", "Suspend: fg in the shell comes back", APP, app.suspend),
+        Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
+    )
+}
+"""Every key by the id of what it does."""
+
+
+def _next_steps(now: Situation) -> tuple[str, ...]:
+    """Ids of what one is likely to do next: out of the past, on with a run, to its results, or to a first run."""
+    if now.looks_back:
+        return ("now", "branch")
+    if now.state in IN_RUN:
+        return ("stop", "pause")
+    return ("run", "analyse", "export", "panel-chart", "edit") if now.has_run else ("run", "open", "edit", "mats")
+
+
+def working(now: Situation) -> list[Action]:
+    """Return the actions that do something now: the likely next steps first, the others in the order of the table."""
+    found = {action.id: action for action in ACTIONS.values() if not action.why_not(now)}
+    first = [found.pop(step) for step in _next_steps(now) if step in found]
+    return [*first, *found.values()]

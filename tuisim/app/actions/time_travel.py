@@ -1,0 +1,167 @@
+"""What the keys of time do: back and forward, to an instant that is asked for, and on from there."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from tuisim.app.setup.mat import mat_key
+from tuisim.app.snapshot import ENDED, PAUSED
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.runs.recording import Recording
+
+
+def to_tick(lab: LabApp, tick: int | None) -> None:
+    """Look at a tick of the run; None, the newest and all beyond are now. A program that runs is paused first."""
+    recording = lab.bridge.timeline.recording
+    if recording is None or (tick is not None and not _is_laid_out(lab, recording)):
+        return
+    if tick is not None and lab.bridge.in_run and lab.bridge.state != PAUSED:
+        lab.bridge.pause()
+    if tick is None:
+        lab.debugging.to_now()
+    lab.bridge.timeline.go(tick)
+    _gone(lab)
+
+
+def _is_laid_out(lab: LabApp, recording: Recording) -> bool:
+    """Whether the mat of the run lies there; says so if not."""
+    mat = lab.bridge.mat
+    if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
+        return True
+    lab.say(f"Another mat lies there now: h opens {recording.name} with the mat that it was on")
+    return False
+
+
+def _gone(lab: LabApp) -> None:
+    lab.situation_changed()
+    lab.draw(force=True)
+
+
+def to_time(lab: LabApp, time_s: float | None) -> None:
+    """Look at a time of the run, None for now."""
+    to_tick(lab, None if time_s is None else round(time_s * lab.bridge.timeline.tick_hz))
+
+
+def _by(lab: LabApp, ticks: int) -> None:
+    timeline = lab.bridge.timeline
+    at = timeline.newest if timeline.at is None else timeline.at
+    if ticks < 0 and at <= 0:
+        lab.say("This is the start of the run")
+        return
+    to_tick(lab, at + ticks if at + ticks < timeline.newest else None)
+
+
+def tick_back(lab: LabApp) -> None:
+    """One tick back."""
+    _by(lab, -1)
+
+
+def tick_on(lab: LabApp) -> None:
+    """One tick on: as recorded in the past, else of a paused run; from a former line of its last tick it is now."""
+    if lab.bridge.in_past:
+        _by(lab, 1)
+    elif lab.debugging.is_away:
+        to_now(lab)
+    else:
+        lab.bridge.step()
+
+
+def second_back(lab: LabApp) -> None:
+    """One second back."""
+    _by(lab, -lab.bridge.timeline.tick_hz)
+
+
+def second_on(lab: LabApp) -> None:
+    """One second on, as recorded."""
+    _by(lab, lab.bridge.timeline.tick_hz)
+
+
+def to_start(lab: LabApp) -> None:
+    """The first instant of the run."""
+    to_tick(lab, 0)
+
+
+def to_now(lab: LabApp) -> None:
+    """The newest instant."""
+    to_tick(lab, None)
+
+
+def pause(lab: LabApp) -> None:
+    """Stand still, or go on: as recorded in the past, and from the newest instant as the program goes."""
+    timeline = lab.bridge.timeline
+    if timeline.playing:
+        timeline.stand()
+        _gone(lab)
+    elif lab.bridge.in_past:
+        timeline.play(time.monotonic())
+        _gone(lab)
+    elif lab.bridge.state == PAUSED:
+        lab.bridge.resume()
+    else:
+        lab.bridge.pause()
+
+
+def stand_still(lab: LabApp) -> None:
+    """Stop what plays, and pause what runs."""
+    lab.bridge.timeline.stand()
+    if lab.bridge.in_run and lab.bridge.state != PAUSED:
+        lab.bridge.pause()
+
+
+def beat(lab: LabApp) -> None:
+    """Play on; a paused run that has been played to its newest instant goes on by itself."""
+    if lab.bridge.timeline.beat(time.monotonic(), lab.bridge.speed):
+        if lab.bridge.state == PAUSED:
+            lab.bridge.resume()
+        elif lab.bridge.state == ENDED:
+            lab.say("The recording has been played to its end")
+        _gone(lab)
+
+
+def ask_where(lab: LabApp) -> None:
+    """Ask for an instant and go there."""
+    from tuisim.app.dialogs.goto import GoTo
+
+    def go(tick: int | None) -> None:
+        if tick is not None:
+            to_tick(lab, tick)
+
+    lab.push_screen(GoTo(lab.bridge.timeline), go)
+
+
+def _to_sample(lab: LabApp, words: str) -> None:
+    from tuisim.app.goto import find
+    from tuisim.errors import TuisimError
+
+    try:
+        to_tick(lab, find(words, lab.bridge.timeline))
+    except TuisimError as error:
+        lab.say(error.message)
+
+
+def next_sample(lab: LabApp) -> None:
+    """The next sample of any name."""
+    _to_sample(lab, "sample")
+
+
+def sample_before(lab: LabApp) -> None:
+    """The sample before, of any name."""
+    _to_sample(lab, "sample back")
+
+
+def choose_run(lab: LabApp) -> None:
+    """Ask for a stored run and open it."""
+    from tuisim.app.dialogs.runs import RunChooser
+    from tuisim.app.run_loader import open_run
+
+    def take(run_id: str | None) -> None:
+        if run_id:
+            lab.work.when_safe(lambda: open_run(lab, run_id))
+
+    def ask() -> None:
+        lab.push_screen(RunChooser(), take)
+
+    lab.work.when_safe(ask)

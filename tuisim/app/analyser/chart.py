@@ -1,0 +1,226 @@
+"""The chart of a log: one for all variables, or one for each, with the cursor of the whole screen in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rich.style import Style
+from textual import events
+from textual.app import ComposeResult
+from textual.message import Message
+from textual.widget import Widget
+
+from tuisim.analysis.alignment import DISTANCE
+from tuisim.analysis.events import marks
+from tuisim.app.terminal.cell_view import LinesView
+from tuisim.charts.canvas import BRAILLE, xy_lines
+from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.charts.text_runs import Run
+from tuisim.charts.traces import Traces
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
+    from tuisim.analysis.traces import LogTrace
+
+_EVENTS = Style(color="#ffaf5f", bold=True)
+_LEAST_FACET_ROWS = 6
+"""A chart of one variable that is lower says nothing."""
+FACETS_ROWS = 2 * _LEAST_FACET_ROWS
+"""Lower than that there is one chart for all."""
+
+
+@dataclass(slots=True)
+class ChartLook:
+    """How the chart is drawn."""
+
+    facets: bool = False
+    """One chart for each ticked variable."""
+    marks: bool = False
+    hold: bool = False
+    """Keep each value until the next one comes, instead of going straight to it."""
+    against: tuple[str, str] | None = None
+    """What is drawn against what, x and y, instead of all over time."""
+
+
+class _One(Traces):
+    """One trace, as a facet draws it."""
+
+    def __init__(self, trace: LogTrace) -> None:
+        super().__init__()
+        self._by_name[trace.name] = trace
+
+
+class LogChart(Widget):
+    """The chart."""
+
+    ALLOW_SELECT = False
+    DEFAULT_CSS = """
+    LogChart { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; border-subtitle-color: #87d7af; }
+    LogChart > LinesView { width: 1fr; height: 1fr; }
+    """
+
+    @dataclass
+    class Pointed(Message):
+        """A time was pointed at with the mouse."""
+
+        time_s: float
+
+    @dataclass
+    class Ticked(Message):
+        """The tick box of a variable was pointed at."""
+
+        name: str
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = "Chart"
+        self.look = ChartLook()
+        self._text = LinesView()
+        self._painters: dict[str, ChartPainter] = {}
+        self._pictures: list[tuple[int, ChartPicture]] = []
+        self._model: Model | None = None
+
+    def compose(self) -> ComposeResult:
+        """The text is the only child."""
+        yield self._text
+
+    def take(self, model: Model) -> None:
+        """Turn to another log, or to the same one drawn in another way."""
+        self._painters.clear()
+        self.show(model)
+
+    def show(self, model: Model) -> None:
+        """Draw what is looked at."""
+        self._model = model
+        width, height = self._text.size
+        if not width or not height or not self.display:
+            return
+        if self.look.against and model.log.rows:
+            self._pictures = []
+            self._text.set_lines(self._against(model, self.look.against, width, height))
+            return
+        x_limits = model.x_limits()
+        ticked = model.traces.ticked()
+        for trace in ticked:
+            trace.prepare(x_limits, width, self.look.hold)
+        unit = "mm" if model.alignment == DISTANCE else "s"
+        measured = _measured(model, unit, width)
+        marked = 1 if model.events.thresholds and model.log.rows else 0
+        height -= len(measured) + marked
+        facets = ticked if self.look.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
+        facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
+        state = ChartState(
+            model.selected, model.cursor_s if model.log.rows else None, x_limits, bool(self.app.no_color),
+            model.mark_s, unit, self.look.marks, zoomed=model.limits is not None,
+        )  # fmt: skip
+        self._pictures = []
+        lines: list[list[Run]] = []
+        parts: list[Traces] = [_One(trace) for trace in facets] or [model.traces]
+        for at, part in enumerate(parts):
+            rows = height // len(parts) + (at < height % len(parts))
+            name = facets[at].name if facets else ""
+            picture = self._painters.setdefault(name, ChartPainter()).paint(part, state, width, rows)
+            self._pictures.append((len(lines), picture))
+            lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
+        self._text.set_lines([*lines, *(self._event_marks(model) if marked else []), *measured])
+
+    def _event_marks(self, model: Model) -> list[list[Run]]:
+        """The line below the charts with a mark where something crosses a threshold."""
+        _, picture = self._pictures[-1]
+        if not picture.columns:
+            return [[]]
+        return [[(" " * picture.left + marks(model, picture.x_limits, picture.columns), _EVENTS)]]
+
+    def _against(self, model: Model, names: tuple[str, str], width: int, height: int) -> list[list[Run]]:
+        trace = model.trace
+        xs, ys = (model.along(name) for name in names)
+        marker = trace.mark if self.app.no_color or self.look.marks else BRAILLE
+        return xy_lines(xs, ys, model.sample, names, trace.rgb, marker, width, height)
+
+    def columns(self) -> int:
+        """Return the width of the canvas in characters, 1 if there is none."""
+        return max(self._pictures[0][1].columns, 1) if self._pictures else 1
+
+    def time_beside(self, time_s: float, columns: int) -> float:
+        """Return the time so many columns right of another one."""
+        low, high = self._model.x_limits() if self._model else (0.0, 1.0)
+        return time_s + columns * (high - low) / self.columns()
+
+    def on_resize(self) -> None:
+        """Draw for the new size."""
+        self.call_after_refresh(self._again)
+
+    def _again(self) -> None:
+        if self._model is not None:
+            self.show(self._model)
+
+    def _cell(self, event: events.MouseEvent) -> tuple[int, int]:
+        """Column and row of the mouse in the text."""
+        origin = self._text.region
+        return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Go to what is pointed at."""
+        column, row = self._cell(event)
+        for first, picture in self._pictures:
+            for box in picture.boxes:
+                if box.row == row - first and box.first <= column < box.end:
+                    self.post_message(self.Ticked(box.name))
+                    return
+            time_s = picture.time_at(column, row - first)
+            if time_s is not None:
+                self.post_message(self.Pointed(time_s))
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        """Read what the variables are where the mouse is."""
+        column, row = self._cell(event)
+        times_s = (picture.time_at(column, row - first) for first, picture in self._pictures)
+        self._read(next((time_s for time_s in times_s if time_s is not None), None))
+
+    def on_leave(self) -> None:
+        """The mouse reads nothing any more."""
+        self._read(None)
+
+    def _read(self, time_s: float | None) -> None:
+        """Say below the chart what the variables are at a time."""
+        read: list[Run] = []
+        if time_s is not None and self._model is not None:
+            unit = "mm" if self._model.alignment == DISTANCE else "s"
+            read = values_at(self._model.traces.drawn(), time_s, unit, self.size.width - 4)
+        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
+
+
+def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:
+    """As many facets as there is room for, the selected one among them."""
+    at = next((at for at, trace in enumerate(facets) if trace.name == selected), 0)
+    first = min(max(at - most + 1, 0), max(len(facets) - most, 0))
+    return facets[first : first + most]
+
+
+def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
+    """The line that says what lies between the two cursors."""
+    if model.mark_s is None or not model.log.rows:
+        return []
+    plain, strong = Style(color="#9fb0c3"), Style(color="#ffffff", bold=True)
+    start_s, stop_s = sorted((model.mark_s, model.cursor_s))
+    trace = model.trace
+    before, after = trace.at(model.mark_s), trace.at(model.cursor_s)
+    step = "Δt" if unit == "s" else "Δ"
+    line: list[Run] = [
+        (f"A {model.mark_s:.2f} {unit}  {step} ", plain),
+        (f"{model.cursor_s - model.mark_s:.3f} {unit}", strong),
+    ]
+    if before is not None and after is not None:
+        line += [("  Δ ", plain), (f"{after - before:.5g}", strong)]
+        if stop_s > start_s:
+            slope = (after - before) / (model.cursor_s - model.mark_s)
+            line += [("  slope ", plain), (f"{slope:.4g}/{unit}", strong)]
+    figures = trace.pyramid.figures(start_s, stop_s)
+    for word, value in (("n", figures.count), ("mean", figures.mean), ("std", figures.std), ("min", figures.min),
+                        ("max", figures.max)):  # fmt: skip
+        text = f"{value:.5g}"
+        if sum(len(part) for part, _ in line) + len(word) + len(text) + 3 > width:
+            break
+        line += [(f"  {word} ", plain), (text, strong)]
+    return [line]

@@ -1,0 +1,187 @@
+"""Asking what the columns of a table mean, where their names do not tell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar
+
+from rich.table import Table
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from tuisim.analysis.model import Model
+from tuisim.analysis.source import OpenedLog
+from tuisim.app.dialogs.dialog import Dialog
+from tuisim.errors import TuisimError
+from tuisim.logs.columns import ROW, choose_columns, is_numeric, is_time
+from tuisim.logs.units import SECONDS
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from tuisim.app.analyser.screen import Analyser
+    from tuisim.logs.log import Log
+
+_SHOWN_VALUES, _NAME_CELLS, _VALUE_CELLS = 4, 20, 12
+_COLUMNS_AT_MOST = 500
+"""More cannot be chosen from by going through them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """What the user says of the columns."""
+
+    time: str
+    """Column with the time; `ROW` to count the rows."""
+    unit: str
+    """Of times that are numbers."""
+    values: tuple[str, ...]
+
+
+def columns_of(log: Log) -> Columns:
+    """Return what a log's columns are taken for."""
+    unit = next((unit for unit, seconds in SECONDS.items() if seconds == log.layout.unit_s), "s")
+    return Columns(log.layout.time, unit, log.layout.values)
+
+
+def candidates(table: pa.Table) -> list[str]:
+    """Return the columns that can be time or values."""
+    kinds = zip(table.column_names, table.schema.types, strict=True)
+    return [name for name, kind in kinds if is_numeric(kind) or is_time(kind)][:_COLUMNS_AT_MOST]
+
+
+class AskColumns(Dialog[Columns]):
+    """Gives what the user says; nothing if all is to stay as it is.
+
+    Args:
+        log: The table, and what its columns are taken for.
+    """
+
+    TITLE_TEXT = "What are the columns?"
+    HINT = "Enter takes it · Escape leaves it as it is"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("t", "time", "Time", show=False),
+        Binding("space", "value", "Value", show=False),
+        Binding("u", "unit", "Unit", show=False),
+    ]
+
+    def __init__(self, log: Log) -> None:
+        super().__init__()
+        self._log = log
+        self._names = candidates(log.table)
+        self._said = columns_of(log)
+
+    def content(self) -> ComposeResult:
+        """The columns, each with its first values."""
+        yield OptionList(markup=False)
+        yield Static(id="message", classes="wrong", markup=False)
+        keys = Table.grid(padding=(0, 2))
+        keys.add_row("t", "this column is the time; again: none is, the rows are counted")
+        keys.add_row("space", "draw this column, or not")
+        keys.add_row("u", f"unit of the time: {', '.join(SECONDS)}")
+        yield Static(keys)
+
+    def on_mount(self) -> None:
+        """List the columns; begin with the first one."""
+        self._list(0)
+        self.query_one(OptionList).focus()
+
+    def _list(self, at: int) -> None:
+        listed = self.query_one(OptionList)
+        listed.clear_options()
+        listed.add_options([Option(self._line(name)) for name in self._names])
+        listed.highlighted = at
+
+    def _line(self, name: str) -> Table:
+        line = Table.grid(padding=(0, 1), expand=True)
+        line.add_column(width=10)
+        line.add_column(width=_NAME_CELLS, no_wrap=True, style="bold")
+        line.add_column(ratio=1, no_wrap=True)
+        line.add_row(Text(self._role(name)), Text(name), Text(self._beginning(name), "dim"))
+        return line
+
+    def _role(self, name: str) -> str:
+        if name == self._said.time:
+            return f"time, {self._said.unit}" if is_numeric(self._log.table.schema.field(name).type) else "time"
+        return "[x]" if name in self._said.values else "[ ]"
+
+    def _beginning(self, name: str) -> str:
+        first = self._log.table.column(name).slice(0, _SHOWN_VALUES).to_pylist()
+        texts = (f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value) for value in first)
+        return ", ".join(text[:_VALUE_CELLS] for text in texts) + " …"
+
+    @property
+    def _at(self) -> int:
+        return self.query_one(OptionList).highlighted or 0
+
+    def _say(self, said: Columns) -> None:
+        self._said = said
+        self.query_one("#message", Static).update("")
+        self._list(self._at)
+
+    def action_time(self) -> None:
+        """Take the column at hand for the time, or none."""
+        name, said = self._names[self._at], self._said
+        if name == said.time:
+            self._say(replace(said, time=ROW))
+        else:
+            self._say(replace(said, time=name, values=tuple(value for value in said.values if value != name)))
+
+    def action_value(self) -> None:
+        """Take the column at hand for values, or not."""
+        name, said = self._names[self._at], self._said
+        wanted = {*said.values} ^ {name}
+        time = ROW if name == said.time else said.time
+        self._say(replace(said, time=time, values=tuple(n for n in self._names if n in wanted)))
+
+    def action_unit(self) -> None:
+        """Take the next unit for the time."""
+        units = list(SECONDS)
+        self._say(replace(self._said, unit=units[(units.index(self._said.unit) + 1) % len(units)]))
+
+    @on(OptionList.OptionSelected)
+    def _take(self) -> None:
+        try:
+            if not self._said.values:
+                raise TuisimError("Nothing to draw: space chooses a column")
+            choose_columns(self._log.table, self._said.time, self._said.values, self._said.unit)
+        except TuisimError as error:
+            self.query_one("#message", Static).update(str(error))
+        else:
+            self.dismiss(self._said)
+
+
+def ask(screen: Analyser) -> None:
+    """Ask what the columns of the file mean."""
+    model = screen.model
+    if model is None or not model.subject.wanted.file:
+        screen.say("Only the columns of a file can be chosen: those of a run are known")
+    elif not candidates(model.log.table):
+        screen.say("There is no column of numbers")
+    else:
+        screen.app.push_screen(AskColumns(model.log.bare()), lambda said: _apply(screen, said))
+
+
+def _apply(screen: Analyser, said: Columns | None) -> None:
+    model = screen.model
+    if said is None or model is None:
+        return
+    wanted = replace(model.subject.wanted, time=said.time, values=said.values, unit=said.unit)
+    if not model.subject.done:
+        screen.open(wanted)
+        return
+    # All of it has been read: the same rows mean something else now.
+    layout = choose_columns(model.log.bare().table, said.time, said.values, said.unit)
+    screen.wanted = wanted
+    screen.take(Model(OpenedLog(wanted, model.log.with_layout(layout))))
+
+
+def ask_if_unsure(screen: Analyser) -> None:
+    """Ask as soon as there is something to choose from, if the names of the columns do not tell."""
+    model = screen.model
+    if model is not None and model.subject.wanted.file and not model.log.layout.sure and screen.is_current:
+        ask(screen)

@@ -1,0 +1,329 @@
+"""What stands below the chart, as lines of text: table, bands, statistics, notes, runs. Pure drawing.
+
+To add a pane: write its two functions and add a line to `PANES`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Generic, TypeVar, overload
+
+from rich.style import Style
+
+from tuisim.analysis.events import Event
+from tuisim.analysis.model import Model
+from tuisim.analysis.table import AT_ONCE
+from tuisim.app.labels import end_label
+from tuisim.charts.text_runs import Line, cut
+from tuisim.logs.bands import Band
+from tuisim.logs.statistics import QUANTILES
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Cells = tuple[str, ...]
+
+PLAIN, DIM = Style(color="#d8dee6"), Style(color="#9fb0c3")
+HEAD = Style(color="#5fafff", bold=True)
+HERE = Style(color="#ffffff", bgcolor="#2f4a66")
+CHOSEN = Style(color="#ffd75f", bold=True)
+_WIDEST = 28
+_SAMPLED = 40
+"""Rows of a table that decide how wide a column is, besides those that are seen."""
+_MEASURED = 1000
+"""In another pane of more rows, those that are seen decide it."""
+
+EMPTY = (
+    "This log is empty. Print values with a name:",
+    "    print('Colour: ' + str(value))",
+    "Run again; T shows what every tick recorded.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Pane:
+    """One line of `PANES`."""
+
+    title: str
+    rows: Callable[[Model], Sequence[Cells]]
+    """Its rows as texts; not for the table, which has too many."""
+    heads: Cells
+    below: Callable[[Model], Sequence[str]] = lambda _: ()
+    """Sentences below the rows."""
+    empty: str = ""
+    wraps: bool = False
+    """Whether its last column is prose, which goes on in further lines instead of being cut."""
+
+
+def _figure(value: float, digits: str = ".4g") -> str:
+    return f"{value:{digits}}" if isfinite(value) else "–"
+
+
+Thing = TypeVar("Thing")
+
+
+class _MadeWhenSeen(Sequence[Cells], Generic[Thing]):
+    """Rows that are made when they are looked at: a long log has a hundred thousand bands or events."""
+
+    def __init__(self, things: Sequence[Thing], row: Callable[[Thing], Cells]) -> None:
+        self._things, self._row = things, row
+
+    def __len__(self) -> int:
+        return len(self._things)
+
+    @overload
+    def __getitem__(self, at: int) -> Cells: ...
+    @overload
+    def __getitem__(self, at: slice) -> Sequence[Cells]: ...
+    def __getitem__(self, at: int | slice) -> Cells | Sequence[Cells]:
+        return _MadeWhenSeen(self._things[at], self._row) if isinstance(at, slice) else self._row(self._things[at])
+
+
+def _band(band: Band) -> Cells:
+    return (
+        band.variable, str(band.number), f"{band.true_level:.2f}", band.grey or "–", f"{band.start_s:.2f}",
+        f"{band.stop_s:.2f}", str(band.samples), _figure(band.width_mm, ".0f"), f"{band.spread:.2f}",
+    )  # fmt: skip
+
+
+def _event(event: Event) -> Cells:
+    return (
+        event.variable, "above" if event.rising else "below", f"{event.time_s:.3f}",
+        f"{event.since_s:.3f}" if isfinite(event.since_s) else "–", _figure(event.value), f"{event.row + 1:,}",
+        f"{event.threshold.value:g}",
+    )  # fmt: skip
+
+
+def _statistics(model: Model) -> list[Cells]:
+    rows = []
+    # Of a short log nothing is missing for longer than it takes to draw it.
+    missing = model.unsummed() if model.log.rows > AT_ONCE else []
+    for trace in model.traces.ticked():
+        if trace.name in missing:
+            rows.append((trace.name, "…", *[""] * (4 + len(QUANTILES))))
+            continue
+        found = model.summary(trace.name)
+        figures = (found.min, found.mean, found.max, found.std, *(found.quantiles or (nan,) * len(QUANTILES)))
+        rows.append((trace.name, f"{found.count:,}", *map(_figure, figures)))
+    return rows
+
+
+def _between(model: Model) -> list[str]:
+    span = model.measured()
+    if span is None:
+        return []
+    return [f"Between {span[0]:.3f} and {span[1]:.3f}, from A to the cursor; a takes A away and all counts again"]
+
+
+def _notes(model: Model) -> list[Cells]:
+    return [
+        (
+            f"{note.start_s:.2f}",
+            f"{note.stop_s:.2f}" if note.stop_s > note.start_s else "",
+            note.variable,
+            str(model.subject.runs[run].number) if len(model.subject.runs) > 1 else "",
+            note.text,
+        )
+        for run, note in model.notes
+    ]
+
+
+def _runs(model: Model) -> list[Cells]:
+    return [
+        (
+            f"#{at}" if len(model.subject.runs) > 1 else "",
+            str(run.number or run.id), run.program.name, run.spec.world.background, end_label(run.state),
+            f"{max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz:.2f}", run.spec.profile.name,
+            str(run.spec.seed),
+        )
+        for at, run in enumerate(model.subject.runs, 1)
+    ]  # fmt: skip
+
+
+PANES: Mapping[str, Pane] = {
+    "table": Pane("Table", lambda _: (), ()),
+    "bands": Pane(
+        "Bands", lambda model: _MadeWhenSeen(model.bands(), _band),
+        ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
+        Model.bands_in_words, "No band: no ticked variable keeps a level",
+    ),
+    "statistics": Pane(
+        "Statistics", _statistics,
+        ("variable", "count", "min", "mean", "max", "std", *(f"{100 * part:g} %" for part in QUANTILES)),
+        _between, empty="Tick a variable: v chooses one, space ticks it",
+    ),
+    "events": Pane(
+        "Events", lambda model: _MadeWhenSeen(model.events.found(model.log), _event),
+        ("variable", "comes", "at s", "after s", "value", "row", "threshold"),
+        empty="No events: c asks for a threshold, such as Colour < 50",
+    ),
+    "notes": Pane(
+        "Notes", _notes, ("from s", "to s", "variable", "run", "note"),
+        empty="No notes yet: m writes one about the sample at the cursor, or about a band", wraps=True,
+    ),
+    "runs": Pane(
+        "Runs", _runs, ("", "run", "program", "mat", "end", "s", "profile", "seed"),
+        empty="This log is a file: R opens stored runs instead, several to lay them over each other",
+    ),
+}  # fmt: skip
+"""Every pane by its name."""
+
+
+def pane_frame(name: str, model: Model) -> pd.DataFrame:
+    """Return the rows of a pane other than the table; bands with every figure that is known of them."""
+    import pandas as pd
+
+    if name == "bands":
+        return pd.DataFrame([asdict(band) for band in model.bands()])
+    pane = PANES[name]
+    frame = pd.DataFrame([list(row) for row in pane.rows(model)], columns=[head or "#" for head in pane.heads])
+    for head in frame.columns:
+        # Thousands are set off for people only.
+        numbers = pd.to_numeric(frame[head].str.replace(",", ""), errors="coerce")
+        frame[head] = numbers if numbers.notna().all() else frame[head]
+    return frame
+
+
+def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) -> list[Line]:
+    """Return a pane as lines.
+
+    Args:
+        name: Key of `PANES`.
+        model: What is looked at.
+        chosen: Row that stands out; the table has that of the cursor.
+        width: Characters.
+        height: Lines, at least 1.
+    """
+    if not model.log.rows and name != "runs":
+        return [[(text, PLAIN)] for text in EMPTY]
+    if name == "table":
+        return table_lines(model, width, height)
+    pane = PANES[name]
+    rows = pane.rows(model)
+    if not rows:
+        searching = name == "bands" and model.unsearched()
+        said = "The bands are being searched for …" if searching else pane.empty
+        return [[(text, DIM)] for text in _wrapped([said], width, height)]
+    below = _wrapped(pane.below(model), width, max(0, height // 3))
+    room = max(height - 1 - len(below), 1)
+    first = _first(chosen, len(rows), room)
+    measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
+    widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
+    used = _fitting_whole([at for at in range(len(widths)) if any(row[at] for row in measured)], widths, width)
+    lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], HEAD)]
+    shown: list[Line] = []
+    chosen_at = range(0)
+    for number, row in enumerate(rows[first : first + room], first):
+        style = HERE if number == chosen else PLAIN
+        made = _rows_of([row[at] for at in used], [widths[at] for at in used], style, width if pane.wraps else 0)
+        if number == chosen:
+            chosen_at = range(len(shown), len(shown) + len(made))
+            made = [[*line, (" " * width, HERE)] for line in made]
+        shown += made
+    # Where rows take several lines, the chosen one stays in sight.
+    start = max(min(chosen_at.start, chosen_at.stop - room), 0)
+    return lines + shown[start : start + room] + [[(text, DIM)] for text in below]
+
+
+def _rows_of(texts: Sequence[str], widths: Sequence[int], style: Style, width: int) -> list[Line]:
+    """A row as lines: one, or as many as the last text needs in a pane of that width, 0 for no matter how wide."""
+    from textwrap import wrap
+
+    margin = sum(widths[:-1]) + 2 * (len(widths) - 1)
+    if not width or margin + len(texts[-1]) <= width:
+        return [_row(texts, widths, style)]
+    first, *rest = wrap(texts[-1], max(width - margin, 10)) or [""]
+    return [_row([*texts[:-1], first], widths, style), *([(" " * margin + text, style)] for text in rest)]
+
+
+def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
+    """The columns that are seen whole, and the last of all if it is a text that may be cut."""
+    left, seen = width, []
+    for at in columns:
+        if widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
+            break
+        left -= widths[at] + 2
+        seen.append(at)
+    return seen
+
+
+def _first(chosen: int, count: int, room: int) -> int:
+    """First row shown, so that the chosen one is near the middle."""
+    return min(max(chosen - room // 2, 0), max(count - room, 0))
+
+
+def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:
+    parts = (
+        text.rjust(width) if text[:1].isdigit() or text[:1] == "-" else text.ljust(width)
+        for text, width in zip(texts, widths, strict=True)
+    )
+    return [("  ".join(parts), style)]
+
+
+def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
+    """The first lines of texts; only as much of each is wrapped as can be seen."""
+    from textwrap import wrap
+
+    seen = (text[: (most + 1) * max(width, 10)] for text in texts)
+    return [line for text in seen for line in wrap(text, max(width, 10), subsequent_indent="  ")][:most]
+
+
+def table_lines(model: Model, width: int, height: int) -> list[Line]:
+    """Return the rows of the table around the cursor, with as many columns as there is room for."""
+    rows = model.rows
+    if not len(rows):
+        return [[("No row fulfils the conditions: U shows all again", DIM)]]
+    place = rows.place(model.row)
+    room = max(height - 1, 1)
+    first = _first(place, len(rows), room)
+    shown = [rows.row(at) for at in range(first, min(first + room, len(rows)))]
+    number_width = max(len(f"{shown[-1] + 1:,}"), len(f"{shown[0] + 1:,}"))
+    columns, widths = _fitting(model, shown, width - number_width - 2)
+    head: Line = [(" " * (number_width + 2), HEAD)]
+    for column, wide in zip(columns, widths, strict=True):
+        arrow = ("↓" if rows.descending else "↑") if column == rows.sorted_by else ""
+        text = cut(column + arrow, wide).ljust(wide)
+        head += [(text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD), ("  ", HEAD)]
+    lines = [head]
+    for row in shown:
+        style = HERE if row == model.row else PLAIN
+        line: Line = [(f"{row + 1:>{number_width},}  ", HERE if row == model.row else DIM)]
+        for column, wide in zip(columns, widths, strict=True):
+            text = rows.text(row, column).replace("\n", "↵").replace("\t", " ")
+            shown_text = cut(text, wide)
+            line.append(((shown_text.rjust(wide) if _is_number(text) else shown_text.ljust(wide)) + "  ", style))
+        if row == model.row:
+            line.append((" " * width, HERE))
+        lines.append(line)
+    return lines
+
+
+def _is_number(text: str) -> bool:
+    return text[:1].isdigit() or (text[:1] == "-" and text[1:2].isdigit())
+
+
+def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], list[int]]:
+    """The columns that are shown and how wide they are: the frozen ones, then those up to the chosen one."""
+    rows = model.rows
+    seen = shown[:_SAMPLED]
+
+    def wide(column: str) -> int:
+        return min(max([len(column) + 1, *(len(rows.text(row, column)) for row in seen)]), _WIDEST)
+
+    frozen = rows.columns[: rows.frozen]
+    widths = {column: wide(column) for column in frozen}
+    left = width - sum(widths.values()) - 2 * len(frozen)
+    others = rows.columns[rows.frozen :]
+    at = max(rows.column - rows.frozen, 0)
+    # First leftwards from the chosen column until the width is used up, then on to the right of it.
+    chosen: list[str] = []
+    for column in [*reversed(others[: at + 1]), *others[at + 1 :]]:
+        need = wide(column) + 2
+        if need > left and chosen:
+            break
+        widths[column], left = min(need, max(left, 3)) - 2, left - need
+        chosen.append(column)
+    columns = frozen + [column for column in others if column in chosen]
+    return columns, [widths[column] for column in columns]

@@ -1,0 +1,355 @@
+"""The analyser as a screen: chart above, a pane below, the world beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from rich.style import Style
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.command import Provider
+from textual.containers import Horizontal, Vertical
+
+from tuisim.analysis.model import Model
+from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.table import TableTask
+from tuisim.app.analyser.actions import crossings
+from tuisim.app.analyser.actions.table import ACTIONS
+from tuisim.app.analyser.background import Finder
+from tuisim.app.analyser.chart import LogChart
+from tuisim.app.analyser.columns import ask_if_unsure
+from tuisim.app.analyser.pane import PaneView
+from tuisim.app.analyser.panes import pane_frame
+from tuisim.app.analyser.world_pane import Beside
+from tuisim.app.dialogs.dialog import ClosesOnce
+from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.terminal_app import is_leaving
+from tuisim.errors import LogError, TuisimError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
+_ALWAYS = ("help", "leave")
+_LOOK_S = 1.0
+_PATIENCE = 10.0
+"""Times as long as the reading took there is no other one."""
+
+
+def _palette() -> type[Provider]:
+    from tuisim.app.keys.analyser_help import AnalyserActions
+
+    return AnalyserActions
+
+
+class Analyser(ClosesOnce[None]):
+    """One log, looked at from all sides. Modal, so that no key of the lab below it works here.
+
+    Args:
+        wanted: What to open.
+    """
+
+    DEFAULT_CSS = """
+    Analyser { background: #10151c; color: #d8dee6; }
+    Analyser #title { height: 1; background: #1c242e; color: #ffffff; }
+    Analyser #keys { dock: bottom; height: 1; background: #1c242e; }
+    Analyser #log { width: 1fr; }
+    """
+    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {_palette}
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+p", "app.command_palette", "Command palette", show=False),
+        *(Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()),
+    ]
+
+    def __init__(self, wanted: LogRequest) -> None:
+        super().__init__()
+        self.wanted = wanted
+        self.model: Model | None = None
+        self.searched = ""
+        self.job: TableTask | None = None
+        """What is being done beside the screen."""
+        self.finder = Finder(self)
+        self._reading = False
+        self._began_s = self._next_look_s = 0.0
+        self._stamp: object = None
+        """How long the log was when it was read."""
+        self.title_line = LinesView()
+        self.title_line.id = "title"
+        self.keys = LinesView()
+        self.keys.id = "keys"
+        self.chart = LogChart()
+        self.pane = PaneView()
+        self.beside = Beside()
+
+    def compose(self) -> ComposeResult:
+        """Title, log and world, keys."""
+        yield self.title_line
+        with Horizontal():
+            with Vertical(id="log"):
+                yield self.chart
+                yield self.pane
+            yield self.beside
+        yield self.keys
+
+    def on_mount(self) -> None:
+        """Begin to open the log."""
+        self.open(self.wanted)
+        self.set_interval(_LOOK_S, self.look_again)
+
+    def on_resize(self) -> None:
+        """Fit the keys to the width."""
+        self.call_after_refresh(self._show_keys)
+
+    # Opening
+
+    def open(self, wanted: LogRequest) -> None:
+        """Open another log; the one that is shown stays until then."""
+        self.wanted = wanted
+        self._reading, self._began_s = True, monotonic()
+        self._tell("opening …")
+        self.run_worker(partial(self._open, wanted), thread=True, group="log", exclusive=True)
+
+    def _open(self, wanted: LogRequest) -> None:
+        try:
+            for subject in opening(wanted):
+                if wanted is not self.wanted or not self.is_running:
+                    return
+                model, before = Model(subject), self.model
+                if before is not None and before.subject.wanted is wanted:
+                    model.define_as(before)
+                # What the first chart needs of a long log is reckoned here, where no key waits for it.
+                model.traces.span_s()
+                self.app.call_from_thread(self.take, model)
+        except TuisimError as error:
+            self.app.call_from_thread(self._failed, wanted, error)
+
+    def _failed(self, wanted: LogRequest, error: TuisimError) -> None:
+        if wanted is not self.wanted:
+            return
+        self._reading = False
+        self.complain(error)
+        if self.model is None:
+            self.dismiss(None)
+        else:
+            self.wanted = self.model.subject.wanted
+            self.update()
+
+    def take(self, model: Model) -> None:
+        """Show what has been read, unless something else is wanted by now."""
+        subject, before = model.subject, self.model
+        if subject.wanted is not self.wanted:
+            return
+        if subject.done:
+            now_s = monotonic()
+            self._reading, self._next_look_s = False, now_s + _PATIENCE * (now_s - self._began_s)
+            self._stamp = subject.stamp()
+        self.model = model
+        if before is not None and before.subject.wanted is subject.wanted:
+            self.model.take_over(before)
+        else:
+            self.chart.look.against = None
+        self.chart.take(self.model)
+        self.beside.take(self.model)
+        self.update()
+        if before is None:
+            ask_if_unsure(self)
+        if subject.done and (before is None or before.subject.log.notes != subject.log.notes):
+            for note in subject.log.notes:
+                self.say(note)
+
+    def look_again(self) -> None:
+        """Read on when the log has grown; the longer the reading took, the seldomer."""
+        model = self.model
+        if self.job is not None:
+            self._tell(self._progress())
+        if model is None or not model.subject.done or self._reading or monotonic() < self._next_look_s:
+            return
+        if model.subject.stamp() != self._stamp:
+            self.open(self.wanted)
+
+    # Showing
+
+    def update(self) -> None:
+        """Show what has changed, everywhere."""
+        model = self.model
+        if model is None:
+            return
+        self._tell(self._progress())
+        self.finder.look(model, self.pane.name_shown)
+        self.chart.show(model)
+        self.pane.show(model)
+        self.beside.show(model)
+
+    def at_hand(self) -> Model:
+        """Return what is shown now: a log that grows may be another one than when a question was asked.
+
+        Raises:
+            LogError: there is none yet.
+        """
+        if self.model is None:
+            raise LogError("there is no log yet")
+        return self.model
+
+    def begin(self, task: TableTask) -> None:
+        """Say what is being done beside the screen; nobody waits for older work any more."""
+        self.give_up()
+        self.job = task
+        self.update()
+
+    def end(self, task: TableTask, then: Callable[[], None]) -> None:
+        """Take the result of work, unless newer work has begun."""
+        if task is self.job:
+            self.job = None
+            try:
+                then()
+            except TuisimError as error:
+                self.complain(error)
+            self.update()
+
+    def give_up(self) -> None:
+        """Wait no more for what is being done."""
+        if self.job is not None:
+            self.job.stopped = True
+        self.job = None
+
+    def on_unmount(self) -> None:
+        """Nobody waits for work any more."""
+        self.give_up()
+
+    def redraw_chart(self) -> None:
+        """Draw the chart anew, in another way."""
+        if self.model is not None:
+            self.chart.take(self.model)
+
+    def lay_out(self, chart: bool, pane: bool) -> None:
+        """Show chart, pane, or both."""
+        self.chart.display, self.pane.display = chart, pane
+        self.call_after_refresh(self.update)
+
+    def choose(self, number: int) -> None:
+        """Choose a row of a pane other than the table; the cursor goes where it is about."""
+        model, name = self.model, self.pane.name_shown
+        if model is None:
+            return
+        bands, notes = model.bands() if name == "bands" else [], model.notes if name == "notes" else []
+        events = model.events.found(model.log) if name == "events" else []
+        count = len(bands or notes or events) or len(model.subject.runs if name == "runs" else model.traces.ticked())
+        self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
+        if bands:
+            model.selected = bands[number].variable
+            rows = model.trace.series.rows
+            first, last = np.searchsorted(rows, (bands[number].first_row, bands[number].last_row))
+            model.go_to_row(int(rows[(first + last) // 2]))
+        elif events:
+            crossings.go_to(self, number)
+        elif notes:
+            _, note = notes[number]
+            if note.variable in model.traces:
+                model.selected = note.variable
+            model.go_to_moment(note.start_s)
+        model.follow_cursor()
+
+    def _progress(self) -> str:
+        """How far the log has been read."""
+        subject = self.model.subject if self.model else None
+        if subject is None or subject.done:
+            return ""
+        return f"reading {subject.part:.0%} …" if subject.part == subject.part else "reading …"
+
+    def _tell(self, progress: str) -> None:
+        title = self.model.log.title if self.model else " ".join((self.wanted.file, *self.wanted.runs))
+        place = ""
+        if self.model is not None and self.model.log.rows:
+            place = (
+                f"row {self.model.row + 1:,} of {self.model.log.rows:,} · {self.model.time_of(self.model.row):.2f} s"
+            )
+        kind = " · telemetry" if self.wanted.telemetry else ""
+        told = "   ".join(word for word in (place, progress, str(self.job or "")) if word)
+        self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {told}", Style())]])
+
+    def _show_keys(self) -> None:
+        shown = [action for action in ACTIONS.values() if action.footer]
+        left = self.size.width - sum(len(a.label) + len(a.footer) + 3 for a in shown if a.id in _ALWAYS)
+        line = []
+        for action in shown:
+            cells = len(action.label) + len(action.footer) + 3
+            if action.id not in _ALWAYS:
+                if cells > left:
+                    continue
+                left -= cells
+            line += [(f" {action.label}", _KEY), (f" {action.footer} ", _WORD)]
+        self.keys.set_lines([line])
+
+    # What the user does
+
+    def action_act(self, name: str) -> None:
+        """Do what a key stands for."""
+        if is_leaving(self.app):
+            return
+        action = ACTIONS[name]
+        if action.of_rows and (self.model is None or not self.model.log.rows):
+            self.say("There are no rows yet")
+            return
+        action.do(self)
+
+    def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
+        """Go to a time that was pointed at."""
+        if self.model is not None and self.model.log.rows:
+            self.model.go_to_time(message.time_s)
+            self.update()
+
+    def on_log_chart_ticked(self, message: LogChart.Ticked) -> None:
+        """Choose a variable and tick it, or not."""
+        if self.model is not None:
+            self.model.selected = message.name
+            ACTIONS["tick"].do(self)
+
+    def leave(self) -> None:
+        """Close the screen."""
+        self.dismiss(None)
+
+    def copy(self, text: str, what: str) -> None:
+        """Put a text into the clipboard of the user's own terminal."""
+        self.app.copy_to_clipboard(text)
+        self.say(f"Copied: {what}")
+
+    def say(self, text: str) -> None:
+        """Show a short notice."""
+        self.notify(text, timeout=3, markup=False)
+
+    def export(self, path: Path, pane: str) -> None:
+        """Write the rows of a pane to a file, those of the table with the columns that are shown.
+
+        Raises:
+            ExportError: the file cannot be written.
+        """
+        from tuisim.logs.export import check_target
+
+        if self.model is not None:
+            target = check_target(path)
+            frame = None if pane == "table" else pane_frame(pane, self.model)
+            self.run_worker(partial(self._write, self.model, frame, target), thread=True, group="export")
+
+    def _write(self, model: Model, frame: pd.DataFrame | None, target: Path) -> None:
+        """Write a frame, or the rows of the table."""
+        from tuisim.logs.export import LOG_FORMAT, export_frame
+        from tuisim.logs.log_export import export_log
+
+        try:
+            if frame is None:
+                export_log(model.log, model.rows.shown(), target)
+            else:
+                export_frame(frame, target, {"format": LOG_FORMAT, "table": "pane", "columns": list(frame.columns)})
+        except TuisimError as error:
+            self.app.call_from_thread(self.complain, error)
+        else:
+            self.app.call_from_thread(self.say, f"The rows as shown are in {target}")
+
+    def complain(self, error: TuisimError) -> None:
+        """Show an error."""
+        self.notify(str(error), severity="error", timeout=8, markup=False)

@@ -1,0 +1,461 @@
+"""The app: panels, keys, and one run at a time."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import constants, events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.command import Provider
+from textual.timer import Timer
+from textual.widget import Widget
+
+from tuisim.app.actions import branch, time_travel
+from tuisim.app.actions.table import ACTIONS, Act
+from tuisim.app.debugger import AppDebugger
+from tuisim.app.editor.document import Document
+from tuisim.app.feed import Feed, Series, sample_series
+from tuisim.app.keys.footer import KeyFooter, show_footer, situation
+from tuisim.app.labels import end_label
+from tuisim.app.loader import PERIOD_S, Loader
+from tuisim.app.panel_area import PanelArea
+from tuisim.app.panel_messages import PanelMessages
+from tuisim.app.panels import PANELS
+from tuisim.app.past_view import Lookback
+from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
+from tuisim.app.run_loader import open_run
+from tuisim.app.snapshot import GOOD_ENDS
+from tuisim.app.speech import Voice
+from tuisim.app.start_options import AppSettings
+from tuisim.app.terminal.pacer import Pacer
+from tuisim.app.terminal.terminal_app import is_leaving
+from tuisim.errors import TuisimError
+from tuisim.protocol import Ended
+from tuisim.runs.records import CONSOLE, DISPLAY, OutputRow
+
+if TYPE_CHECKING:
+    from tuisim.app.panels.output import Output
+    from tuisim.app.render.mat import Pixels
+    from tuisim.core.field import Field
+
+AFTER_FIRST_PAINT_S = 0.05
+"""The screen is painted more than once at the start; what is large is sent after that."""
+_CURSOR_QUERY = "\x1b[6n"
+_REST_GAP_S = 0.25
+"""Between two looks at what the run has written while nothing happens."""
+_AWAKE_S = 1.0
+"""So long it is looked at as often as there are frames after something has happened."""
+
+
+def _palette() -> type[Provider]:
+    from tuisim.app.keys.palette import ActionProvider
+
+    return ActionProvider
+
+
+class LabApp(PanelMessages):
+    """The robot lab.
+
+    Args:
+        settings: What the command line decided.
+    """
+
+    CSS_PATH = "tuisim.tcss"
+    TITLE = "tuisim"
+    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {_palette}
+    NOTIFICATION_TIMEOUT = 4
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()),
+        Binding("escape", "leave_field", "Leave a field", show=False),
+    ]
+
+    def __init__(self, settings: AppSettings) -> None:
+        super().__init__()
+        self.settings = settings
+        self.bridge = RunController(settings)
+        self.desk = PanelArea(settings.panels_on, settings.panels_off)
+        self.key_footer = KeyFooter()
+        self.pacer = Pacer(settings.fps)
+        self.voice = Voice(settings.quiet)
+        self.bridge.propose = partial(branch.propose, self)
+        self.lookback = Lookback(self.desk, self.bridge.timeline)
+        self.feed: Feed | None = None
+        self._drawn: object = None
+        self.loading = Loader(self)
+        self.work = Document(self)
+        self.debugging = AppDebugger(self)
+        self.brick_hint = BrickHint(self)
+        self._run_when_ready = settings.autorun and settings.replay is None
+        self._beats: Timer | None = None
+        self._awake_until_s = 0.0
+        self._last_words = ""
+        """How the run ended, for the output panel once it has shown every row."""
+
+    # Life
+
+    def compose(self) -> ComposeResult:
+        """Lay out the desk and the footer."""
+        yield self.desk
+        yield self.key_footer
+
+    def on_ready(self) -> None:
+        """Begin what costs time, after the first paint."""
+        if self.is_headless:
+            self.pacer.asks = False
+        self.situation_changed()
+        self.set_timer(AFTER_FIRST_PAINT_S, self._begin)
+
+    def _begin(self) -> None:
+        if is_leaving(self):
+            return
+        self.desk.ensure("world", "output", "chart")
+        if self.settings.replay:
+            open_run(self, self.settings.replay)
+            self.work.begin()
+        else:
+            self.loading.prepare_mat()
+            self.loading.begin()
+        # Breaks hold, and are kept, whether or not a panel shows the program.
+        self.debugging.program_changed(self.bridge.program)
+        self._beats = self.set_interval(1 / self.settings.fps, self._beat)
+        self.set_interval(_REST_GAP_S, self._seldom)
+        self.set_interval(PERIOD_S, self.loading.look)
+
+    def suspending(self) -> None:
+        """Let nothing move while the app is stopped, and nothing go on by itself after that."""
+        time_travel.stand_still(self)
+
+    def on_unmount(self) -> None:
+        """Leave no child behind, and no unsaved work."""
+        self.work.keep()
+        self.debugging.close()
+        self.bridge.close()
+        self.voice.hush()
+
+    # The world
+
+    def mat_ready(self, pixels: Pixels | None) -> None:
+        """The mat has been prepared; its picture, unless it lies there already."""
+        if pixels is not None and (world := self.desk.world):
+            world.set_mat(pixels)
+        self.draw(force=True)
+        if self._run_when_ready:
+            self._run_when_ready = False
+            if self.bridge.program:
+                self.start_run()
+
+    def plan_changed(self) -> None:
+        """Show that the next run will be another."""
+        self._introduce_program()
+        self.desk.show_plan(self.bridge.plan)
+        self.situation_changed()
+        self.draw(force=True)
+
+    # A run
+
+    def start_run(self, held: bool = False) -> bool:
+        """Start the program, as soon as the mat is ready; whether it has started.
+
+        Args:
+            held: Hold it at its first line.
+        """
+        if not self.loading.mat_is_ready:
+            self._run_when_ready = not held
+            self.say("The mat is being prepared; the program starts at once after that")
+            return False
+        if not self.work.apply():
+            return False
+        try:
+            self.bridge.start(self.debugging.texts, held)
+        except TuisimError as error:
+            self.complain(error)
+            return False
+        self.run_changed()
+        self.brick_hint.started(self.bridge.program.text if self.bridge.program else "")
+        return True
+
+    def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
+        """Make the panels ready for another run, which may be over already and have ended with some words."""
+        recording = self.bridge.timeline.recording
+        self.feed = Feed(recording) if recording else None
+        self._last_words = last_words
+        self.desk.clear_log()
+        if self.desk.brick:
+            self.desk.brick.release_all()
+        self.work.run_changed()
+        self.work.run_ended_at(error_line)
+        self.debugging.run_changed()
+        self.situation_changed()
+
+    def _beat(self) -> None:
+        """Take what the run has written, and show a frame if the terminal has shown the last one."""
+        try:
+            news = self.bridge.poll()
+            self._take(news)
+            time_travel.beat(self)
+            self.debugging.beat()
+            # A frame that has to wait is as good as drawn.
+            drew = not self.pacer.ready() or self.draw()
+            if drew or news or self.debugging.busy:
+                self._wake()
+        except TuisimError as error:
+            # What cannot be read now cannot be read at the next beat either.
+            self.bridge.close()
+            self.complain(error)
+            self.situation_changed()
+
+        if self._beats is not None and not self._is_awake:
+            self._beats.pause()
+
+    def _seldom(self) -> None:
+        # A beat between two others would leave the next one no time for a frame.
+        if not self._is_awake:
+            self._beat()
+
+    @property
+    def _is_awake(self) -> bool:
+        return time.monotonic() < self._awake_until_s
+
+    def _wake(self) -> None:
+        """Look often at what the run has written: something has happened."""
+        self._awake_until_s = time.monotonic() + _AWAKE_S
+        if self._beats is not None:
+            self._beats.resume()
+
+    async def on_event(self, event: events.Event) -> None:
+        """Be awake while the user does something."""
+        if isinstance(event, events.InputEvent):
+            self._wake()
+        await super().on_event(event)
+
+    def _take(self, news: RunUpdate) -> None:
+        for sound in news.spoken:
+            self.voice.make_heard(sound)
+        for event in news.held:
+            self.debugging.take(event)
+        if news.rows:
+            self._take_rows(news)
+        if output := self.desk.output:
+            if news.prompt is not None and not output.asking:
+                self._ask(news.prompt)
+            elif news.prompt is None and output.asking:
+                output.stop_asking()
+        if news.branched and (recording := self.bridge.timeline.recording):
+            self.say(branch.told(news.branched, recording))
+            self.situation_changed()
+        if news.ended:
+            self._ended(news.ended)
+        if self._last_words and len(news.rows) < ROWS_A_POLL and self.desk.output:
+            self.desk.output.note(self._last_words)
+            self._last_words = ""
+
+    def _take_rows(self, news: RunUpdate) -> None:
+        self.brick_hint.shown(news.rows)
+        if self.desk.output:
+            self.desk.output.add(news.rows, news.skipped)
+        self._append(sample_series(news.rows))
+
+    def _append(self, series: Series) -> None:
+        if chart := self.desk.chart:
+            for name, (times, values) in series.items():
+                chart.append(name, times, values)
+
+    def _ask(self, prompt: str) -> None:
+        if not self.desk.shown("output"):
+            self.desk.toggle("output")
+        if self.desk.output:
+            self.desk.output.ask(prompt)
+
+    def _ended(self, ended: Ended) -> None:
+        if self.desk.brick:
+            self.desk.brick.release_all()
+        good = ended.end in GOOD_ENDS
+        words = ended.summary or end_label(ended.end)
+        self.notify(words, severity="information" if good else "error", markup=False)
+        self.debugging.ended()
+        self.work.run_ended_at(ended.error_line)
+        # What was wrong is among the rows already, as a traceback.
+        known = ended.end in ("finished", "raised")
+        self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
+        self.situation_changed()
+        self.loading.look()
+
+    # The picture
+
+    def draw(self, force: bool = False) -> bool:
+        """Show the newest moment in every panel; whether it was not what they show already."""
+        snapshot = self.bridge.snapshot()
+        now = (
+            (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
+            (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
+            (snapshot.face, snapshot.pressed),
+        )
+        is_behind = self.feed is not None and self.feed.is_behind and self._charted_field() is not None
+        if now == self._drawn and not force and not is_behind:
+            return False
+        self._drawn = now
+        self._feed_panels()
+        self.lookback.show()
+        self.desk.show(snapshot)
+        show_footer(self, snapshot)
+        self.pacer.drawn()
+        return True
+
+    def _feed_panels(self) -> None:
+        if self.feed is None:
+            return
+        if world := self.desk.world:
+            xs, ys = self.feed.trace_points()
+            if xs:
+                world.extend_trace(xs, ys, self.feed.recording.spec.robot.pen)
+        if field := self._charted_field():
+            self._append(self.feed.chart_series(field))
+
+    def _charted_field(self) -> Field | None:
+        """The mat that the chart's readings are taken from; None where there is nothing to draw them with, or in."""
+        mat = self.bridge.mat
+        if self.feed is None or mat is None or not self.desk.shown("chart"):
+            return None
+        return mat.field if mat.serves(self.feed.recording.spec) else None
+
+    def painted(self, size: int) -> None:
+        """Ask the terminal to tell when it has shown what it was sent; that comes as a `CursorPosition` event."""
+        if self.pacer.painted(size) and self._driver is not None:
+            self._driver.write(_CURSOR_QUERY)
+
+    def on_cursor_position(self, event: events.CursorPosition) -> None:
+        """The terminal has shown a frame."""
+        self.pacer.answered()
+
+    def situation_changed(self) -> None:
+        """Bring the footer up to date."""
+        self._wake()
+        show_footer(self, self.bridge.snapshot())
+
+    # Panels
+
+    def on_panel_area_added(self, message: PanelArea.Added) -> None:
+        """Tell a panel that has just come what it has missed."""
+        if message.panel == "world" and (world := self.desk.world):
+            world.show_rays = self.settings.rays
+            if self.bridge.mat:
+                world.set_mat(self.bridge.mat.pixels)
+            if self.focused is None:
+                world.focus()
+        if message.panel in ("code", "controls"):
+            self._introduce_program()
+        if message.panel in ("code", "debug"):
+            self.debugging.mark()
+            self.debugging.show()
+        self.desk.show_plan(self.bridge.plan)
+        self.call_after_refresh(self.draw, force=True)
+
+    def on_panel_area_rearranged(self) -> None:
+        """Panels came, went or moved."""
+        self.mark_box()
+        self.call_after_refresh(self.draw, force=True)
+
+    def _introduce_program(self) -> None:
+        self.work.introduce()
+        self.debugging.program_changed(self.bridge.program)
+
+    # What the user does
+
+    def action_act(self, name: str) -> None:
+        """Do what a key stands for, or say why it does nothing now."""
+        if is_leaving(self):
+            return
+        action = ACTIONS[name]
+        if reason := action.why_not(situation(self)):
+            self.say(reason)
+            return
+        action.do(self)
+
+    def on_act(self, message: Act) -> None:
+        """A word in the footer or on a panel was clicked on."""
+        self.action_act(message.action)
+
+    def action_leave_field(self) -> None:
+        """Leave an input field; from the world, come back from the past."""
+        if self.debugging.is_away and self.focused in (None, self.desk.world):
+            time_travel.to_now(self)
+        self.desk.focus_world()
+
+    def on_output_answered(self, message: Output.Answered) -> None:
+        """The user answered `input()`."""
+        self.bridge.answer(message.text)
+        self.action_leave_field()
+
+    def on_click(self, event: events.Click) -> None:
+        """A click beside every field leaves it."""
+        in_a_dialog = self.screen is not self.desk.screen
+        if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
+            self.action_leave_field()
+
+    def say(self, text: str) -> None:
+        """Show a short notice."""
+        self.notify(text, timeout=3, markup=False)
+
+    def complain(self, error: TuisimError) -> None:
+        """Show an error."""
+        self.notify(str(error), severity="error", timeout=8, markup=False)
+
+
+def _choose_colors(colors: str) -> None:
+    """Fix the colours that the terminal is sent; `auto` leaves the choice to Textual."""
+    system = {"truecolor": "truecolor", "256": "256", "16": "standard"}.get(colors)
+    if system:
+        # Textual looks at the environment when it is imported, and that was before the settings were known.
+        constants.COLOR_SYSTEM = system  # type: ignore[misc]
+    if colors == "none":
+        os.environ["NO_COLOR"] = "1"
+
+
+def run_app(settings: AppSettings) -> int:
+    """Run the app in this terminal until the user quits; return the exit code."""
+    _choose_colors(settings.colors)
+    lab = LabApp(settings)
+    lab.run()
+    return lab.return_code or 0
+
+
+_BUTTONS = re.compile(r"^[^#\n]*\bev3dev2(\.|\s+import\s.*\b)button\b", re.MULTILINE)
+"""How a program comes by the buttons."""
+
+
+def looks_at_buttons(program: str) -> bool:
+    """Return whether the text of a program asks for the brick's buttons."""
+    return bool(_BUTTONS.search(program))
+
+
+class BrickHint:
+    """One for the app.
+
+    Args:
+        lab: The app.
+    """
+
+    def __init__(self, lab: LabApp) -> None:
+        self._lab = lab
+        self._told = False
+
+    def started(self, program: str) -> None:
+        """A program was started; its text tells whether it looks at the buttons."""
+        if not self._told and looks_at_buttons(program):
+            self._tell("looks at the brick's buttons")
+
+    def shown(self, rows: Iterable[OutputRow]) -> None:
+        """The program has written these rows."""
+        if not self._told and any(row.stream in (DISPLAY, CONSOLE) for row in rows):
+            self._tell("shows something on the brick")
+
+    def _tell(self, what: str) -> None:
+        self._told = True
+        if not self._lab.desk.shown("brick"):
+            self._lab.say(f"The program {what}: {PANELS['brick'].key} opens its panel")

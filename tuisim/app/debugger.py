@@ -1,0 +1,391 @@
+"""Debugging: breaks and watches, where the program stands, and what it looks like there, now or in the past."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from tuisim import protocol
+from tuisim.app import breakpoint_store
+from tuisim.app.actions import time_travel
+from tuisim.app.snapshot import PAUSED
+from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
+from tuisim.errors import TuisimError
+from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused
+from tuisim.runs.replay_debugger import Position, ReplayDebugger
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.runs.handle import Program
+
+SHOWS_PANELS = ("step", "line", "break")
+"""Reasons of a pause for which the panels of debugging come by themselves."""
+
+
+@dataclass(frozen=True, slots=True)
+class DebugView:
+    """Where a program stands and what it looks like."""
+
+    paused: Paused
+    looked: Inspected
+    past: bool
+    """Whether that is an instant that is looked back at."""
+
+
+class AppDebugger:
+    """One for the app.
+
+    Args:
+        lab: The app.
+    """
+
+    def __init__(self, lab: LabApp) -> None:
+        self._lab = lab
+        self.breaks: tuple[Breakpoint, ...] = ()
+        self.watches: tuple[str, ...] = ()
+        self.standing: DebugView | None = None
+        """What is shown; None while the program runs, or before it stands anywhere."""
+        self._program = ""
+        self._text = ""
+        self._paused: Paused | None = None
+        """Where the run at work stands."""
+        self._position: Position | None = None
+        """The instant that is looked back at, to the line."""
+        self._frame, self._thread = 0, ""
+        self._stand_in = ReplayDebugger(self._arrived, self._not_there, self._came_to_now)
+        self._wanted: Position | None = None
+        """The instant that the stand-in was last sent to."""
+        self._first: Message | None = None
+        """To be done when a run that was started for it stands at its first line."""
+        self._more_back = 0
+        """So many further lines back were asked for while the first ones were being worked out."""
+        self._panels_came = False
+        self._untold = False
+        """Whether the run at work was not told the breaks, as a branch is only on its instant."""
+
+    # Breaks and watches
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The breaks as the run is told them."""
+        return tuple(one.written() for one in self.breaks)
+
+    def program_changed(self, program: Program | None) -> None:
+        """Another program is open, or its text is another one."""
+        key = (program.path or program.name) if program else ""
+        if key != self._program:
+            self._program = key
+            kept = breakpoint_store.load_kept(key) if key else breakpoint_store.Kept()
+            self.breaks, self.watches = kept.breaks, kept.watches
+        self._text = program.text if program else ""
+        self.mark()
+
+    def edited(self, text: str) -> None:
+        """The text was edited: breaks stay on their lines."""
+        breaks = breakpoint_store.following(self.breaks, self._text, text)
+        self._text = text
+        if breaks != self.breaks:
+            self.set_breaks(breaks)
+
+    def set_breaks(self, breaks: tuple[Breakpoint, ...]) -> None:
+        """From now on these breaks hold the run."""
+        self.breaks = breaks
+        self._tell_breaks()
+        self._keep()
+        self.mark()
+
+    def _tell_breaks(self) -> None:
+        """Tell the run at work its breaks, each on its line of the text that runs."""
+        lines, texts = self._lab.work.lines(), []
+        for one in self.breaks:
+            shown = break_line_of(one)
+            runs = lines.to_run(shown)
+            if runs or not shown:
+                texts.append(moved(one, runs).written())
+        self._lab.bridge.debug(protocol.SetBreaks(tuple(texts)))
+
+    def set_watches(self, watches: tuple[str, ...]) -> None:
+        """From now on these expressions are watched."""
+        self.watches = watches
+        self._keep()
+        self._look_again()
+
+    def _keep(self) -> None:
+        if self._program:
+            try:
+                breakpoint_store.keep(self._program, breakpoint_store.Kept(self.breaks, self.watches))
+            except TuisimError as error:
+                self._lab.complain(error)
+
+    def mark(self) -> None:
+        """Show the breaks in the code."""
+        if code := self._lab.desk.code:
+            marks = {line: _mark(one) for line, one in break_lines(self.breaks).items()}
+            code.set_marks(marks)
+
+    def toggle_line(self, line: int) -> None:
+        """Put a breakpoint on a line, or take it away; one that is switched off is switched on."""
+        there = break_lines(self.breaks).get(line)
+        if there is None:
+            self.set_breaks((*self.breaks, parse_break(str(line))))
+        elif there.disabled:
+            self.set_breaks(tuple(replace(one, disabled=False) if one is there else one for one in self.breaks))
+        else:
+            self.set_breaks(tuple(one for one in self.breaks if one is not there))
+
+    # What comes from the run
+
+    def run_changed(self) -> None:
+        """There is another run, or none."""
+        self._paused = self._position = self.standing = self._lab.bridge.held_line = None
+        self._frame, self._thread, self._wanted = 0, "", None
+        self._panels_came, self._untold = False, bool(self.breaks)
+        self._first, self._more_back = None, 0
+        self._stand_in.close()
+        self.show()
+
+    def ended(self) -> None:
+        """The run is over: it stands nowhere any more; a former instant is looked at as before."""
+        self._paused = None
+        if not self.is_away:
+            self.standing = self._lab.bridge.held_line = None
+            self.show()
+
+    def take(self, event: Message) -> None:
+        """The run stands still, goes on, or has told what it looks like."""
+        if self._untold:
+            self._untold = False
+            self._tell_breaks()
+        match event:
+            case Paused():
+                self._stands(event)
+            case protocol.Resumed():
+                self._paused = None
+                if not self._lab.bridge.in_past:
+                    self._position = self.standing = None
+                    self.show()
+            case Inspected() if self._paused is not None and not self.looks_back:
+                self._set_standing(DebugView(self._paused, event, False))
+
+    def _stands(self, paused: Paused) -> None:
+        self._paused, self._position = paused, None
+        self._frame, self._thread = 0, ""
+        if self._first is not None and paused.reason != "break":
+            first, self._first = self._first, None
+            self._lab.bridge.debug(first)
+            return
+        if paused.reason in SHOWS_PANELS:
+            self._come()
+        if paused.reason == "break":
+            met = f": {paused.value}" if paused.value else ""
+            self._lab.say(f"Break {paused.detail}{met} at {paused.time_ns / 1e9:.2f} s")
+        self._look_again()
+
+    def _come(self) -> None:
+        """Let the panels of debugging come, once a run."""
+        if self._panels_came:
+            return
+        self._panels_came = True
+        for panel in ("code", "debug"):
+            if not self._lab.desk.shown(panel):
+                self._lab.desk.toggle(panel)
+
+    # Looking
+
+    @property
+    def looks_back(self) -> bool:
+        """Whether a former instant is looked at, be it of this very tick."""
+        return self._position is not None or self._lab.bridge.in_past
+
+    @property
+    def busy(self) -> bool:
+        """Whether a former instant is still being worked out."""
+        return self._stand_in.busy
+
+    @property
+    def is_away(self) -> bool:
+        """Whether a former instant is looked at, or will be once it is worked out."""
+        return self.looks_back or self.busy
+
+    @property
+    def look(self) -> protocol.Inspect:
+        """What is asked of a program that stands still."""
+        return protocol.Inspect(self.watches, self._thread, self._frame)
+
+    def choose_frame(self, by: int) -> None:
+        """Look at the caller of the frame, or at what it called."""
+        if self.standing:
+            self._frame = min(max(0, self._frame + by), max(0, len(self.standing.looked.stack) - 1))
+            self._look_again()
+
+    def choose_thread(self) -> None:
+        """Look at the next thread."""
+        if self.standing and (threads := self.standing.looked.threads):
+            names = [thread.name for thread in threads]
+            at = names.index(self.standing.looked.thread) if self.standing.looked.thread in names else -1
+            self._thread, self._frame = names[(at + 1) % len(names)], 0
+            self._look_again()
+
+    def _look_again(self) -> None:
+        if self.looks_back:
+            self._stand_in.look(self.look)
+        elif self._paused is not None:
+            self._lab.bridge.debug(self.look)
+
+    def beat(self) -> None:
+        """Follow the instant that is looked at, and take what has been worked out."""
+        self._stand_in.beat()
+        timeline = self._lab.bridge.timeline
+        if self._position is not None and timeline.at not in (None, self._position.tick):
+            self._position = None
+        if not self.looks_back:
+            if self.standing and self.standing.past and not self.busy:
+                self._back_to_now()
+            return
+        if timeline.at is not None and self._position is None and self._lab.desk.shown("debug"):
+            self._follow(Position(timeline.at))
+
+    def to_now(self) -> None:
+        """Look at the newest instant again, also if only lines of its own tick were looked back at."""
+        self._position, self._more_back = None, 0
+        if self._stand_in.busy:
+            # What it is on its way to is not wanted any more.
+            self._stand_in.close()
+            self._wanted = None
+            self.show()
+
+    def _back_to_now(self) -> None:
+        self.standing, self._wanted = None, None
+        self.show()
+        self._look_again()
+
+    def _follow(self, position: Position) -> None:
+        timeline = self._lab.bridge.timeline
+        if timeline.recording is None or timeline.playing or self._stand_in.busy or position == self._wanted:
+            return
+        self._wanted = position
+        self._stand_in.go(timeline.recording, position, self.look)
+        self.show()
+
+    def _arrived(self, paused: Paused, looked: Inspected) -> None:
+        timeline, here = self._lab.bridge.timeline, Position(paused.tick, paused.ordinal)
+        if self._wanted is None:
+            if not self._is_past(here):
+                self._came_to_now()
+                return
+            self._position = here
+            timeline.go(paused.tick)
+        elif timeline.at != self._wanted.tick:
+            # Somebody has gone elsewhere meanwhile.
+            self._wanted = None
+            return
+        self._set_standing(DebugView(paused, looked, True))
+        self._lab.situation_changed()
+        if self._more_back:
+            self.lines_back(0)
+
+    def _is_past(self, at: Position) -> bool:
+        """Whether an instant is a former one; a re-run may come farther than the run at hand."""
+        now = self._paused
+        if now is None or now.ordinal == UNKNOWN_ORDINAL:
+            return at.tick <= (self._lab.bridge.timeline.newest if now is None else now.tick)
+        return at.is_before(Position(now.tick, now.ordinal))
+
+    def _came_to_now(self) -> None:
+        time_travel.to_now(self._lab)
+        self._back_to_now()
+
+    def _not_there(self, why: str) -> None:
+        self._wanted, self._more_back = None, 0
+        self._lab.say(why)
+        self.show()
+
+    def _set_standing(self, standing: DebugView) -> None:
+        self.standing = standing
+        line = standing.paused.line if not standing.paused.file else 0
+        self._lab.bridge.held_line = (standing.paused.tick, line)
+        self.show()
+        self._lab.draw(force=True)
+
+    def show(self) -> None:
+        """Bring the panel up to date."""
+        if panel := self._lab.desk.debug:
+            panel.show_debugging(self)
+
+    # Steps
+
+    def _here(self) -> Position | None:
+        """Where the run is looked at, to the line as far as it is known."""
+        timeline = self._lab.bridge.timeline
+        if self._position is not None:
+            return self._position
+        if timeline.at is not None:
+            return Position(timeline.at)
+        if self._paused is not None and self._paused.ordinal != UNKNOWN_ORDINAL:
+            return Position(self._paused.tick, self._paused.ordinal)
+        return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
+
+    def step(self, how: str) -> None:
+        """Go on to the next line: of the program, or as recorded."""
+        self.go_on(protocol.StepLine(how))
+
+    def run_to(self, line: int) -> None:
+        """Go on until a line is about to run."""
+        bridge = self._lab.bridge
+        runs = self._lab.work.lines().to_run(line) if bridge.in_run or self.is_away else line
+        if runs:
+            self.go_on(protocol.RunToLine(runs))
+        else:
+            self._lab.say("This line is not in the text that runs")
+
+    def go_on(self, command: Message) -> None:
+        """Carry out a command that lets the program go on and stand still again."""
+        lab = self._lab
+        if self.is_away:
+            self._in_past(command)
+        elif lab.bridge.in_run:
+            lab.bridge.debug(command)
+        else:
+            # At the first line it stands anyway.
+            first = None if isinstance(command, protocol.StepLine) else command
+            if lab.start_run(held=True):
+                self._first = first
+                self._come()
+
+    def _in_past(self, command: Message) -> None:
+        timeline = self._lab.bridge.timeline
+        if timeline.recording is None or self._stand_in.busy:
+            return
+        self._come()
+        here = self._here()
+        assert here is not None
+        self._position, self._wanted = None, None
+        self._stand_in.go_on(timeline.recording, here, command, self.look)
+        self.show()
+
+    def lines_back(self, count: int) -> None:
+        """Go to where so many lines before this instant were about to run."""
+        lab = self._lab
+        here, recording = self._here(), lab.bridge.timeline.recording
+        if here is None or recording is None:
+            lab.say("No run yet to look back on: R runs the program")
+        elif self._stand_in.busy:
+            self._more_back += count
+        else:
+            if lab.bridge.in_run and lab.bridge.state != PAUSED:
+                lab.bridge.pause()
+            self._come()
+            self._position, self._wanted = None, None
+            count, self._more_back = count + self._more_back, 0
+            self._stand_in.lines_back(recording, here, count, self.look)
+            self.show()
+
+    def close(self) -> None:
+        """Leave no process behind."""
+        self._stand_in.close()
+
+
+def _mark(one: Breakpoint) -> str:
+    if one.disabled:
+        return "○"
+    return "◆" if isinstance(one.rule, LineBreak) and one.rule.condition else "●"

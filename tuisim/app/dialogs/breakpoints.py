@@ -1,0 +1,193 @@
+"""Breakpoints and watches of the program: add, edit, switch, delete."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import ClassVar, Generic, TypeVar
+
+from rich.table import Table
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Input, OptionList, Static
+from textual.widgets.option_list import Option
+
+from tuisim.app.dialogs.dialog import Dialog
+from tuisim.breakpoints import Breakpoint, parse_break, parse_watch
+from tuisim.core.spec import RobotSpec
+from tuisim.errors import TuisimError
+
+Entry = TypeVar("Entry")
+
+FORMS = (
+    ("12", "line 12 is about to run"),
+    ("12 if x > 3", "and this is true there"),
+    ("left.red% < 10", "a sensor, ultrasonic < 200, gyro > 90, x_mm > 1000"),
+    ("left.color changes", "another colour is seen"),
+    ("sample Colour < 50", "also: sample Colour changes"),
+    ("print matches black", "a printed line, by a regular expression"),
+    ("time 3.5", "so many simulated seconds have passed"),
+    ("stall", "a motor is held fast"),
+)
+
+
+class _Listed(Dialog[None], Generic[Entry]):
+    """A list of things that are written as text, with a field to add or to change one."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("delete,backspace", "remove", "Delete", show=False),
+        Binding("e", "edit", "Edit", show=False),
+        Binding("space", "switch", "On or off", show=False),
+    ]
+    PLACEHOLDER: ClassVar[str] = ""
+
+    def __init__(self, entries: Sequence[Entry], changed: Callable[[tuple[Entry, ...]], None]) -> None:
+        super().__init__()
+        self._entries = list(entries)
+        self._changed = changed
+        self._editing: int | None = None
+        """Which one the field will change; None for a new one."""
+
+    def content(self) -> ComposeResult:
+        """The list, the field, what is wrong there, and what may stand there."""
+        yield OptionList(markup=False)
+        yield Input(placeholder=self.PLACEHOLDER, compact=True)
+        yield Static(id="message", classes="wrong", markup=False)
+        yield from self.explanation()
+
+    def explanation(self) -> ComposeResult:
+        """What may be entered."""
+        yield from ()
+
+    @abstractmethod
+    def parse(self, text: str) -> Entry:
+        """Return what a text describes, or raise a ConfigError."""
+
+    @abstractmethod
+    def written(self, entry: Entry) -> str:
+        """Return the text of an entry."""
+
+    def label(self, entry: Entry) -> str:
+        """Return an entry as it is listed."""
+        return self.written(entry)
+
+    def on_mount(self) -> None:
+        """List what there is; begin in the list if there is any."""
+        self._list()
+        self.query_one(OptionList if self._entries else Input).focus()
+
+    def _list(self, at: int | None = None) -> None:
+        listed = self.query_one(OptionList)
+        listed.clear_options()
+        listed.add_options([Option(self.label(entry)) for entry in self._entries])
+        if not self._entries:
+            listed.add_option(Option("None yet", disabled=True))
+        elif at is not None:
+            listed.highlighted = min(at, len(self._entries) - 1)
+
+    @property
+    def _at(self) -> int | None:
+        at = self.query_one(OptionList).highlighted
+        return at if self._entries else None
+
+    def _tell(self, at: int | None = None) -> None:
+        self._list(at)
+        self._changed(tuple(self._entries))
+
+    def action_remove(self) -> None:
+        """Delete the one at hand."""
+        if isinstance(self.focused, OptionList) and (at := self._at) is not None:
+            del self._entries[at]
+            self._tell(at)
+
+    @on(OptionList.OptionSelected)
+    def action_edit(self) -> None:
+        """Bring the one at hand into the field."""
+        if (at := self._at) is not None:
+            self._editing = at
+            field = self.query_one(Input)
+            field.value = self.written(self._entries[at])
+            field.focus()
+
+    def action_switch(self) -> None:
+        """Switch the one at hand on or off."""
+
+    @on(Input.Submitted)
+    def _entered(self, event: Input.Submitted) -> None:
+        message = self.query_one("#message", Static)
+        try:
+            entry = self.parse(event.value)
+        except TuisimError as error:
+            message.update(str(error))
+            return
+        message.update("")
+        if self._editing is None:
+            self._entries.append(entry)
+        else:
+            self._entries[self._editing] = entry
+        at, self._editing = self._editing, None
+        event.input.clear()
+        self._tell(len(self._entries) - 1 if at is None else at)
+
+
+class BreaksDialog(_Listed[Breakpoint]):
+    """The breakpoints.
+
+    Args:
+        breaks: Those there are.
+        robot: Whose sensors may be named.
+        changed: Told the new ones after each change.
+    """
+
+    TITLE_TEXT: str = "Breakpoints"
+    HINT: str = "Enter changes · Space switches · Delete removes · Escape closes"
+    PLACEHOLDER: ClassVar[str] = "a new one, such as 12 if x > 3"
+
+    def __init__(
+        self, breaks: Sequence[Breakpoint], robot: RobotSpec, changed: Callable[[tuple[Breakpoint, ...]], None]
+    ) -> None:
+        super().__init__(breaks, changed)
+        self._robot = robot
+
+    def explanation(self) -> ComposeResult:
+        """The language of breaks."""
+        forms = Table.grid(padding=(0, 2))
+        for form, meaning in FORMS:
+            forms.add_row(form, meaning)
+        yield Static(forms)
+
+    def parse(self, text: str) -> Breakpoint:
+        """Return the break that a text describes."""
+        return parse_break(text, self._robot)
+
+    def written(self, entry: Breakpoint) -> str:
+        """Return a break's text."""
+        return entry.written()
+
+    def label(self, entry: Breakpoint) -> str:
+        """Return a break as it is listed."""
+        return f"{'○' if entry.disabled else '●'} {'line ' if entry.text[:1].isdigit() else ''}{entry.text}"
+
+    def action_switch(self) -> None:
+        """Switch the one at hand on or off."""
+        if isinstance(self.focused, OptionList) and (at := self._at) is not None:
+            self._entries[at] = replace(self._entries[at], disabled=not self._entries[at].disabled)
+            self._tell(at)
+
+
+class WatchesDialog(_Listed[str]):
+    """The watches."""
+
+    TITLE_TEXT: str = "Watches"
+    HINT: str = "Enter changes · Delete removes · Escape closes"
+    PLACEHOLDER: ClassVar[str] = "an expression, such as len(values) or x / 2"
+
+    def parse(self, text: str) -> str:
+        """Return an expression that Python can read."""
+        return parse_watch(text)
+
+    def written(self, entry: str) -> str:
+        """Return the expression."""
+        return entry

@@ -1,0 +1,192 @@
+"""Choosing by name in a list, or by the path of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.text import Text
+from textual import events, on
+from textual.app import ComposeResult
+from textual.widgets import Input, OptionList
+from textual.widgets.option_list import Option
+
+from tuisim.app.dialogs.dialog import Dialog, name_and_title
+from tuisim.app.dialogs.save import typed_path
+from tuisim.app.setup.next_run import NextRun
+from tuisim.errors import TuisimError
+
+MAX_FILES = 200
+MAX_TRIED = 50
+"""Files of the folder that are opened to see whether they fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Part of the list."""
+
+    title: str
+    entries: Sequence[tuple[str, str, str]]
+    """What is chosen, its name, and its title, which may be empty."""
+
+
+def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = None) -> Group:
+    """Return the files of the folder one is in.
+
+    Args:
+        suffixes: With their dots.
+        fits: Raises TuisimError for a file that is not to be listed.
+    """
+    wanted = tuple(suffixes)
+    found = sorted(path for path in Path.cwd().iterdir() if path.suffix.lower() in wanted and path.is_file())
+    if fits:
+        found = [path for path in found[:MAX_TRIED] if _passes(fits, path)]
+    return Group(f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found])
+
+
+def _passes(fits: Callable[[Path], object], path: Path) -> bool:
+    try:
+        fits(path)
+    except TuisimError:
+        return False
+    return True
+
+
+class ListDialog(Dialog[str]):
+    """A list, and mostly a field for a path; gives what was chosen or typed."""
+
+    def on_mount(self) -> None:
+        """Begin in the list: most want one of those."""
+        self.query_one(OptionList).focus()
+
+    def on_key(self, event: events.Key) -> None:
+        """What is typed while the list has the focus goes into the field."""
+        if event.character and event.is_printable and not event.character.isspace() and self.query(Input):
+            field = self.query_one(Input)
+            if not field.has_focus:
+                event.stop()
+                field.focus()
+                field.insert_text_at_cursor(event.character)
+
+    @on(OptionList.OptionSelected)
+    def _chosen(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option.id)
+
+    @on(Input.Submitted)
+    def _typed(self, event: Input.Submitted) -> None:
+        if typed := event.value.strip():
+            try:
+                typed_path(typed)
+            except TuisimError as error:
+                self.app.notify(str(error), severity="error", markup=False)
+            else:
+                self.dismiss(typed)
+
+
+class Chooser(ListDialog):
+    """Gives the name or the path that was chosen.
+
+    Args:
+        title: What is chosen.
+        groups: The list; empty groups are left out.
+        current: What is chosen now, to begin there.
+        path_hint: What stands in the empty field; no field without it.
+    """
+
+    HINT: str = "Enter chooses · Escape closes"
+
+    def __init__(self, title: str, groups: Sequence[Group], current: str = "", path_hint: str = "") -> None:
+        super().__init__()
+        self.TITLE_TEXT = title
+        if path_hint:
+            self.HINT = "Enter chooses · tab to the field · Escape closes"
+        self._groups = [group for group in groups if group.entries]
+        self._current = current
+        self._path_hint = path_hint
+
+    def content(self) -> ComposeResult:
+        """A field for a path, and the list."""
+        if self._path_hint:
+            yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
+        options: list[Option | None] = []
+        for group in self._groups:
+            if options:
+                options.append(None)
+            if group.title:
+                options.append(Option(Text(group.title, "italic"), disabled=True))
+            wide = max(len(name) for _, name, _ in group.entries)
+            options += [
+                Option(name_and_title(name, title, wide) if title else Text(name, "bold"), id=chosen)
+                for chosen, name, title in group.entries[:MAX_FILES]
+            ]
+            if len(group.entries) > MAX_FILES:
+                more = f"… and {len(group.entries) - MAX_FILES} more: type the name"
+                options.append(Option(Text(more), disabled=True))
+        listed = OptionList(*options)
+        names = [option.id for option in listed.options]
+        if self._current in names:
+            listed.highlighted = names.index(self._current)
+        yield listed
+
+
+def program_chooser() -> Chooser:
+    """Return the list of programs and worlds: of the folder one is in, and the examples."""
+    from tuisim.config.assets import programs
+    from tuisim.config.worlds import load_world
+
+    examples = programs()
+    known = {str(path.resolve()) for _, path, _ in examples}
+    here = files_here([".py"])
+    own = Group(here.title, [entry for entry in here.entries if entry[0] not in known])
+    worlds = files_here([".toml"], load_world)
+    groups = [
+        own,
+        Group("Worlds" if own.entries else f"{worlds.title}: worlds", worlds.entries),
+        Group("Examples", [(str(path), name, title) for name, path, title in examples]),
+    ]
+    return Chooser("Programs and worlds", groups, path_hint="Path of a program or a world, or choose below")
+
+
+def robot_chooser(plan: NextRun) -> Chooser:
+    """Return the list of robots."""
+    from tuisim.config.presets import ROBOTS
+    from tuisim.config.robots import load_robot
+
+    presets = [(name, name, _robot_title(name)) for name in ROBOTS]
+    groups = [Group("", presets), files_here([".toml", ".json"], lambda path: load_robot(str(path)))]
+    return Chooser("Robots", groups, plan.words.get("robot", ""), "Path of a robot's .toml or .json file")
+
+
+def _robot_title(name: str) -> str:
+    from tuisim.config.presets import ROBOTS
+
+    robot = ROBOTS[name]
+    eyes = ", ".join(f"({eye.x_mm:g}, {eye.y_mm:g}) ⌀ {eye.diameter_mm}" for eye in robot.color_sensors)
+    return f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} apart; eyes {eyes}"
+
+
+def obstacle_chooser(plan: NextRun) -> Chooser:
+    """Return the list of sets of obstacles."""
+    from tuisim.config.obstacles import load_obstacles
+    from tuisim.config.presets import OBSTACLES
+
+    presets = [
+        (name, name, "; ".join(f"{b.width_mm:g}×{b.height_mm:g} at ({b.x_mm:g}, {b.y_mm:g})" for b in boxes) or "none")
+        for name, boxes in OBSTACLES.items()
+    ]
+    groups = [Group("", presets), files_here([".toml", ".json"], lambda path: load_obstacles(str(path)))]
+    return Chooser("Obstacles", groups, plan.words.get("obstacles", ""), "Path of a .toml or .json file")
+
+
+def profile_chooser(plan: NextRun) -> Chooser:
+    """Return the list of profiles."""
+    from tuisim.config.profiles import load_profile
+    from tuisim.core.profile import PROFILES
+
+    presets = [
+        (name, name, f"{p.tick_hz} ticks a second, {'solid' if p.solid else 'nothing is solid'}")
+        for name, p in PROFILES.items()
+    ]
+    groups = [Group("", presets), files_here([".toml"], lambda path: load_profile(str(path)))]
+    return Chooser("Profiles", groups, plan.words.get("profile", ""), "Path of a profile's .toml file")

@@ -1,0 +1,78 @@
+"""The export dialog: a file name, and what of the log goes in."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Static
+
+from tuisim.app.dialogs.save import FileDialog
+from tuisim.errors import TuisimError
+from tuisim.logs.export import LISTED
+
+_KINDS = {
+    False: "What the program printed: one row a sample",
+    True: "Telemetry: one row a tick, every sensor",
+}
+
+
+class ExportDialog(FileDialog):
+    """Writes the log of one run to a file.
+
+    Args:
+        run_id: The run.
+        program: Name of its program, from which the name of the file is proposed.
+    """
+
+    TITLE_TEXT: str = "Export the log"
+    HINT: str = "Enter writes · ctrl+t samples or telemetry · Escape closes"
+    SUFFIXES: ClassVar[str] = LISTED
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+t", "switch", "Samples or telemetry", show=False)]
+
+    def __init__(self, run_id: str, program: str) -> None:
+        super().__init__(f"{Path(program).stem}.csv")
+        self._run_id = run_id
+        self._telemetry = False
+
+    def more(self) -> ComposeResult:
+        """What goes in."""
+        yield Static(self._kind(), id="kind")
+
+    def action_switch(self) -> None:
+        """Samples or telemetry."""
+        self._telemetry = not self._telemetry
+        self.query_one("#kind", Static).update(self._kind())
+
+    def _kind(self) -> str:
+        return f"[@click=screen.switch]{_KINDS[self._telemetry]}[/]"
+
+    def checked(self, path: Path) -> Path:
+        """Refuse what no exporter can write."""
+        from tuisim.logs.export import check_target
+
+        return check_target(path)
+
+    def write(self, target: Path) -> None:
+        """Write it off the event loop: it may be long."""
+        self.say("Writing …")
+        self.run_worker(partial(self._write, target, self._telemetry), thread=True)
+
+    def _write(self, target: Path, telemetry: bool) -> None:
+        from tuisim.logs.export import export_samples, export_telemetry
+        from tuisim.runs.store import RunStore
+
+        try:
+            run = RunStore().load_run(self._run_id)
+            export_telemetry(run, target) if telemetry else export_samples([run], target)
+        except TuisimError as error:
+            self.app.call_from_thread(self.failed, str(error))
+            return
+        self.app.call_from_thread(self._written, target)
+
+    def _written(self, target: Path) -> None:
+        self.app.notify(f"The log is in {target}", markup=False)
+        self.dismiss(target)

@@ -1,0 +1,212 @@
+"""The stored runs, to look back at one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Input, OptionList, Static
+from textual.widgets.option_list import Option
+
+from tuisim.app.actions.branch import BRANCH_TAG
+from tuisim.app.dialogs.chooser import ListDialog
+from tuisim.app.labels import end_label
+from tuisim.app.snapshot import GOOD_ENDS
+from tuisim.charts.text_runs import cut
+from tuisim.errors import TuisimError
+from tuisim.runs.catalogue import RunInfo
+
+if TYPE_CHECKING:
+    from tuisim.runs.recording import Recording
+
+MOST_LISTED = 300
+"""So many runs are listed at once; the others are found by searching."""
+
+
+def matching(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
+    """Return the runs, the newest first, of which each word of a search stands somewhere in their lines."""
+    words = search.lower().split()
+    return [run for run in reversed(list(runs)) if all(word in _searched(run) for word in words)]
+
+
+def _searched(run: RunInfo) -> str:
+    facts = (run.number, run.program, run.background, run.profile, run.end, end_label(run.end), run.summary, run.tags)
+    return " ".join(map(str, (*facts, _when(run)))).lower()
+
+
+def _when(run: RunInfo) -> str:
+    """When it was, in the time of this place."""
+    try:
+        return datetime.fromisoformat(run.created).astimezone().strftime("%Y-%m-%d %H:%M")
+    except ValueError:
+        return run.created[:16]
+
+
+# As wide as there is room in a terminal of 80 columns; the list is indented by one.
+_HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}"
+
+
+def run_line(run: RunInfo, marked: bool = False) -> Text:
+    """Return one line of the list, below `_HEADS`."""
+    line = Text(no_wrap=True, overflow="ellipsis")
+    line.append(f"{run.number:>4}{'●' if marked else ' '}", "bold")
+    line.append(f"{_when(run)[5:]:<11} ", "#9fb0c3")
+    line.append(f"{cut(run.program, 12):<12} ", "bold")
+    line.append(f"{cut(Path(run.background).name, 10):<10} ")
+    line.append(f"{cut(end_label(run.end), 9):<9} ", "" if run.end in GOOD_ENDS else "#ff6e6e")
+    line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
+    if run.tags or run.summary:
+        line.append(f"  {run.tags or run.summary}", "#9fb0c3")
+    return line
+
+
+def branch_root(run: RunInfo) -> int | None:
+    """Return the number of the run that a run is a branch of, None if it is none."""
+    tag = next((word for word in run.tags.split() if word.startswith(BRANCH_TAG)), "")
+    number = tag.removeprefix(BRANCH_TAG)
+    return int(number) if number.isdecimal() else None
+
+
+class RunChooser(ListDialog):
+    """Gives the id of the run that was chosen.
+
+    Args:
+        compared: The run that another one is chosen to be compared with, if that is what it is for.
+    """
+
+    DEFAULT_CSS = """
+    RunChooser .dialog { width: 110; padding: 1 0; }
+    RunChooser .heads { height: 1; text-wrap: nowrap; color: #9fb0c3; }
+    RunChooser OptionList { text-wrap: nowrap; text-overflow: ellipsis; }
+    """
+    TITLE_TEXT: str = "Runs"
+    HINT: str = "Enter opens · type to search · Escape closes"
+
+    def __init__(self, compared: Recording | None = None) -> None:
+        super().__init__()
+        if compared is not None:
+            self.TITLE_TEXT = f"Compare {compared.name} with …"
+            self.HINT = "Enter compares · type to search · Escape closes"
+        self._left_out = compared.run_id if compared else ""
+        self._runs: list[RunInfo] = []
+
+    def content(self) -> ComposeResult:
+        """A field for searching, and the list."""
+        yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
+        yield Static(_HEADS, markup=False, classes="heads")
+        yield OptionList()
+        yield Static("Reading the list …", id="message", markup=False)
+
+    def on_mount(self) -> None:
+        """Read the list off the event loop: there may be thousands."""
+        super().on_mount()
+        self.run_worker(self._read, thread=True)
+
+    def _read(self) -> None:
+        from tuisim.runs.store import RunStore
+
+        try:
+            runs = RunStore().runs()
+        except TuisimError as error:
+            self.app.call_from_thread(self._say, str(error))
+            return
+        self.app.call_from_thread(self._fill, runs)
+
+    def _fill(self, runs: list[RunInfo]) -> None:
+        self._runs = [run for run in runs if run.id != self._left_out]
+        self._list("")
+        this = next((run for run in runs if run.id == self._left_out), None)
+        root = branch_root(this) if this else None
+        options = self.query_one(OptionList)
+        if any(run.number == root for run in self._runs):
+            numbers = [run.number for run in matching(self._runs, "")[:MOST_LISTED]]
+            options.highlighted = numbers.index(root) if root in numbers else 0
+
+    def line(self, run: RunInfo) -> Text:
+        """Return one line of the list."""
+        return run_line(run)
+
+    def _say(self, text: str) -> None:
+        self.query_one("#message", Static).update(text)
+
+    def _list(self, search: str) -> None:
+        found = matching(self._runs, search)
+        options = self.query_one(OptionList)
+        options.clear_options()
+        options.add_options(Option(self.line(run), id=run.id) for run in found[:MOST_LISTED])
+        options.highlighted = 0 if found else None
+        if not self._runs:
+            self._say("No runs yet: R runs a program, and every run is kept")
+        elif len(found) > MOST_LISTED:
+            self._say(f"The newest {MOST_LISTED} of {len(found):,} runs: search for the others")
+        else:
+            self._say(f"{len(found):,} of {len(self._runs):,} runs")
+
+    @on(Input.Changed)
+    def _search(self, event: Input.Changed) -> None:
+        self._list(event.value)
+
+    @on(Input.Submitted)
+    def _typed(self, event: Input.Submitted) -> None:
+        event.stop()
+        # What is typed here is no choice by itself, as it is in other lists.
+        event.prevent_default()
+        options = self.query_one(OptionList)
+        if options.highlighted is not None:
+            self.dismiss(options.get_option_at_index(options.highlighted).id)
+
+
+class RunsChooser(RunChooser):
+    """Gives the ids of one or several runs, apart by blanks."""
+
+    TITLE_TEXT: str = "Open runs"
+    HINT: str = "Enter opens · space marks several · type to search · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("space", "mark", "Mark", show=False)]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._marked: list[str] = []
+        """Ids, in the order in which they were marked."""
+
+    def line(self, run: RunInfo) -> Text:
+        """Return one line of the list."""
+        return run_line(run, run.id in self._marked)
+
+    def action_mark(self) -> None:
+        """Mark the run at hand, or not, and go on to the next one."""
+        options = self.query_one(OptionList)
+        at = options.highlighted
+        run = self._run_of(options.get_option_at_index(at).id) if at is not None else None
+        if at is None or run is None:
+            return
+        self._marked.remove(run.id) if run.id in self._marked else self._marked.append(run.id)
+        options.replace_option_prompt_at_index(at, self.line(run))
+        options.action_cursor_down()
+
+    def _run_of(self, run_id: str | None) -> RunInfo | None:
+        return next((run for run in self._runs if run.id == run_id), None)
+
+    @on(OptionList.OptionSelected)
+    def _opened(self, event: OptionList.OptionSelected) -> None:
+        event.stop()
+        event.prevent_default()
+        self.dismiss(" ".join(self._marked or [event.option.id or ""]))
+
+    @on(Input.Submitted)
+    def _named(self, event: Input.Submitted) -> None:
+        """Runs that are named, such as `12 13` or `last`, are those; else it is a search."""
+        numbers = {str(run.number): run.id for run in self._runs}
+        if self._runs:
+            numbers["last"] = self._runs[-1].id
+        named = [numbers.get(word) for word in event.value.split()]
+        wanted = self._marked or [run_id for run_id in named if run_id is not None]
+        if wanted and (self._marked or None not in named):
+            event.stop()
+            event.prevent_default()
+            self.dismiss(" ".join(wanted))

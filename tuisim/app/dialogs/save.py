@@ -1,0 +1,145 @@
+"""Saving to a file: its name, and whether an existing one may be replaced."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.widgets import Input, Static
+
+from tuisim.app.dialogs.dialog import Dialog
+from tuisim.errors import ConfigError, TuisimError
+
+
+def typed_path(text: str) -> Path:
+    """Return the path that was typed, `~` replaced; there need not be such a file.
+
+    Raises:
+        ConfigError: no file can have such a name, such as one that is too long.
+    """
+    try:
+        path = Path(text).expanduser()
+        path.lstat()
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return path
+    except (OSError, RuntimeError, ValueError) as error:
+        why = error.strerror if isinstance(error, OSError) else str(error)
+        shown = text if len(text) <= 20 else f"{text[:20]}…"
+        raise ConfigError(f"{shown!r} cannot be the name of a file: {why}") from error
+    return path
+
+
+class FileDialog(Dialog[Path]):
+    """A field for a file name; gives the path of what was written.
+
+    Args:
+        proposed: What stands in the field at first.
+    """
+
+    HINT: str = "Enter writes · Escape closes"
+    SUFFIXES: ClassVar[str] = ".toml"
+
+    def __init__(self, proposed: str) -> None:
+        super().__init__()
+        self._proposed = proposed
+        self._agreed = ""
+        """The target that the user has agreed to replace."""
+        self._writing = False
+
+    def content(self) -> ComposeResult:
+        """The field, what else is to be said, and a line for what is wrong."""
+        yield Static(f"File ({self.SUFFIXES})", markup=False)
+        yield Input(self._proposed, compact=True, select_on_focus=False)
+        yield from self.more()
+        yield Static(id="message", markup=False)
+
+    def more(self) -> ComposeResult:
+        """What stands between the field and the message."""
+        yield from ()
+
+    def checked(self, path: Path) -> Path:
+        """Return the target if it can be written.
+
+        Raises:
+            TuisimError: it cannot.
+        """
+        return path
+
+    def write(self, target: Path) -> None:
+        """Write the file, then call `written` or `failed`.
+
+        Raises:
+            TuisimError: it cannot be written.
+        """
+
+    @on(Input.Changed)
+    def _changed(self) -> None:
+        self._agreed = ""
+        self.say("")
+
+    @on(Input.Submitted)
+    def _submitted(self, event: Input.Submitted) -> None:
+        if self._writing:
+            return
+        typed = event.value.strip()
+        if not typed:
+            self.say(f"Type the name of a file that ends in {self.SUFFIXES}", wrong=True)
+            return
+        try:
+            target = self.checked(typed_path(typed))
+            if target.exists() and self._agreed != typed:
+                self._agreed = typed
+                self.say(f"{target.name} is there already. Enter once more replaces it.", wrong=True)
+                return
+            self._writing = True
+            self.write(target)
+        except TuisimError as error:
+            self.failed(str(error))
+
+    def failed(self, text: str) -> None:
+        """Say why nothing was written."""
+        self._writing = False
+        self.say(text, wrong=True)
+
+    def say(self, text: str, wrong: bool = False) -> None:
+        """Show a line."""
+        message = self.query_one("#message", Static)
+        message.update(text)
+        message.set_class(wrong, "wrong")
+
+
+class SaveDialog(FileDialog):
+    """Writes a file of the app's own kinds.
+
+    Args:
+        what: What is written, such as `robot`.
+        proposed: What stands in the field at first.
+        save: Writes it whole or not at all, or raises TuisimError.
+    """
+
+    def __init__(self, what: str, proposed: str, save: Callable[[Path], None]) -> None:
+        super().__init__(proposed)
+        self._what = what
+        self._save = save
+        self.TITLE_TEXT = f"Save the {what}"
+
+    def checked(self, path: Path) -> Path:
+        """Refuse a folder."""
+        if path.is_dir():
+            raise TuisimError(f"{path} is a folder, not a file")
+        return path
+
+    def write(self, target: Path) -> None:
+        """Write it at once."""
+        self._save(target)
+        self.app.notify(f"The {self._what} is in {target}", markup=False)
+        self.dismiss(target)
+
+
+class ProgramDialog(SaveDialog):
+    """Writes a program."""
+
+    SUFFIXES: ClassVar[str] = ".py"

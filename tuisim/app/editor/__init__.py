@@ -1,0 +1,1 @@
+"""The editor behind the code panel: its text, file, drafts and keys."""

@@ -1,0 +1,327 @@
+"""The text of the code panel: a `TextArea` with marks beside the line numbers, and a line that is lit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import ClassVar
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from rich.style import Style
+from rich.text import Text
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.geometry import Region
+from textual.message import Message
+from textual.strip import Strip
+from textual.widgets import TextArea
+from textual.widgets.text_area import Edit, EditResult, Selection
+
+from tuisim.app.editor import line_edits
+from tuisim.app.editor.syntax import KINDS, Colouring
+
+# A `TextArea` takes them for line ends, Python does not: they stand for themselves under other names.
+_BREAKS = "\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
+_GUARD = {ord(char): 0xF700 + at for at, char in enumerate(_BREAKS)}
+_UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
+_UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
+
+EDITOR_KEYS = (
+    ("Enter", "Type; Escape ends it"),
+    ("ctrl+s", "Save the program"),
+    ("ctrl+r F5", "Run the text as it stands"),
+    ("ctrl+f F3 ⇧F3", "Find, next, previous"),
+    ("ctrl+g", "Go to a line"),
+    ("tab ⇧tab", "Indent, outdent; backspace takes an indent back"),
+    ("ctrl+/", "Lines to comments and back"),
+    ("ctrl+z ctrl+y", "Undo, redo"),
+    ("ctrl+a", "Select all"),
+    ("ctrl+x ctrl+c ctrl+v", "Cut, copy, paste"),
+)
+"""For the help: what a key does while the cursor is in the text."""
+
+
+class CodeArea(TextArea):
+    """A program's text. Letters are typed into it only while it is `typing`."""
+
+    ALLOW_SELECT = False
+    DEFAULT_CSS = "CodeArea { height: 1fr; border: none; padding: 0; overflow-x: hidden; &:focus { border: none; } }"
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "code--number-column", "code--lit", "code--error", "code--break", *(f"code--{kind}" for kind in KINDS),
+    }  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+f", "want('find')", "Find", show=False),
+        Binding("ctrl+g", "want('line')", "Go to a line", show=False),
+        Binding("ctrl+a", "select_all", "Select all", show=False),
+        Binding("f3", "want('next')", "Next place", show=False),
+        Binding("shift+f3", "want('previous')", "Place before", show=False),
+    ]
+
+    class Wanted(Message):
+        """A key was pressed: find, line, next, previous, type, done, new, open."""
+
+        def __init__(self, what: str) -> None:
+            super().__init__()
+            self.what = what
+
+    class GutterClicked(Message):
+        """A line number was clicked on."""
+
+        def __init__(self, line: int) -> None:
+            super().__init__()
+            self.line = line
+
+    def __init__(self) -> None:
+        # Before the base class asks for the first line.
+        self._colouring = Colouring()
+        self._breaks: Mapping[int, str] = {}
+        self._lit = self._error = 0
+        super().__init__(
+            read_only=True, show_line_numbers=True, compact=True, highlight_cursor_line=False, soft_wrap=False
+        )
+        self.cursor_blink = False
+        self.indent_type = "spaces"
+
+    # Text
+
+    @property
+    def program_text(self) -> str:
+        """The whole text, with `\\n` as line ends."""
+        return self.text.translate(_UNGUARD)
+
+    def load_program(self, text: str) -> None:
+        """Show another text; nothing can be undone."""
+        self._colouring = Colouring()
+        self.load_text(text.translate(_GUARD))
+
+    def replace_program(self, text: str) -> None:
+        """Show the text anew, changed elsewhere: cursor and scroll stay, and it can be undone."""
+        top, (row, column) = self.scroll_offset.y, self.cursor_location
+        self.history.checkpoint()
+        self.replace(text.translate(_GUARD), (0, 0), self.document.end, maintain_selection_offset=False)
+        self.move_cursor(self.clamp_visitable((row, column)))
+        self.scroll_to(y=top, animate=False, force=True)
+
+    def edit(self, edit: Edit) -> EditResult:
+        """Change the text; see `TextArea`."""
+        self._colouring.forget(edit.top[0])
+        text = edit.text.translate(_GUARD)
+        guarded = Edit(text, edit.from_location, edit.to_location, edit.maintain_selection_offset)
+        return super().edit(guarded)
+
+    def undo(self) -> None:
+        """Take the last edits back."""
+        self._colouring.forget(0)
+        super().undo()
+
+    def redo(self) -> None:
+        """Do again what was taken back."""
+        self._colouring.forget(0)
+        super().redo()
+
+    def get_line(self, line_index: int) -> Text:
+        """Return a line in its colours."""
+        line = self.document.get_line(line_index)
+        text = Text(_UNSHOWN.sub("·", line), end="", no_wrap=True)
+        for start, end, kind in self._colouring.of(self.document.lines, line_index):
+            text.stylize(self._component(kind), start, end)
+        return text
+
+    def _component(self, kind: str) -> Style:
+        return self.get_component_rich_style(f"code--{kind}", partial=True)
+
+    @property
+    def allow_horizontal_scroll(self) -> bool:
+        """Long lines are scrolled through, without a bar below the text: that would take a row of it."""
+        return True
+
+    def on_resize(self) -> None:
+        """Show the start of the lines again where nobody types."""
+        if not self.typing:
+            self.call_after_refresh(self.scroll_to, x=0, animate=False, force=True)
+
+    # Marks
+
+    def set_breaks(self, breaks: Mapping[int, str]) -> None:
+        """Put marks before the numbers of lines."""
+        if breaks != self._breaks:
+            self._breaks = dict(breaks)
+            self.refresh()
+
+    @property
+    def error_line(self) -> int:
+        """The line that is marked as wrong, 0 for none."""
+        return self._error
+
+    def set_error(self, line: int) -> None:
+        """Mark the line of an error, 0 for none."""
+        before, self._error = self._error, line
+        self._refresh_line(before)
+        self._refresh_line(line)
+
+    def light(self, line: int) -> None:
+        """Light a line, 0 for none."""
+        if line != self._lit:
+            before, self._lit = self._lit, line
+            self._refresh_line(before)
+            self._refresh_line(line)
+
+    def _rows_of(self, line: int) -> range:
+        if not 1 <= line <= self.document.line_count:
+            return range(0)
+        wrapped = self.wrapped_document
+        first = wrapped.location_to_offset((line - 1, 0)).y
+        return range(first, first + len(wrapped.get_sections(line - 1)))
+
+    def _refresh_line(self, line: int) -> None:
+        top = self.scroll_offset.y
+        visible = [row - top for row in self._rows_of(line) if 0 <= row - top < self.size.height]
+        if visible:
+            self.refresh(*(Region(0, y, self.size.width, 1) for y in visible))
+
+    def scroll_to_line(self, line: int) -> None:
+        """Bring a line into view."""
+        rows, height = self._rows_of(line), self.scrollable_content_region.height
+        if rows and not (self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height):
+            self.scroll_to(y=max(0, rows.start - height // 3), animate=False, force=True)
+
+    def move_to_code(self, line: int) -> None:
+        """Put the cursor on the first character of a line that is no blank."""
+        text = self.document.get_line(min(line, self.document.line_count) - 1)
+        self.move_cursor((line - 1, len(text) - len(text.lstrip())))
+
+    @property
+    def gutter_width(self) -> int:
+        """Cells before the text: a breakpoint, the run or an error, the number, a blank."""
+        return max(2, len(str(self.document.line_count))) + 3
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row of the screen."""
+        strip = super().render_line(y)
+        if self.placeholder and not self.text:
+            return strip
+        try:
+            line_index, section = self.wrapped_document._offset_to_line_info[y + self.scroll_offset.y]
+        except IndexError:
+            return strip
+        line = line_index + 1
+        base = self.rich_style
+        gutter = self.gutter_width
+        text = strip.crop(gutter)
+        number_style = base + self._component("number-column")
+        if lit := "error" if line == self._error else "lit" if line == self._lit else "":
+            number_style = base + self._component(lit)
+            text = _on(text, base, number_style)
+        room = self.scrollable_content_region.width - gutter
+        if cell_len(text.text.rstrip()) > room and not (self.typing and line_index == self.cursor_location[0]):
+            text = Strip.join([text.crop(0, room - 1), Strip([Segment("…", number_style)], 1)])
+        run_mark = {"error": "✗", "lit": "▶"}.get(lit, " ") if section == 0 else " "
+        number = f"{line if section == 0 else '':>{gutter - 3}}"
+        mark = self._breaks.get(line, " ") if section == 0 else " "
+        head = [Segment(mark, number_style + self._component("break")), Segment(f"{run_mark}{number} ", number_style)]
+        return Strip.join([Strip(head, gutter), text])
+
+    # Keys and mouse
+
+    @property
+    def typing(self) -> bool:
+        """Whether letters go into the text."""
+        return not self.read_only
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave the keys of undo and redo to the app while nothing is typed."""
+        return self.typing if action in ("undo", "redo") else super().check_action(action, parameters)
+
+    def action_want(self, what: str) -> None:
+        """Ask for something that is more than a change of the text."""
+        self.post_message(self.Wanted(what))
+
+    def on_key(self, event: events.Key) -> None:
+        """Begin and end typing; indentation; comments."""
+        if not self.typing:
+            if event.key == "enter":
+                self._done(event)
+                self.post_message(self.Wanted("type"))
+            return
+        if event.key == "escape":
+            self._done(event)
+            self.post_message(self.Wanted("done"))
+        elif event.key == "enter":
+            self._done(event)
+            row, column = min(self.selection)
+            self.insert_text("\n" + line_edits.indent_after(self.document.get_line(row)[:column]))
+        elif event.key == "backspace" and self.selection.is_empty and (blanks := self._blanks_to_delete()):
+            self._done(event)
+            row, column = self.cursor_location
+            self.delete((row, column - blanks), (row, column), maintain_selection_offset=False)
+        elif event.key == "tab" and self.selection.is_empty:
+            self._done(event)
+            self.insert_text(" " * self._find_columns_to_next_tab_stop())
+        elif change := _CHANGES.get(event.key):
+            self._done(event)
+            self._change_lines(change)
+        elif wanted := _WHILE_TYPING.get(event.key):
+            self._done(event)
+            self.post_message(self.Wanted(wanted))
+        elif event.key.startswith("alt+"):
+            # It comes with a character that nobody has typed.
+            self._done(event)
+
+    def _done(self, event: events.Key) -> None:
+        event.stop()
+        event.prevent_default()
+
+    def _blanks_to_delete(self) -> int:
+        """How many blanks before the cursor backspace deletes, 0 if there is more than an indent."""
+        row, column = self.cursor_location
+        return line_edits.blanks_to_delete(self.document.get_line(row)[:column])
+
+    def insert_text(self, text: str) -> None:
+        """Put a text in the place of the selection."""
+        self.replace(text, *sorted(self.selection), maintain_selection_offset=False)
+
+    def _change_lines(self, change: line_edits.Change) -> None:
+        """Change the lines of the selection, or the cursor's."""
+        (top, left), (bottom, right) = sorted(self.selection)
+        was_empty = self.selection.is_empty
+        if bottom > top and right == 0:
+            bottom -= 1
+        lines = self.document.lines[top : bottom + 1]
+        changed = change(lines)
+        if changed == list(lines):
+            return
+        self.replace("\n".join(changed), (top, 0), (bottom, len(lines[-1])), maintain_selection_offset=False)
+        if was_empty:
+            self.move_cursor((top, max(0, left + len(changed[0]) - len(lines[0]))))
+        else:
+            self.selection = Selection((top, 0), (bottom, len(changed[-1])))
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """A click on a line's number marks it, and does not move the cursor."""
+        if event.x < self.gutter_width:
+            event.stop()
+            event.prevent_default()
+            row = self.get_target_document_location(event)[0]
+            if event.y + self.scroll_offset.y < self.wrapped_document.height:
+                self.post_message(self.GutterClicked(row + 1))
+
+
+_WHILE_TYPING = {"ctrl+n": "new", "ctrl+o": "open"}
+"""What those keys do in every editor; elsewhere they are keys of the robot and the obstacles."""
+
+_CHANGES: Mapping[str, line_edits.Change] = {
+    "tab": line_edits.indented,
+    "shift+tab": line_edits.outdented,
+    # What terminals send for ctrl and the slash key.
+    "ctrl+underscore": line_edits.comment_toggled,
+    "ctrl+slash": line_edits.comment_toggled,
+}
+
+
+def _on(strip: Strip, base: Style, lit: Style) -> Strip:
+    """Put a lit background where the panel's own is: a cursor or a selection stays."""
+    background = Style(bgcolor=lit.bgcolor)
+    pieces = ((piece.text, piece.style or base) for piece in strip)
+    shown = [Segment(text, style + background if style.bgcolor == base.bgcolor else style) for text, style in pieces]
+    return Strip(shown, strip.cell_length)

@@ -1,0 +1,40 @@
+"""Is a text a program? As the run will see it, without running it."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+from tuisim.config.program_file import parse_program
+from tuisim.errors import TuisimError
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """Why a text is no program."""
+
+    line: int
+    """From 1; 0 where none is known."""
+    message: str
+
+
+def mistake_in(text: str, name: str) -> Mistake | None:
+    """Return what is wrong with a program, None if it can be compiled.
+
+    Args:
+        text: As it stands in the file; a magic line is no mistake.
+        name: Of the file, for the message.
+    """
+    try:
+        source = parse_program(text, name)
+        with warnings.catch_warnings():
+            # They are told when the program runs.
+            warnings.simplefilter("ignore")
+            compile(source.text, name, "exec", dont_inherit=True)
+    except TuisimError as error:
+        return Mistake(0, str(error))
+    except SyntaxError as error:
+        return Mistake(error.lineno or 0, f"line {error.lineno}: {error.msg}")
+    except (ValueError, RecursionError, MemoryError) as error:
+        return Mistake(0, str(error) or "too deeply nested")
+    return None

@@ -1,0 +1,338 @@
+"""The text of the open program: as it stands in its file, as it was edited, as it runs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.app.editor.drafts import Draft, drop_draft, find_draft, keep_draft
+from tuisim.app.editor.line_map import LineMap
+from tuisim.app.editor.text_file import Form, is_protected, read_text, write_text
+from tuisim.errors import ConfigError, TuisimError
+from tuisim.source import source_lines
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.app.editor.check import Mistake
+    from tuisim.runs.handle import Program
+    from tuisim.runs.recording import Recording
+
+DRAFT_AFTER_S = 1.0
+"""So long after a key unsaved text is kept for the case of a crash."""
+NEW_NAME = "new.py"
+TEMPLATE = '''\
+"""A new program: drives ahead for two seconds."""
+from ev3dev2.motor import OUTPUT_B, OUTPUT_C, MoveTank, SpeedPercent
+
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+tank.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)
+'''
+
+
+class Document:
+    """One app's program text.
+
+    Args:
+        lab: The app.
+    """
+
+    def __init__(self, lab: LabApp) -> None:
+        self._lab = lab
+        self._program: Program | None = None
+        """As it runs next unless the text was edited."""
+        self._name = self._path = self._text = self._saved = self._applied = ""
+        """File name; path; text as edited; as in the file; as it was when `_program` was made of it."""
+        self._form = Form()
+        self._is_file = False
+        """Whether the text is that of the file, so that it may be saved there without a question."""
+        self._keeping = self._asking = False
+        self._error_line = 0
+        """Of the text of the run at hand, where it ended with an error; 0 for none, or once the text is another."""
+        self._ran: tuple[Recording, str] | None = None
+        """A recording, and the text that it ran, as it was in the editor."""
+
+    @property
+    def dirty(self) -> bool:
+        """Whether there are unsaved changes."""
+        return self._text != self._saved
+
+    # The program that is open
+
+    def begin(self) -> None:
+        """Learn what is open; offer a new program that was never saved."""
+        self.introduce()
+        if self._program is None and (draft := find_draft("")):
+            self._offer(draft)
+
+    def introduce(self) -> None:
+        """Show the program that is open, which may be another than before."""
+        program = self._lab.bridge.program
+        if program is not self._program:
+            same = program is not None and self._program is not None and program.path == self._path
+            if not (same and program is not None and program.text == self._runnable()):
+                self._take(program, offers=not same)
+            self._program, self._applied = program, self._text
+        self.show()
+
+    def _take(self, program: Program | None, offers: bool) -> None:
+        self._name, self._path = (program.name, program.path) if program else ("", "")
+        self._text = self._saved = program.text if program else ""
+        self._form, self._is_file, self._error_line = Form(), False, 0
+        if program is None:
+            return
+        if program.path:
+            try:
+                text, form = read_text(Path(program.path))
+            except ConfigError:
+                # It was opened, and is gone or wrong by now: what was read of it is there.
+                text, form = "", Form()
+            if text and self._runnable(text) == program.text:
+                self._text, self._form, self._is_file = text, form, True
+                self._saved = text
+        if offers and program.path and (draft := find_draft(program.path)):
+            if draft.text == self._text:
+                drop_draft(program.path)
+            else:
+                self._offer(draft)
+
+    def _runnable(self, text: str | None = None) -> str | None:
+        """The text as a program runs it, None if its magic line is wrong."""
+        from tuisim.config.program_file import parse_program
+
+        try:
+            return parse_program(self._text if text is None else text, self._name).text
+        except TuisimError:
+            return None
+
+    def show(self) -> None:
+        """Bring the code panel up to date."""
+        if code := self._lab.desk.code:
+            code.set_program(self._name, self._text, self._path or self._name)
+            code.set_title(self._name, self.dirty)
+            self.run_changed()
+            if self._error_line and not code.error_line:
+                code.mark_run_error(self._error_line)
+        if controls := self._lab.desk.controls:
+            controls.set_program(self._name)
+
+    def run_changed(self) -> None:
+        """Tell the code panel which text the run has that is looked at."""
+        code, recording = self._lab.desk.code, self._lab.bridge.timeline.recording
+        if recording is None:
+            self._ran = None
+        elif self._ran is None or self._ran[0] is not recording:
+            as_run = recording.program.text
+            self._ran = recording, self._applied if self._runnable(self._applied) == as_run else as_run
+        if code is not None and self._ran is not None:
+            code.set_running(self._ran[1], self._ran[0].program.name == self._name)
+        elif code is not None:
+            code.set_running(None)
+
+    def run_ended_at(self, line: int) -> None:
+        """The run at hand ended with an error at a line of its text, which is marked; 0: with none."""
+        self._error_line = line
+        if code := self._lab.desk.code:
+            code.mark_run_error(line)
+
+    def lines(self) -> LineMap:
+        """Return which lines of the program as it stands are which of the run at hand."""
+        now = source_lines(self._text)
+        return LineMap(now if self._ran is None else source_lines(self._ran[1]), now)
+
+    # Editing
+
+    def edited(self, text: str) -> None:
+        """The text was changed in the code panel."""
+        self._text, self._error_line = text, 0
+        if code := self._lab.desk.code:
+            code.set_title(self._name, self.dirty)
+        if not self._keeping:
+            self._keeping = True
+            self._lab.set_timer(DRAFT_AFTER_S, self.keep)
+
+    def keep(self) -> None:
+        """Keep unsaved text where a crash does not reach it, or forget it if all is saved."""
+        if not self._keeping:
+            return
+        self._keeping = False
+        if not self.dirty:
+            drop_draft(self._path)
+            return
+        try:
+            keep_draft(self._path, self._text)
+        except ConfigError as error:
+            self._lab.complain(error)
+
+    def _offer(self, draft: Draft) -> None:
+        from tuisim.app.dialogs.question import Question
+        from tuisim.app.editor.line_edits import differing_lines
+
+        name = self._name or NEW_NAME
+        when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))
+        lines = differing_lines(self._text, draft.text)
+        text = f"{name} was edited on {when} and not saved: {lines} line{'s differ' if lines != 1 else ' differs'}."
+        answers = (("r", "Restore the edited text"), ("d", "Discard it"))
+        self._lab.push_screen(Question("Unsaved work", text, answers), lambda answer: self._offered(draft, answer))
+
+    def _offered(self, draft: Draft, answer: str | None) -> None:
+        if answer == "d":
+            drop_draft(draft.path)
+        elif answer == "r" and draft.path == self._path:
+            if self._program is None:
+                self._open_new()
+            self._text = draft.text
+            self.show()
+
+    def when_safe(self, do: Callable[[], None]) -> None:
+        """Do something that gives up the text; with unsaved changes after a question."""
+        if not self.dirty:
+            do()
+            return
+        from tuisim.app.dialogs.question import Question
+
+        def answered(answer: str | None) -> None:
+            if answer == "s":
+                self.save(do)
+            elif answer == "d":
+                self._discard()
+                do()
+
+        answers = (("s", "Save them"), ("d", "Discard them"))
+        question = Question(
+            "Unsaved changes", f"{self._name} has changes that are not saved.", answers, "goes on editing"
+        )
+        self._lab.push_screen(question, answered)
+
+    def _discard(self) -> None:
+        self._text = self._saved
+        drop_draft(self._path)
+        self.show()
+
+    def apply(self) -> bool:
+        """Make the edited text the program that runs next, or mark and say what is wrong with it.
+
+        Returns:
+            Whether the program may run.
+        """
+        self.introduce()
+        if self._is_applied:
+            return True
+        # A slip of the finger is not to lay out another mat because the magic line is not found for it.
+        if mistake := self._mistake():
+            self._lab.complain(TuisimError(f"{self._name} cannot run: {mistake.message}"))
+            return False
+        return self._take_text()
+
+    @property
+    def _is_applied(self) -> bool:
+        return self._program is None or (self._text, self._path) == (self._applied, self._program.path)
+
+    def _mistake(self) -> Mistake | None:
+        """What is wrong with the text; its line is marked."""
+        from tuisim.app.editor.check import mistake_in
+
+        mistake = mistake_in(self._text, self._name)
+        if code := self._lab.desk.code:
+            code.mark_error(mistake.line if mistake else 0)
+        return mistake
+
+    def _take_text(self) -> bool:
+        try:
+            self._lab.loading.take_text(self._text, self._path, self._name)
+        except TuisimError as error:
+            self._lab.complain(error)
+            return False
+        return True
+
+    def new(self) -> None:
+        """Begin a new program, after a question if there are unsaved changes."""
+
+        def begin() -> None:
+            self._open_new()
+            if draft := find_draft(""):
+                self._offer(draft)
+            elif code := self._lab.desk.code:
+                code.start_typing()
+
+        self.when_safe(begin)
+
+    def _open_new(self) -> None:
+        self._take(None, offers=False)
+        self._program = None
+        self._name, self._text, self._saved = NEW_NAME, TEMPLATE, TEMPLATE
+        self._lab.loading.take_new(TEMPLATE, NEW_NAME)
+
+    # Saving
+
+    def save(self, then: Callable[[], None] = lambda: None) -> None:
+        """Write the program to its file; asks for one where it has none of its own.
+
+        Args:
+            then: Called when it is written.
+        """
+        if self._program is None:
+            self._lab.say("No program to save: o opens one")
+            return
+        path = Path(self._path)
+        if self._path and self._is_file and not is_protected(path):
+            try:
+                self._write(path)
+            except TuisimError as error:
+                self._lab.complain(error)
+                return
+            self._saved_to(path, then)
+            return
+        from tuisim.app.dialogs.save import ProgramDialog
+
+        def saved(target: Path | None) -> None:
+            if target:
+                self._saved_to(target, then)
+
+        self._lab.push_screen(ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved)
+
+    def _write(self, path: Path) -> None:
+        if path.suffix != ".py":
+            raise ConfigError("is no name of a program", "it ends in .py", file=str(path))
+        if is_protected(path):
+            raise ConfigError("is an example, or may not be written", "choose another place", file=str(path))
+        write_text(path, self._text, self._form)
+
+    def _saved_to(self, path: Path, then: Callable[[], None]) -> None:
+        """Take note that the text is in a file now, and say whether it can run."""
+        drop_draft(self._path)
+        self._saved, self._is_file = self._text, True
+        moved = str(path) != self._path
+        self._path, self._name = str(path), path.name
+        self.show()
+        mistake = self._mistake()
+        if not self._lab.bridge.in_run and not self._is_applied and (moved or not mistake):
+            self._take_text()
+        self._lab.loading.saved(path)
+        if mistake:
+            self._lab.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))
+        else:
+            self._lab.say(f"{self._name} is saved")
+        then()
+
+    # The file changes elsewhere
+
+    def stands_against(self, path: Path) -> bool:
+        """Whether a file that changed is edited here; then the user is asked which of the two stays."""
+        if not self.dirty or Path(self._path) != path:
+            return False
+        if not self._asking:
+            self._asking = True
+            from tuisim.app.dialogs.question import Question
+
+            text = f"{self._name} was changed on the disk, and has unsaved changes here."
+            answers = (("k", "Keep mine"), ("t", "Take the file's"))
+            self._lab.push_screen(Question("Two versions", text, answers), self._stood)
+        return True
+
+    def _stood(self, answer: str | None) -> None:
+        self._asking = False
+        if answer == "t":
+            self._discard()
+            self._lab.loading.reload(Path(self._path))

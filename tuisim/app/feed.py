@@ -1,0 +1,155 @@
+"""What the chart and the pen trace are fed: the part of a recording not yet shown, thinned."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from tuisim.app.snapshot import telemetry_traces
+from tuisim.core.field import Field
+from tuisim.core.spec import PenSpec
+from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.runs.records import OutputRow
+from tuisim.runs.samples import samples_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from tuisim.runs.recording import Recording
+
+Series = dict[str, tuple[list[float], list[float]]]
+"""By trace name: times in s, values."""
+
+Points = tuple[list[float], list[float]]
+"""x and y in mm, NaN where the pen was lifted."""
+
+POINTS_A_FEED = 60
+"""Most telemetry moments that one call measures; each costs a reading of every sensor."""
+POINTS_OF_A_RUN = 1500
+"""About so many moments are measured of a run that was there before anybody looked."""
+TRACE_POINTS_A_FEED = 4000
+_JUMP_MM = 25.0
+"""No wheel carries the pen so far in a tick: the robot was put somewhere else."""
+
+
+def sample_series(rows: Iterable[OutputRow]) -> Series:
+    """Return the samples among printed lines, at the simulated time of the print or the time they carry."""
+    series: Series = {}
+    for sample in samples_of(rows):
+        times, values = series.setdefault(sample.name, ([], []))
+        times.append(sample.time_s)
+        values.append(sample.value)
+    return series
+
+
+@dataclass(slots=True)
+class Feed:
+    """Reading positions in one run's telemetry."""
+
+    recording: Recording
+    _charted: int = field(default=0, init=False)
+    _traced: int = field(default=0, init=False)
+    _lifted: bool = field(default=False, init=False)
+    """Whether the pen was up in the last record that was traced."""
+    _last_xy_mm: tuple[float, float] | None = field(default=None, init=False)
+    """Where the robot was in the last record that was traced."""
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether the chart has not been given all of the run yet."""
+        return self._charted < self.recording.telemetry.count
+
+    def chart_series(self, mat: Field) -> Series:
+        """Return telemetry traces of the ticks since the last call, of a long stretch only its first part."""
+        from tuisim.runs.views import instant_of
+
+        run = self.recording
+        count = run.telemetry.count
+        stride = max(1, (count - self._charted) // POINTS_OF_A_RUN)
+        end = min(count, self._charted + stride * POINTS_A_FEED)
+        spec, hz = run.spec, run.spec.profile.tick_hz
+        series: Series = {}
+        for at in _thinned(self._charted, end, POINTS_A_FEED):
+            record = run.telemetry.record(at)
+            instant = instant_of(record, spec, run.noise_at(record))
+            for name, value in telemetry_traces(instant, spec, run.field_at(at, mat)).items():
+                times, values = series.setdefault(name, ([], []))
+                times.append(record.tick / hz)
+                values.append(value)
+        self._charted = end
+        return series
+
+    def trace_points(self) -> Points:
+        """Return where the pen drew since the last call."""
+        import numpy as np
+
+        records = self.recording.telemetry.array()[self._traced :]
+        if not len(records):
+            return [], []
+        self._traced += len(records)
+        jumps = _jumps(records, self._last_xy_mm)
+        self._last_xy_mm = float(records["x_mm"][-1]), float(records["y_mm"][-1])
+        kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
+        records, jumps = records[kept_at], jumps[kept_at]
+        xs, ys, lifted = _pen_points(records, self.recording.spec.robot.pen)
+        # Of a stretch with the pen up one gap is enough.
+        kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
+        self._lifted = bool(lifted[-1])
+        return _with_gaps(xs[kept], ys[kept], jumps[kept])
+
+
+def trace_until(run: Recording, tick: int) -> Points:
+    """Return where the pen of a run had drawn when a tick was done, thinned alike for all ticks."""
+    import numpy as np
+
+    records = run.telemetry.array()
+    stride = max(1, len(records) // TRACE_POINTS_A_FEED)
+    records = records[: tick + 1]
+    if not (records["flags"] & FLAG_PEN_DOWN).any():
+        return [], []
+    kept_at = np.append(np.arange(0, tick, stride), tick)
+    jumps = _jumps(records, None)[kept_at]
+    xs, ys, lifted = _pen_points(records[kept_at], run.spec.robot.pen)
+    kept = ~(lifted & np.concatenate(([False], lifted[:-1])))
+    return _with_gaps(xs[kept], ys[kept], jumps[kept])
+
+
+def _jumps(records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None) -> npt.NDArray[np.int64]:
+    """Count how often the robot was put somewhere else, up to each record."""
+    import numpy as np
+
+    before_x, before_y = before_mm or (np.nan, np.nan)
+    way = np.hypot(np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y))
+    # NaN, before the first record, counts as a jump: the traces of two runs are not joined.
+    return np.cumsum(~(way < _JUMP_MM))
+
+
+def _pen_points(
+    records: np.ndarray[Any, Any], pen: PenSpec
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
+    """Return where the pen was at each record, NaN where it was up, and whether it was up."""
+    import numpy as np
+
+    turn = np.radians(records["heading_deg"] - 90.0)
+    xs = records["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
+    ys = records["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
+    lifted = (records["flags"] & FLAG_PEN_DOWN) == 0
+    xs[lifted] = ys[lifted] = np.nan
+    return xs, ys, lifted
+
+
+def _with_gaps(xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: npt.NDArray[np.int64]) -> Points:
+    import numpy as np
+
+    gaps = np.flatnonzero(np.diff(jumps, prepend=0))
+    return np.insert(xs, gaps, np.nan).tolist(), np.insert(ys, gaps, np.nan).tolist()
+
+
+def _thinned(start: int, end: int, most: int) -> list[int]:
+    """Return at most `most` evenly spread positions from start to end, the last one among them."""
+    span = end - start
+    if span <= most:
+        return list(range(start, end))
+    return [start + (step + 1) * span // most - 1 for step in range(most)]

@@ -1,0 +1,161 @@
+"""Instants in words: what `go to` understands, and where in the run that is."""
+
+from __future__ import annotations
+
+import operator
+import re
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tuisim.errors import ConfigError
+from tuisim.runs.records import TEXT_STREAMS, OutputRow
+from tuisim.runs.samples import parse_sample
+from tuisim.source import source_lines
+
+if TYPE_CHECKING:
+    from tuisim.app.timeline import Timeline
+    from tuisim.runs.recording import Recording
+
+FORMS = (
+    ("3.5", "a time in seconds"),
+    ("tick 120", "a tick"),
+    ("line 12", "the next time that line 12 is met"),
+    ("sample Colour", "the next sample of that name, or of any"),
+    ("sample Colour < 90", "the next that is so: < <= > >= = !="),
+    ("print REGEX", "the next printed line that matches"),
+    ("start, end", "the first instant, and now"),
+    ("… back", "line, sample or print: the last before, as at the end"),
+)
+"""What is understood, and what it means."""
+
+_HINT = "3.5, tick 120, line 12, sample NAME, sample NAME < 90, print REGEX, start or end"
+_SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
+_SAMPLE = re.compile(r"(?P<name>[^\W\d]\w*)?\s*(?:(?P<sign><=|>=|!=|==?|<|>)\s*(?P<value>[+-]?[0-9.]+(?:e[+-]?\d+)?))?")
+_SIGNS: Mapping[str, Callable[[float, float], bool]] = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge,
+    "=": operator.eq, "==": operator.eq, "!=": operator.ne,
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """Where one searches from, and in which direction."""
+
+    recording: Recording
+    at: int
+    back: bool
+
+    @property
+    def side(self) -> str:
+        return "before" if self.back else "after"
+
+    @property
+    def words(self) -> str:
+        return f"{self.side} {self.at / self.recording.spec.profile.tick_hz:.2f} s"
+
+    def tick_of(self, fits: Callable[[OutputRow], bool]) -> int | None:
+        """Return the tick of the next row that fits, at another tick than this one."""
+        rows = self.recording.rows
+        found: Iterable[OutputRow] = (
+            rows.rows(rows.until(self.at - 1) - 1, -1) if self.back else rows.rows(rows.until(self.at))
+        )
+        return next((row.tick for row in found if fits(row)), None)
+
+    def nearest(self, ticks: list[int]) -> int | None:
+        """Return the next of some ticks, which are in order."""
+        where = bisect_left(ticks, self.at) - 1 if self.back else bisect_right(ticks, self.at)
+        return ticks[where] if 0 <= where < len(ticks) else None
+
+
+def find(text: str, timeline: Timeline) -> int:
+    """Return the tick that words stand for, seen from the instant that is looked at.
+
+    Args:
+        text: One of `FORMS`.
+        timeline: The run, and where one is in it.
+
+    Raises:
+        ConfigError: the words are not understood, or there is no such instant.
+    """
+    recording = timeline.recording
+    if recording is None or recording.newest < 0:
+        raise ConfigError("there is no run yet to go about in")
+    word, _, rest = text.strip().partition(" ")
+    rest, back = re.subn(r"(?:^|\s+)back$", "", rest.strip())
+    word = word.lower()
+    if not back and (word == "start" or word == "end") and not rest:
+        return 0 if word == "start" else recording.newest
+    if not back and (seconds := _SECONDS.fullmatch(text.strip())):
+        return _within(round(float(seconds[1]) * timeline.tick_hz), recording)
+    if not back and word == "tick" and rest.isdecimal():
+        return _within(int(rest), recording)
+    at = recording.newest if timeline.at is None else timeline.at
+    # After the newest instant there is nothing to be found.
+    search = _Search(recording, at, bool(back) or at >= recording.newest)
+    if word == "line" and rest.isdecimal():
+        return _line(search, int(rest))
+    if word == "sample" and (wanted := _SAMPLE.fullmatch(rest)):
+        return _sample(search, wanted)
+    if word == "print" and rest:
+        return _printed(search, rest)
+    raise ConfigError(f"{text.strip()!r} is no place in time" if text.strip() else "where to?", _HINT)
+
+
+def _within(tick: int, recording: Recording) -> int:
+    hz = recording.spec.profile.tick_hz
+    if tick > recording.newest:
+        newest = recording.newest
+        raise ConfigError(f"the run has come to {newest / hz:.2f} s, tick {newest}, so far", "an earlier instant")
+    return tick
+
+
+def _line(search: _Search, line: int) -> int:
+    import numpy as np
+
+    lines = len(source_lines(search.recording.program.text))
+    if not 1 <= line <= lines:
+        raise ConfigError(f"the program has no line {line}", f"1 … {lines}")
+    at_it = search.recording.telemetry.array()["line"] == line
+    # Of a stretch of ticks at one line the first is meant: that is when the program came there.
+    came = np.flatnonzero(at_it & ~np.concatenate(([False], at_it[:-1]))).tolist()
+    tick = search.nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
+    if tick is None:
+        hint = "only lines that let time pass, or print, are found"
+        raise ConfigError(f"line {line} is not met {search.words}", hint)
+    return tick
+
+
+def _sample(search: _Search, wanted: re.Match[str]) -> int:
+    name, sign = wanted["name"], wanted["sign"]
+    try:
+        value = float(wanted["value"]) if sign else 0.0
+    except ValueError as error:
+        raise ConfigError(f"{wanted['value']} is no number", _HINT) from error
+    seen: set[str] = set()
+
+    def fits(row: OutputRow) -> bool:
+        sample = parse_sample(row.text) if row.stream in TEXT_STREAMS else None
+        if sample is None:
+            return False
+        seen.add(sample[0])
+        return name in (None, sample[0]) and (not sign or _SIGNS[sign](sample[1], value))
+
+    tick = search.tick_of(fits)
+    if tick is None:
+        what = " ".join(filter(None, ("sample", name, sign, wanted["value"])))
+        hint = f"there are {', '.join(sorted(seen))}" if seen and name not in seen and name else ""
+        raise ConfigError(f"no {what} {search.words}", hint)
+    return tick
+
+
+def _printed(search: _Search, pattern: str) -> int:
+    try:
+        regex = re.compile(pattern)
+    except re.error as error:
+        raise ConfigError(f"{pattern!r} is no regular expression: {error}") from error
+    tick = search.tick_of(lambda row: row.stream in TEXT_STREAMS and regex.search(row.text) is not None)
+    if tick is None:
+        raise ConfigError(f"nothing printed {search.words} matches {pattern!r}")
+    return tick

@@ -1,0 +1,1 @@
+"""Keys as they are shown: footer, command palette and help."""

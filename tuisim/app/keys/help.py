@@ -1,0 +1,100 @@
+"""What the helps have in common: a few words to start with, then every key by group."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import ClassVar
+
+from rich.table import Table
+from rich.text import Text
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.widgets import Static
+
+from tuisim.app.dialogs.dialog import Dialog
+
+Keys = Iterable[tuple[str, str]]
+"""Each key as people write it, and what it does."""
+
+
+COLUMN_CELLS = 50
+"""A column of keys is not made narrower than this to set another beside it."""
+
+
+def key_table(groups: Mapping[str, Keys], width: int) -> Table:
+    """Return every key by group, in as many columns as there is room for; a group without a name has no heading."""
+    rows = [(group, list(keys)) for group, keys in groups.items()]
+    count = max(1, min(width // COLUMN_CELLS, len(rows)))
+    columns = Table.grid(padding=(0, 2), expand=True)
+    for _ in range(count):
+        columns.add_column(ratio=1)
+    columns.add_row(*map(_column, _in_columns(rows, count)))
+    return columns
+
+
+_Group = tuple[str, list[tuple[str, str]]]
+
+
+def _in_columns(groups: list[_Group], count: int) -> list[list[_Group]]:
+    """Share groups among columns, in their order, so that the highest column is as low as it can be."""
+
+    def filled(most: int) -> list[list[_Group]]:
+        columns: list[list[_Group]] = [[]]
+        left = most
+        for name, keys in groups:
+            rows = len(keys) + 2
+            if rows > left and columns[-1]:
+                columns.append([])
+                left = most
+            columns[-1].append((name, keys))
+            left -= rows
+        return columns
+
+    lowest = next(most for most in range(1, 10_000) if len(filled(most)) <= count)
+    columns = filled(lowest)
+    return columns + [[] for _ in range(count - len(columns))]
+
+
+def _column(groups: list[_Group]) -> Table:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(justify="right", style="bold")
+    table.add_column()
+    for group, keys in groups:
+        if group:
+            table.add_row("", Text(group, "bold #5fafff"))
+        for key, title in keys:
+            table.add_row(Text(key), Text(title))
+        table.add_row()
+    return table
+
+
+class _KeyTable(Static):
+    """The keys, laid out for the width that there is."""
+
+    def __init__(self, groups: Mapping[str, Keys]) -> None:
+        super().__init__()
+        self._groups = {group: list(keys) for group, keys in groups.items()}
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out for the new width."""
+        self.update(key_table(self._groups, event.size.width))
+
+
+class KeyHelp(Dialog[None]):
+    """A help; `?` closes it as it opened it."""
+
+    HINT: str = "↑ ↓ scroll · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("question_mark,q", "leave", "Close", show=False)]
+    START: str = ""
+
+    def groups(self) -> Mapping[str, Keys]:
+        """Every key by the name of its group."""
+        return {}
+
+    def content(self) -> ComposeResult:
+        """The text, scrolled if need be."""
+        with VerticalScroll():
+            yield Static(self.START, classes="start", markup=False)
+            yield _KeyTable(self.groups())

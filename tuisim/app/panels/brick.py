@@ -1,0 +1,198 @@
+"""Brick: the display, the lights and the six buttons, which keys and mouse press."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.timer import Timer
+from textual.widget import Widget
+
+from tuisim.app.actions.table import IN_RUN
+from tuisim.app.render.brick import BrickPicture, draw_brick
+from tuisim.app.snapshot import Snapshot
+from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.pacer import Throttle
+from tuisim.protocol import BUTTONS
+
+_PERIOD_S = 0.1
+"""The whole display may change at once: more often would fill a slow link."""
+
+TAP_S = 0.25
+"""So long a key holds its button: a terminal does not say when a key is let go."""
+
+SEEN_S = 0.05
+"""At least so much simulated time: programs look at the buttons now and then."""
+
+_HELP = "arrows ⏎ ⌫ press · shift holds · + size"
+
+
+class Brick(Widget, can_focus=True):
+    """The panel."""
+
+    PANEL_ID: ClassVar[str] = "brick"
+    TITLE: ClassVar[str] = "Brick"
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(Binding(name, f"tap('{name}')", f"Press {name}", show=False) for name in BUTTONS),
+        *(Binding(f"shift+{name}", f"latch('{name}')", f"Hold {name}", show=False) for name in BUTTONS),
+    ]
+
+    DEFAULT_CSS = """
+    Brick > LinesView { width: 1fr; height: 1fr; }
+    """
+
+    @dataclass
+    class Pressed(Message):
+        """Other buttons are held down now, or would be if a program ran."""
+
+        buttons: frozenset[str]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._view = LinesView()
+        self._snapshot: Snapshot | None = None
+        self._picture = BrickPicture([], ())
+        self._tapped: dict[str, Timer] = {}
+        """Buttons that a key holds for a moment."""
+        self._latched: set[str] = set()
+        """Buttons that are held until they are let go in the same way."""
+        self._clicked = ""
+        """The button under the mouse while it is down."""
+        self._throttle = Throttle(self, _PERIOD_S, self._draw)
+
+    def compose(self) -> ComposeResult:
+        """The picture is the only child."""
+        yield self._view
+
+    def on_resize(self) -> None:
+        """Draw for the new size."""
+        self.call_after_refresh(self._draw)
+
+    def on_focus(self) -> None:
+        """Say which keys press the buttons."""
+        self.border_subtitle = _HELP
+
+    def on_blur(self) -> None:
+        """The keys are the app's again; buttons that they held are let go."""
+        self.border_subtitle = ""
+        self._let_go(*self._tapped)
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment, a few times a second at most."""
+        self._snapshot = snapshot
+        self._throttle.ask()
+
+    def _draw(self) -> None:
+        size = self._view.size
+        if self._snapshot is None or not size:
+            return
+        now = self._snapshot
+        self._picture = draw_brick(now.face, now.pressed, max(1, size.width), max(1, size.height))
+        self._view.set_lines(self._picture.lines)
+
+    # Buttons
+
+    @property
+    def held(self) -> frozenset[str]:
+        """The buttons that the user holds down."""
+        return frozenset((*self._tapped, *self._latched, *filter(None, [self._clicked])))
+
+    def _works(self, name: str) -> bool:
+        """Whether there is a program to press a button for, and it is looked at now."""
+        if self._snapshot is not None and self._snapshot.state in IN_RUN and not self._snapshot.past:
+            return True
+        self.post_message(self.Pressed(frozenset({name})))
+        return False
+
+    def _changed(self, before: frozenset[str]) -> None:
+        if self.held != before:
+            self.post_message(self.Pressed(self.held))
+
+    def action_tap(self, name: str) -> None:
+        """Press a button for a moment; a key that is held down presses it on."""
+        if not self._works(name):
+            return
+        before = self.held
+        if timer := self._tapped.get(name):
+            timer.stop()
+        self._tapped[name] = self.set_timer(TAP_S, partial(self._tap_over, name, self._time_s + SEEN_S))
+        self._changed(before)
+
+    @property
+    def _time_s(self) -> float:
+        return self._snapshot.time_s if self._snapshot else 0.0
+
+    def _tap_over(self, name: str, seen_s: float) -> None:
+        """Let a button go, but not before the program has had the time to see it, however slow the run is."""
+        if self._time_s < seen_s:
+            self._tapped[name] = self.set_timer(TAP_S, partial(self._tap_over, name, seen_s))
+        else:
+            self._let_go(name)
+
+    def _let_go(self, *names: str) -> None:
+        before = self.held
+        for name in names:
+            self._tapped.pop(name).stop()
+        self._changed(before)
+
+    def action_latch(self, name: str) -> None:
+        """Hold a button down, or let it go."""
+        if not self._works(name):
+            return
+        before = self.held
+        self._latched ^= {name}
+        self._changed(before)
+
+    def release_all(self) -> None:
+        """Let every button go: the run in which they were pressed is over."""
+        before = self.held
+        self._latched.clear()
+        self._clicked = ""
+        self._let_go(*self._tapped)
+        self._changed(before)
+
+    def _button_at(self, event: events.MouseEvent) -> str:
+        spot = event.get_content_offset(self._view)
+        if spot is None:
+            return ""
+        hit = (b.name for b in self._picture.buttons if b.row == spot.y and b.first <= spot.x < b.end)
+        return next(hit, "")
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Press the button under the mouse; the right mouse button holds it until the next time."""
+        name = self._button_at(event)
+        if not name:
+            return
+        event.stop()
+        self.focus()
+        if event.button == 3:
+            self.action_latch(name)
+            return
+        if not self._works(name):
+            return
+        before = self.held
+        self._clicked = name
+        self.capture_mouse()
+        self._changed(before)
+
+    def on_mouse_up(self, event: events.MouseUp) -> None:
+        """Let go."""
+        if self._clicked:
+            self._unclick()
+            self.release_mouse()
+
+    def on_mouse_release(self) -> None:
+        """Let go: a dialog has taken the mouse."""
+        if self._clicked:
+            self._unclick()
+
+    def _unclick(self) -> None:
+        before, self._clicked = self.held, ""
+        self._changed(before)

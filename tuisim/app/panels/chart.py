@@ -1,0 +1,250 @@
+"""Chart: what was logged and measured, over simulated time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.widget import Widget
+
+from tuisim.app.snapshot import PAUSED, RUNNING, WAITING, Snapshot
+from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.pacer import Throttle
+from tuisim.charts import axes
+from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.charts.traces import Trace, Traces
+
+_PERIOD_S = 0.33
+"""Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
+
+
+class Chart(Widget, can_focus=True):
+    """The panel. Data that comes while it is hidden is kept."""
+
+    TITLE: ClassVar[str] = "Chart"
+    FROZEN: ClassVar[str] = "frozen: f follows again"
+
+    DEFAULT_CSS = """
+    Chart > LinesView { width: 1fr; height: 1fr; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up", "select(-1)", "Trace before"),
+        Binding("down", "select(1)", "Next trace"),
+        Binding("space", "tick", "Tick trace"),
+        *(Binding(str(number), f"tick({number})", f"Tick trace {number}", show=False) for number in range(1, 10)),
+        Binding("left", "move_cursor(-1)", "Cursor back"),
+        Binding("right", "move_cursor(1)", "Cursor on"),
+        Binding("shift+left", "move_cursor(-10)", "Cursor far back", show=False),
+        Binding("shift+right", "move_cursor(10)", "Cursor far on", show=False),
+        Binding("escape", "drop_cursor", "No cursor"),
+        Binding("f", "freeze", "Follow or freeze"),
+        Binding("delete,backspace", "clear", "Clear chart"),
+    ]
+
+    @dataclass
+    class CursorMoved(Message):
+        """The cursor was put at another simulated time, or taken away: that time is looked at everywhere."""
+
+        time_s: float | None
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._text = LinesView()
+        self._traces = Traces()
+        self._painter = ChartPainter()
+        self._state = ChartState()
+        self._picture: ChartPicture | None = None
+        self._dirty = True
+        self._dragging = False
+        self._throttle = Throttle(self, _PERIOD_S, self._draw)
+
+    def compose(self) -> ComposeResult:
+        """The text is the only child."""
+        yield self._text
+
+    def append(self, name: str, times_s: Sequence[float], values: Sequence[float]) -> None:
+        """Add points to a trace.
+
+        Args:
+            name: A logged NAME, or a name with a unit after a space for telemetry, which is not ticked at first.
+            times_s: Simulated times.
+            values: As many values.
+        """
+        self._traces.append(name, times_s, values)
+        self._changed()
+
+    def clear(self) -> None:
+        """Drop all points; ticks stay."""
+        self._traces.clear()
+        self._state = replace(self._state, x_limits=None)
+        self._read(None)
+        self.action_drop_cursor()
+        self._changed()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Draw what has come, a few times a second at most."""
+        cursor_s = snapshot.time_s if snapshot.past else None
+        if cursor_s != self._state.cursor_s and not self._dragging:
+            self._state = replace(self._state, cursor_s=cursor_s)
+            self._dirty = True
+        grows = snapshot.state in (RUNNING, PAUSED, WAITING)
+        if grows != self._state.grows:
+            self._state = replace(self._state, grows=grows)
+            self._dirty = True
+        if self._dirty:
+            self._throttle.ask()
+
+    def _changed(self) -> None:
+        self._dirty = True
+        self._throttle.ask()
+
+    def _draw(self) -> None:
+        if not self.display or not self._text.size or not self._dirty:
+            return
+        self._dirty = False
+        if self._state.selected is None and (first := next(iter(self._traces), None)):
+            self._state = replace(self._state, selected=first.name)
+        state = replace(self._state, grey=bool(self.app.no_color))
+        if not self.has_focus:
+            state = replace(state, selected=None)
+        self._picture = self._painter.paint(self._traces, state, self._text.size.width, self._text.size.height)
+        self._text.set_lines(self._picture.lines)
+
+    def _draw_now(self) -> None:
+        self._dirty = True
+        self._throttle.now()
+
+    def on_resize(self) -> None:
+        """Draw for the new size."""
+        self.call_after_refresh(self._draw_now)
+
+    def on_focus(self) -> None:
+        """Show which tick box the keys work on."""
+        self._draw_now()
+
+    def on_blur(self) -> None:
+        """Hide which tick box the keys worked on."""
+        self._draw_now()
+
+    # Keys
+
+    def action_select(self, step: int) -> None:
+        """Go to another tick box."""
+        names = [trace.name for trace in self._traces]
+        if names:
+            at = names.index(self._state.selected) + step if self._state.selected in names else 0
+            self._state = replace(self._state, selected=names[at % len(names)])
+            self._draw_now()
+
+    def action_tick(self, number: int = 0) -> None:
+        """Switch the selected trace, or the one with that number, on or off."""
+        traces = list(self._traces)
+        if number:
+            chosen = traces[number - 1] if number <= len(traces) else None
+        else:
+            chosen = next((trace for trace in traces if trace.name == self._state.selected), None)
+        if chosen:
+            self._switch(chosen)
+
+    def _switch(self, trace: Trace) -> None:
+        trace.on = not trace.on
+        self._state = replace(self._state, selected=trace.name)
+        self._draw_now()
+
+    def action_freeze(self) -> None:
+        """Stop following the run, or follow it again."""
+        frozen = self._state.x_limits is None and self._picture is not None and self._picture.columns > 0
+        self._state = replace(self._state, x_limits=self._picture.x_limits if frozen and self._picture else None)
+        self._read(None)
+        self._draw_now()
+
+    def action_clear(self) -> None:
+        """Drop all points."""
+        self.clear()
+
+    def action_move_cursor(self, columns: int) -> None:
+        """Move the cursor, the first time from the newest point."""
+        picture = self._picture
+        if picture is None or not picture.columns:
+            return
+        now = self._traces.end_s() if self._state.cursor_s is None else self._state.cursor_s
+        column = axes.column_of(now, picture.x_limits, picture.columns) + columns
+        self._put_cursor(axes.at_column(column, picture.x_limits, picture.columns))
+
+    def action_drop_cursor(self) -> None:
+        """Take the cursor away."""
+        if self._state.cursor_s is not None:
+            self._state = replace(self._state, cursor_s=None)
+            self.post_message(self.CursorMoved(None))
+            self._draw_now()
+
+    def _put_cursor(self, time_s: float) -> None:
+        time_s = min(max(time_s, 0.0), self._traces.end_s())
+        if time_s != self._state.cursor_s:
+            self._state = replace(self._state, cursor_s=time_s)
+            self.post_message(self.CursorMoved(time_s))
+            self._draw_now()
+
+    # Mouse
+
+    def _cell(self, event: events.MouseEvent) -> tuple[int, int]:
+        """Column and row of the mouse in the text."""
+        origin = self._text.region
+        return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Switch a tick box, or begin to drag the cursor."""
+        picture = self._picture
+        if picture is None or event.button != 1:
+            return
+        column, row = self._cell(event)
+        for box in picture.boxes:
+            if box.row == row and box.first <= column < box.end:
+                self._switch(next(trace for trace in self._traces if trace.name == box.name))
+                return
+        if picture.time_at(column, row) is not None:
+            self._dragging = True
+            self.capture_mouse()
+            self._cursor_to(column, picture)
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        """Drag the cursor, or read what the traces are where the mouse is."""
+        picture = self._picture
+        if picture is None:
+            return
+        column, row = self._cell(event)
+        if self._dragging:
+            self._cursor_to(column, picture)
+        else:
+            self._read(picture.time_at(column, row))
+
+    def on_leave(self) -> None:
+        """The mouse reads nothing any more."""
+        self._read(None)
+
+    def _read(self, time_s: float | None) -> None:
+        """Say below the chart what the traces are at a time."""
+        if time_s is None:
+            self.border_subtitle = self.FROZEN if self._state.x_limits else ""
+            return
+        read = values_at(self._traces.drawn(), time_s, self._state.unit, self.size.width - 4)
+        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
+
+    def on_mouse_up(self, event: events.MouseUp) -> None:
+        """Let go of the cursor."""
+        if self._dragging:
+            self._dragging = False
+            self.release_mouse()
+
+    def on_mouse_release(self) -> None:
+        """Let go: a dialog has taken the mouse."""
+        self._dragging = False
+
+    def _cursor_to(self, column: int, picture: ChartPicture) -> None:
+        self._put_cursor(axes.at_column(column - picture.left, picture.x_limits, picture.columns))

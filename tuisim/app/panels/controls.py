@@ -1,0 +1,106 @@
+"""Simulator controls: buttons for the mouse, and what the run is made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import ClassVar
+
+from rich.style import Style
+from rich.text import Text
+from textual import events
+from textual.widget import Widget
+
+from tuisim.app.actions.table import ACT, Act
+from tuisim.app.labels import end_label, speed_label
+from tuisim.app.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot
+
+_STATES = {IDLE: "ready", STARTING: "starting", RUNNING: "running", PAUSED: "paused", WAITING: "waits for input"}
+_LABEL_CELLS = 9
+
+
+class Controls(Widget, can_focus=False):
+    """Run, Stop and Pause, speed, program, mat, profile, seed, pen and state."""
+
+    TITLE: ClassVar[str] = "Simulator controls"
+    ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"controls--button", "controls--off", "controls--failed", "controls--label"}
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._program = ""
+        self._shown: tuple[object, ...] = ()
+        self._snapshot: Snapshot | None = None
+
+    def set_program(self, name: str) -> None:
+        """Show the program's name; empty for none."""
+        if name != self._program:
+            self._program = name
+            self.refresh()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment."""
+        shown = (
+            (snapshot.state, snapshot.end, snapshot.speed, snapshot.pen_down),
+            (snapshot.spec, snapshot.instant.noise),
+        )
+        if shown != self._shown:
+            self._shown, self._snapshot = shown, snapshot
+            self.refresh()
+
+    def _button(self, text: str, action: str, works: bool) -> Text:
+        name = "controls--button" if works else "controls--off"
+        style = self.get_component_rich_style(name, partial=True)
+        return Text(f" {text} ", style + Style(meta={ACT: action}))
+
+    def on_click(self, event: events.Click) -> None:
+        """Do what was clicked on."""
+        if name := event.style.meta.get(ACT):
+            event.stop()
+            self.post_message(Act(name))
+
+    def _line(self, label: str, *parts: str | Text) -> Text:
+        line = Text()
+        line.append(f"{label:<{_LABEL_CELLS}}", self.get_component_rich_style("controls--label", partial=True))
+        for part in parts:
+            line.append(part)
+        return line
+
+    def _state(self, now: Snapshot) -> Text:
+        style = self.get_component_rich_style("controls--failed", partial=True) if now.failed else ""
+        return Text(_STATES.get(now.state, end_label(now.end)), style)
+
+    def render(self) -> Text:
+        """Return the panel's content."""
+        now = self._snapshot
+        if now is None:
+            return Text()
+        in_run = now.state in _STATES and now.state != IDLE
+        buttons = Text(" ").join(
+            (
+                self._button("R Run", "run", bool(self._program) and not in_run),
+                self._button("S Stop", "stop", in_run),
+                self._button("Go on" if now.state == PAUSED else "Pause", "pause", in_run),
+            )
+        )
+        spec = now.spec
+        slower, faster = (self._button(key, to, True) for key, to in (("[", "slower"), ("]", "faster")))
+        noise = now.instant.noise
+        lines = [
+            buttons,
+            Text(),
+            self._line("State", self._state(now)),
+            self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
+            self._line("Program", self._program or "none: o opens one"),
+            self._line("Mat", Path(spec.world.background).name),
+            self._line("Robot", spec.robot.name),
+            self._line("Profile", f"{spec.profile.name}, seed {spec.seed}"),
+            self._line("Pen", f"{'down' if now.pen_down else 'up'}, {spec.robot.pen.color}"),
+            self._line("Noise", f"light ±{noise.light}, motor ±{noise.motor}"),
+        ]
+        if self.size.height < len(lines):
+            del lines[1]
+        width = self.size.width
+        for line in lines:
+            line.truncate(width, overflow="ellipsis")
+        return Text("\n", no_wrap=True).join(lines[: self.size.height])

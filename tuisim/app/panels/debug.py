@@ -1,0 +1,136 @@
+"""Debug: where the program stands, what it waits for, its variables, watches, calls and threads."""
+
+from __future__ import annotations
+
+import linecache
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.widget import Widget
+
+from tuisim.app.render.debug import DebugView, debug_lines
+from tuisim.app.snapshot import IDLE, Snapshot
+from tuisim.app.terminal.cell_view import LinesView
+from tuisim.charts.text_runs import Line
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from tuisim.app.debugger import AppDebugger
+    from tuisim.protocol import Paused
+
+
+class Debug(Widget, can_focus=True):
+    """The panel."""
+
+    TITLE: ClassVar[str] = "Debug"
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up", "scroll_lines(-1)", "Up", show=False),
+        Binding("down", "scroll_lines(1)", "Down", show=False),
+        Binding("pageup", "scroll_lines(-10)", "Page up", show=False),
+        Binding("pagedown", "scroll_lines(10)", "Page down", show=False),
+        Binding("left", "frame(-1)", "The called frame", show=False),
+        Binding("right", "frame(1)", "The caller", show=False),
+        Binding("enter", "thread", "The next thread", show=False),
+    ]
+    DEFAULT_CSS = """
+    Debug > LinesView { width: 1fr; height: 1fr; }
+    """
+
+    class FrameWanted(Message):
+        """The caller of the frame is to be looked at, or what it called."""
+
+        def __init__(self, by: int) -> None:
+            super().__init__()
+            self.by = by
+
+    class ThreadWanted(Message):
+        """The next thread is to be looked at."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._view = LinesView()
+        self._content = DebugView()
+        self._state = IDLE
+        self._now: tuple[int, float] | None = None
+        self._top = 0
+        self._lines: list[Line] = []
+
+    def compose(self) -> ComposeResult:
+        """The text is the only child."""
+        yield self._view
+
+    def on_focus(self) -> None:
+        """Say which keys work here."""
+        self.border_subtitle = "↑↓ scroll · ←→ calls · ⏎ thread"
+
+    def on_blur(self) -> None:
+        """The keys are the app's again."""
+        self.border_subtitle = ""
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show whether the program runs; where it stands comes by `show_debugging`."""
+        now = snapshot.instant.tick, snapshot.time_s
+        # While it runs it stands nowhere, and there is nothing that could be of another instant.
+        if snapshot.state != self._state or (now != self._now and self._content.paused):
+            self._state, self._now = snapshot.state, now
+            self._draw()
+        self._now = now
+
+    def show_debugging(self, debugging: AppDebugger) -> None:
+        """Show where the program stands."""
+        standing, busy = debugging.standing, debugging.busy
+        if standing is None:
+            self._content = DebugView(busy=busy)
+        else:
+            source = _line_of(standing.paused)
+            self._content = DebugView("", standing.paused, standing.looked, standing.past, busy, source)
+        self._draw()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Draw for the new size."""
+        self.call_after_refresh(self._draw)
+
+    def _draw(self) -> None:
+        size = self._view.size
+        if not size:
+            return
+        self._lines = debug_lines(replace(self._content, state=self._state, now=self._now), size.width)
+        self._top = max(0, min(self._top, len(self._lines) - size.height))
+        below = len(self._lines) - self._top - size.height
+        self.border_title = f"{self.TITLE} ↓{below}" if below > 0 else self.TITLE
+        self._view.set_lines(self._lines[self._top : self._top + size.height])
+
+    def action_scroll_lines(self, by: int) -> None:
+        """Move the text."""
+        self._top = max(0, self._top + by)
+        self._draw()
+
+    def action_frame(self, by: int) -> None:
+        """Look at another frame."""
+        self.post_message(self.FrameWanted(by))
+
+    def action_thread(self) -> None:
+        """Look at another thread."""
+        self.post_message(self.ThreadWanted())
+
+    def on_mouse_scroll_down(self) -> None:
+        """Scroll by the wheel."""
+        self.action_scroll_lines(2)
+
+    def on_mouse_scroll_up(self) -> None:
+        """Scroll by the wheel."""
+        self.action_scroll_lines(-2)
+
+
+def _line_of(paused: Paused) -> str:
+    """The line of a module beside the program; empty for the program itself, or if it cannot be read."""
+    if not paused.file:
+        return ""
+    linecache.checkcache(paused.file)
+    return linecache.getline(paused.file, paused.line)

@@ -1,0 +1,322 @@
+"""Instrumentation: what motors and sensors read, and where and when the robot is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from rich.color import Color
+from rich.style import Style
+from textual.app import ComposeResult
+from textual.widget import Widget
+
+from tuisim.app.labels import end_label
+from tuisim.app.snapshot import ENDED, Snapshot
+from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.pacer import Throttle
+from tuisim.charts.text_runs import Line, Run, cut
+from tuisim.core.geometry import shown_heading_deg
+from tuisim.core.sensors.color import ColorReading
+from tuisim.logs.units import unit_of
+
+_PERIOD_S = 0.1
+"""Figures that change faster cannot be read."""
+
+_LABEL = Style(color="#a8a8a8")
+_VALUE = Style(color="#ffffff", bold=True)
+_UNIT = Style(color="#a8a8a8")
+_WARNING = Style(color="#ff6e6e", bold=True)
+_COLUMN = 12
+"""Width of the labels where there is room."""
+
+
+class Instrumentation(Widget):
+    """The panel. It has three forms, by height: 11 lines, 9 lines, 6 lines."""
+
+    TITLE: ClassVar[str] = "Instrumentation"
+
+    DEFAULT_CSS = """
+    Instrumentation > LinesView { width: 1fr; height: 1fr; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._text = LinesView()
+        self._snapshot: Snapshot | None = None
+        self._throttle = Throttle(self, _PERIOD_S, self._draw)
+
+    def compose(self) -> ComposeResult:
+        """The text is the only child."""
+        yield self._text
+
+    def on_resize(self) -> None:
+        """Choose the form for the new size."""
+        self.call_after_refresh(self._draw)
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment, a few times a second at most."""
+        self._snapshot = snapshot
+        self._throttle.ask()
+
+    def _draw(self) -> None:
+        if self._snapshot is not None and self._text.size:
+            self._text.set_lines(lines(self._snapshot, self._text.size.width, self._text.size.height))
+
+
+def lines(now: Snapshot, width: int, height: int) -> list[Line]:
+    """Return the text of a moment for a panel of that inner size.
+
+    Args:
+        now: The moment.
+        width: Columns, 18 or more for whole words.
+        height: Rows; with fewer than 6 the last lines are left out.
+    """
+    motors = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
+    sensors = [(f"Sensor{at}", now.colors.get(s.name)) for at, s in enumerate(now.spec.robot.color_sensors, 1)]
+    further = [
+        *(
+            _motor(f"Motor {motor.port[-1]}", motor.port[-1], round(position), _value(f"{round(dps):d}"), width)
+            for motor, (position, dps) in zip(now.spec.robot.extra_motors, now.turns, strict=False)
+        ),
+        *(_further(column, value, width) for column, value in now.further.items()),
+    ]
+    small = height < 7 + len(sensors) + len(further)
+    if small:
+        short = [_sensor_in_one(name, seen, width) for name, seen in sensors]
+        whole = [*motors, *short, _distance_and_angle(now, width), _place_and_time(now, width)]
+        return [*whole, *further][:height]
+    ranging = [_ultrasonic(now, width), _gyro(now, width), *further]
+    rest = [*ranging, _pose(now, width), _clock(now, width), _state(now, width)]
+    if height < 7 + 2 * len(sensors) + len(further):
+        return [*motors, *(_sensor_in_one(name, seen, width) for name, seen in sensors), *rest]
+    full = [line for name, seen in sensors for line in _sensor(name, seen, width)]
+    if height < 10 + 2 * len(sensors) + len(further):
+        return [*motors, *full, *rest]
+    return [*motors, [], *full, [], *ranging, [], *rest[len(ranging) :]]
+
+
+def _further(column: str, value: float, width: int) -> Line:
+    """A sensor that not every robot has, by its telemetry column."""
+    name, _, what = column.rpartition("_")
+    if what == "pressed":
+        shown, unit = "pressed" if value else "released", ""
+    else:
+        sign = unit_of(column).sign
+        shown, unit = f"{value:.0f}", sign if sign == "°" else f" {sign}".rstrip()
+    label = name.capitalize()
+    return _fit(
+        width,
+        (_label(cut(label, _COLUMN - 1)), _value(shown if what == "pressed" else f"{shown:>6}"), _unit(unit)),
+        (_label(cut(label, 8), 9), _value(shown), _unit(unit)),
+    )
+
+
+def _fit(width: int, *variants: Sequence[Run]) -> Line:
+    """Return the first variant that is not too long, or the last one."""
+    for variant in variants:
+        if sum(len(text) for text, _ in variant) <= width:
+            return list(variant)
+    return list(variants[-1])
+
+
+def _label(text: str, column: int = _COLUMN) -> Run:
+    return text.ljust(column), _LABEL
+
+
+def _value(text: str) -> Run:
+    return text, _VALUE
+
+
+def _unit(text: str) -> Run:
+    return text, _UNIT
+
+
+def _wheel(now: Snapshot, name: str, short: str, width: int) -> Line:
+    left = short == "L"
+    instant = now.instant
+    counts = round(instant.left_position_deg if left else instant.right_position_deg)
+    dps = round(instant.left_speed_dps if left else instant.right_speed_dps)
+    if now.stalled[0 if left else 1]:
+        return _motor(name, short, counts, ("stalled", _WARNING), width)
+    return _motor(name, short, counts, _value(f"{dps:d}"), width)
+
+
+def _motor(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
+    """A motor's counts and speed, or a warning in place of that."""
+    warns = speed[1] is _WARNING
+    unit, close = (_unit(""), _unit("")) if warns else (_unit(" °/s"), _unit("°/s"))
+    return _fit(
+        width,
+        (_label(name), _unit("tacho"), _value(f"{counts:8d}"), _right(speed, 7 + 4 * warns), unit),
+        (_label(name, 11), _value(f"{counts:6d}"), _right(speed, 6 + 3 * warns), close),
+        (_label(name, 11), _value(f"{counts:d} "), speed, close),
+        (_label(short, 2), _value(f"{counts:7d}"), _right(speed, 6 + 3 * warns), close),
+    )
+
+
+def _right(run: Run, width: int) -> Run:
+    return run[0].rjust(width), run[1]
+
+
+def _swatch(seen: ColorReading) -> Run:
+    return "  ", Style(bgcolor=Color.from_rgb(*seen.rgb))
+
+
+def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Line]:
+    if seen is None:
+        return [_label(name), _unit("–")], []
+    red, mean = f"{seen.red_percent:5.1f}", f"{seen.mean_percent:5.1f}"
+    first = _fit(
+        width,
+        (_label(name), _unit("red "), _value(red), _unit(" %  mean "), _value(mean), _unit(" %")),
+        (_label(name, 8), _unit("red"), _value(f"{red}"), _unit(" mean"), _value(f"{mean}")),
+        (_label(name, 8), _value(red), _unit(" mean"), _value(mean)),
+        (_label(name[:1] + name[-1:], 3), _value(red), _unit(" mean"), _value(mean)),
+    )
+    channels = [f"{channel}" for channel in seen.rgb]
+    wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
+    second = _fit(
+        width,
+        (_label(""), _value(wide.ljust(16)), _swatch(seen), _value(f" {seen.name}")),
+        (_label("", 2), _value(narrow.ljust(14)), _swatch(seen), _value(f" {seen.name}")),
+        (_swatch(seen), _value(f" {narrow}")),
+    )
+    return first, second
+
+
+def _sensor_in_one(name: str, seen: ColorReading | None, width: int) -> Line:
+    short = name[:1] + name[-1:]
+    if seen is None:
+        return _fit(width, (_label(name, 9), _unit("–")), (_label(short, 3), _unit("–")))
+    red = f"{seen.red_percent:5.1f}"
+    return _fit(
+        width,
+        (_label(name), _unit("red "), _value(red), _unit(" %  "), _swatch(seen), _value(f" {seen.name}")),
+        (_label(name, 9), _value(red), _unit("% "), _swatch(seen), _value(f" {seen.name}")),
+        (_label(short, 3), _value(red), _unit("% "), _swatch(seen), _value(f" {seen.name}")),
+    )
+
+
+def _ultrasonic(now: Snapshot, width: int) -> Line:
+    if now.ultrasonic_mm is None:
+        return [_label("Ultrasonic"), _unit("none")]
+    centimetres = f"{now.ultrasonic_mm / 10:.1f}"
+    return _fit(
+        width,
+        (
+            _label("Ultrasonic"),
+            _value(f"{centimetres:>6}"),
+            _unit(" cm"),
+            _value(f"{now.ultrasonic_mm:8d}"),
+            _unit(" mm"),
+        ),
+        (
+            _label("Ultrasonic", 11),
+            _value(f"{centimetres:>5}"),
+            _unit("cm"),
+            _value(f"{now.ultrasonic_mm:5d}"),
+            _unit("mm"),
+        ),
+        (_label("Ultrasonic", 11), _value(centimetres), _unit("cm")),
+    )
+
+
+def _gyro(now: Snapshot, width: int) -> Line:
+    if now.spec.robot.gyro is None:
+        return [_label("Gyro"), _unit("none")]
+    return _fit(
+        width,
+        (
+            _label("Gyro"),
+            _value(f"{now.gyro_deg:6d}"),
+            _unit("°   rate"),
+            _value(f"{now.gyro_rate_dps:6d}"),
+            _unit(" °/s"),
+        ),
+        (_label("Gyro", 7), _value(f"{now.gyro_deg}"), _unit("° rate "), _value(f"{now.gyro_rate_dps}"), _unit("°/s")),
+        (_label("Gyro", 5), _value(f"{now.gyro_deg}"), _unit("° "), _value(f"{now.gyro_rate_dps}"), _unit("°/s")),
+    )
+
+
+def _pose(now: Snapshot, width: int) -> Line:
+    pose = now.instant.pose
+    x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_heading_deg(pose.heading_deg):.1f}"
+    return _fit(
+        width,
+        (
+            _label("Pose"),
+            _unit("x"),
+            _value(f"{x:>7}"),
+            _unit("  y"),
+            _value(f"{y:>7}"),
+            _value(f"{heading:>8}"),
+            _unit("°"),
+        ),
+        (_unit("x "), _value(x), _unit(" y "), _value(y), _unit(" "), _value(heading), _unit("°")),
+        (
+            _value(f"{pose.x_mm:.0f}"),
+            _unit(","),
+            _value(f"{pose.y_mm:.0f}"),
+            _value(f" {shown_heading_deg(pose.heading_deg):.0f}"),
+            _unit("°"),
+        ),
+    )
+
+
+def _speed(now: Snapshot) -> str:
+    return f"{now.speed:g}×" if now.speed else "max"
+
+
+def _clock(now: Snapshot, width: int) -> Line:
+    time_s = f"{now.time_s:.2f}"
+    return _fit(
+        width,
+        (_label("Clock"), _value(f"{time_s:>8}"), _unit(" s   speed "), _value(_speed(now))),
+        (_label("Clock", 6), _value(time_s), _unit(" s  speed "), _value(_speed(now))),
+        (_label("Clock", 6), _value(time_s), _unit("s "), _value(_speed(now))),
+    )
+
+
+def _state_word(now: Snapshot) -> Run:
+    word = end_label(now.end) if now.state == ENDED and now.end else now.state
+    return word, _WARNING if now.failed else _VALUE
+
+
+def _state(now: Snapshot, width: int) -> Line:
+    state, profile, pen = _state_word(now), now.spec.profile.name, "pen down" if now.pen_down else "pen up"
+    return _fit(
+        width,
+        (_label("State"), (f"{state[0]:<9}", state[1]), _unit(" "), _value(pen.ljust(9)), _unit(" "), _value(profile)),
+        (_label("State"), state, _unit(" · "), _value(profile)),
+        (_label("State", 6), state, _unit(" · "), _value(profile)),
+        (state, _unit("·"), _value(profile)),
+        (state,),
+    )
+
+
+def _distance_and_angle(now: Snapshot, width: int) -> Line:
+    centimetres = "–" if now.ultrasonic_mm is None else f"{now.ultrasonic_mm / 10:.1f}"
+    angle = "–" if now.spec.robot.gyro is None else f"{now.gyro_deg}"
+    far = _value(f"{centimetres:>6}")
+    return _fit(
+        width,
+        (_label("Ultrasonic"), far, _unit(" cm   Gyro"), _value(f"{angle:>5}"), _unit("°")),
+        (_label("Ultrasonic", 10), far, _unit("cm Gyro "), _value(angle), _unit("°")),
+        (_label("Ultrasonic", 10), far, _unit("cm G "), _value(angle), _unit("°")),
+        (_label("US", 2), far, _unit("cm G "), _value(angle), _unit("°")),
+        (_label("US", 2), far, _unit("cm")),
+    )
+
+
+def _place_and_time(now: Snapshot, width: int) -> Line:
+    pose = now.instant.pose
+    x, y, heading = f"{pose.x_mm:.0f}", f"{pose.y_mm:.0f}", f"{shown_heading_deg(pose.heading_deg):.0f}"
+    where = (_unit("x "), _value(x), _unit(" y "), _value(y), _unit(" "), _value(heading), _unit("°"))
+    return _fit(
+        width,
+        (*where, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
+        (*where, _value(f" {now.time_s:.2f}"), _unit("s")),
+        (_value(x), _unit(","), _value(y), _value(f" {heading}"), _unit("° "), _value(f"{now.time_s:.1f}"), _unit("s")),
+        (_value(f"{now.time_s:.2f}"), _unit(" s")),
+    )

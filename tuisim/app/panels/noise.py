@@ -1,0 +1,129 @@
+"""Noise: how far readings and wheels stray, by sliders that act at once, and the seed of the next run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual import events, on
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+from textual.widgets import Input, Label, Static
+
+from tuisim.app.snapshot import Snapshot
+from tuisim.app.widgets.number_input import NumberInput
+from tuisim.app.widgets.slider import Slider
+from tuisim.config.options import MAX_SEED, whole
+from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec
+from tuisim.errors import ConfigError
+
+_KINDS = {"light": ("Light", MAX_LIGHT_NOISE), "motor": ("Motor", MAX_MOTOR_NOISE)}
+"""By field of `NoiseSpec`: name and largest value."""
+_USE = "At once; seed at next run"
+
+
+class Noise(Vertical):
+    """Two sliders with a field each, and the seed."""
+
+    TITLE: ClassVar[str] = "Noise"
+
+    @dataclass
+    class Changed(Message):
+        """The user wants other noise."""
+
+        noise: NoiseSpec
+
+    @dataclass
+    class Seeded(Message):
+        """The user wants another seed."""
+
+        seed: int
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._shown: tuple[NoiseSpec, int] | None = None
+        self._past = False
+
+    def compose(self) -> ComposeResult:
+        """A row for each number, and a line that says what is wrong."""
+        for kind, (name, maximum) in _KINDS.items():
+            with Horizontal(classes="field"):
+                yield Label(f"{name}", markup=False)
+                yield Slider(maximum, id=kind)
+                yield NumberInput("0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3)
+        with Horizontal(classes="field"):
+            yield Label("Seed", markup=False)
+            yield NumberInput("0", id="seed", compact=True, select_on_focus=True)
+        yield Static(_USE, id="message", markup=False)
+
+    def begin(self) -> None:
+        """Take the focus: a slider, on which letters are still keys of the app; tab leads to its number."""
+        self.query_one("#light", Slider).focus()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show noise and seed as they were last chosen, here or elsewhere; of a former instant its own noise."""
+        if not self.is_mounted or not self.query(Slider):
+            return
+        self._past = snapshot.past
+        noise = snapshot.instant.noise if snapshot.past else snapshot.planned.world.noise
+        shown = noise, snapshot.planned.seed
+        if shown == self._shown:
+            return
+        before, self._shown = self._shown, shown
+        for kind in _KINDS:
+            value = getattr(noise, kind)
+            slider, entry = self.query_one(f"#{kind}", Slider), self.query_one(f"#{kind}-number", Input)
+            if before is None or getattr(before[0], kind) != value:
+                slider.value = value
+                entry.value = str(value)
+        if before is None or before[1] != shown[1]:
+            self.query_one("#seed", Input).value = str(shown[1])
+
+    @on(Slider.Changed)
+    def _slid(self, event: Slider.Changed) -> None:
+        event.stop()
+        self.query_one(f"#{event.slider.id}-number", Input).value = str(event.value)
+        self._say("")
+        # In the past it is asked only at the end what is to come of that.
+        if event.done or not self._past:
+            self._choose()
+
+    def _choose(self) -> None:
+        light, motor = (self.query_one(f"#{kind}", Slider).value for kind in _KINDS)
+        if self._past:
+            # The past stays as it is, whether a branch comes of this or not.
+            self._shown = None
+        self.post_message(self.Changed(NoiseSpec(light, motor)))
+
+    @on(Input.Submitted)
+    def _typed(self, event: Input.Submitted) -> None:
+        event.stop()
+        self._take(event.input)
+
+    def on_descendant_blur(self, event: events.DescendantBlur) -> None:
+        """Take what was typed when its field is left."""
+        if isinstance(event.widget, Input):
+            self._take(event.widget)
+
+    def _take(self, entry: Input) -> None:
+        kind = (entry.id or "").removesuffix("-number")
+        name, maximum = _KINDS.get(kind, ("Seed", MAX_SEED))
+        try:
+            value = whole(0, maximum)(entry.value.strip(), "")
+        except ConfigError as error:
+            entry.add_class("wrong")
+            self._say(f"{name} {error.message}")
+            return
+        entry.remove_class("wrong")
+        self._say("")
+        if kind == "seed":
+            self.post_message(self.Seeded(value))
+        else:
+            self.query_one(f"#{kind}", Slider).value = value
+            self._choose()
+
+    def _say(self, wrong: str) -> None:
+        self.query_one("#message", Static).update(wrong or _USE)
+        self.set_class(bool(wrong), "-wrong")

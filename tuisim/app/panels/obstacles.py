@@ -1,0 +1,177 @@
+"""Obstacles: a list of boxes, to be typed, or drawn and dragged in the world while this panel is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from textual import events, on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+from textual.widgets import Input, Label, OptionList, Static
+from textual.widgets.option_list import Option
+
+from tuisim.app.setup.next_run import NextRun
+from tuisim.app.snapshot import Snapshot
+from tuisim.app.widgets.form import reason, typed_number
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
+from tuisim.errors import ConfigError, ObstacleError
+
+_FIELDS = {"x_mm": "X", "y_mm": "Y", "width_mm": "W", "height_mm": "H"}
+_NEW_SIZE_MM = 200.0
+_USE = "A drag draws another"
+_NONE = "none: a drag draws one"
+
+
+def box_label(number: int, box: Obstacle) -> str:
+    """Return the line of one obstacle."""
+    return f"{number:>2}  {box.width_mm:g}×{box.height_mm:g} at {box.x_mm:g}, {box.y_mm:g}"
+
+
+class Obstacles(Vertical):
+    """The list, the four numbers of the box at hand, and what can be done."""
+
+    TITLE: ClassVar[str] = "Obstacles"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("plus,insert", "add", "Add", show=False),
+        Binding("delete,backspace,minus", "remove", "Remove", show=False),
+    ]
+
+    @dataclass
+    class Edited(Message):
+        """The user wants these obstacles."""
+
+        obstacles: tuple[Obstacle, ...]
+
+    @dataclass
+    class Marked(Message):
+        """Another obstacle is at hand."""
+
+        index: int | None
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._boxes: tuple[Obstacle, ...] = ()
+        self.at: int | None = None
+        """Index of the obstacle at hand."""
+
+    def compose(self) -> ComposeResult:
+        """List, four fields in two rows, what can be done, and what is wrong."""
+        yield OptionList(compact=True)
+        for pair in (("x_mm", "y_mm"), ("width_mm", "height_mm")):
+            with Horizontal(classes="field"):
+                for field in pair:
+                    yield Label(_FIELDS[field], markup=False)
+                    yield Input(id=field, compact=True, select_on_focus=True)
+        with Horizontal(classes="links"):
+            yield Static("[@click=add]+ Add[/]")
+            yield Static("[@click=remove]- Remove[/]")
+        with Horizontal(classes="links"):
+            yield Static("[@click=app.act('obstacles')]k Sets[/]")
+            yield Static("[@click=app.act('save-obstacles')]ctrl+o Save[/]")
+        yield Static(_USE, id="message", markup=False)
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Nothing: it shows plans, not moments."""
+
+    def show_plan(self, plan: NextRun) -> None:
+        """Show the obstacles of the next run."""
+        boxes = plan.spec.world.obstacles
+        if not self.is_mounted or (boxes == self._boxes and self.query_one(OptionList).option_count):
+            return
+        before, self._boxes = self._boxes, boxes
+        if len(boxes) > len(before) and boxes[: len(before)] == before:
+            self.at = len(boxes) - 1
+        elif self.at is None or self.at >= len(boxes):
+            self.at = len(boxes) - 1 if boxes else None
+        self._list()
+        self._show_box()
+        self.post_message(self.Marked(self.at))
+
+    def begin(self) -> None:
+        """Take the focus: the list, in which letters are still keys of the app."""
+        self.query_one(OptionList).focus()
+        self.post_message(self.Marked(self.at))
+
+    def mark(self, index: int | None) -> None:
+        """Have another obstacle at hand."""
+        self.query_one(OptionList).highlighted = index
+
+    def _list(self) -> None:
+        listed = self.query_one(OptionList)
+        listed.clear_options()
+        listed.add_options([Option(box_label(at, box), id=str(at)) for at, box in enumerate(self._boxes, start=1)])
+        if not self._boxes:
+            listed.add_option(Option(_NONE, disabled=True))
+        listed.highlighted = self.at
+
+    def _show_box(self) -> None:
+        box = self._boxes[self.at] if self.at is not None else None
+        for field in _FIELDS:
+            entry = self.query_one(f"#{field}", Input)
+            entry.value = f"{getattr(box, field):g}" if box else ""
+            entry.disabled = box is None
+            entry.remove_class("wrong")
+        self._say("")
+
+    @on(OptionList.OptionHighlighted)
+    def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        event.stop()
+        if self._boxes and event.option_index != self.at:
+            self.at = event.option_index
+            self._show_box()
+            self.post_message(self.Marked(self.at))
+
+    @on(OptionList.OptionSelected)
+    def _selected(self, event: OptionList.OptionSelected) -> None:
+        event.stop()
+        self.query_one("#x_mm", Input).focus()
+
+    @on(Input.Submitted)
+    def _submitted(self, event: Input.Submitted) -> None:
+        event.stop()
+        self._take(event.input)
+
+    def on_descendant_blur(self, event: events.DescendantBlur) -> None:
+        """Take what was typed when its field is left."""
+        if isinstance(event.widget, Input) and not event.widget.disabled:
+            self._take(event.widget)
+
+    def _take(self, entry: Input) -> None:
+        if self.at is None or entry.value == f"{getattr(self._boxes[self.at], entry.id or ''):g}":
+            entry.remove_class("wrong")
+            return
+        try:
+            changed = {entry.id or "": typed_number(entry.value, ObstacleError)}
+            box = replace(self._boxes[self.at], **changed)
+        except ConfigError as error:
+            entry.add_class("wrong")
+            self._say(f"{_FIELDS[entry.id or '']} {reason(error)}")
+            return
+        self.edit((*self._boxes[: self.at], box, *self._boxes[self.at + 1 :]))
+
+    def action_add(self) -> None:
+        """Put a box into the middle of the field."""
+        middle = ((FIELD_WIDTH_MM - _NEW_SIZE_MM) // 2, (FIELD_HEIGHT_MM - _NEW_SIZE_MM) // 2)
+        # One on top of another would not be seen.
+        shift = 20.0 * len(self._boxes)
+        self.edit((*self._boxes, Obstacle(middle[0] + shift, middle[1], _NEW_SIZE_MM, _NEW_SIZE_MM)))
+
+    def action_remove(self) -> None:
+        """Take the box at hand away."""
+        if self.at is None:
+            self._say("There is none to remove")
+            return
+        self.edit((*self._boxes[: self.at], *self._boxes[self.at + 1 :]))
+
+    def edit(self, boxes: Sequence[Obstacle]) -> None:
+        """Ask for other obstacles."""
+        self.post_message(self.Edited(tuple(boxes)))
+
+    def _say(self, wrong: str) -> None:
+        self.query_one("#message", Static).update(wrong or _USE)
+        self.set_class(bool(wrong), "-wrong")

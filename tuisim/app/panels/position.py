@@ -1,0 +1,105 @@
+"""Positioning: type in where the robot is to stand."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+from textual.widgets import Input, Label, Static
+
+from tuisim.app.snapshot import Snapshot
+from tuisim.app.widgets.number_input import NumberInput
+from tuisim.config.options import MAX_ANGLE_DEG, MAX_POSITION_MM
+from tuisim.core.geometry import Pose, shown_heading_deg
+
+_FIELDS = {"x": ("X", "mm", MAX_POSITION_MM), "y": ("Y", "mm", MAX_POSITION_MM), "angle": ("Angle", "°", MAX_ANGLE_DEG)}
+"""By id: name, unit, and the largest value either way."""
+_USE = "Enter places the robot"
+
+
+def parse_field(field: str, text: str) -> float:
+    """Return the number typed into a field.
+
+    Raises:
+        ValueError: it is none, or out of range; the text says what is allowed.
+    """
+    name, _, limit = _FIELDS[field]
+    try:
+        value = float(text.strip().replace(",", "."))
+    except ValueError:
+        value = math.nan
+    if not -limit <= value <= limit:
+        raise ValueError(f"{name}: a number from -{limit} to {limit}, not {text.strip()[:12] or 'nothing'!r}")
+    return value
+
+
+class Positioning(Vertical):
+    """X, Y and angle of the robot."""
+
+    TITLE: ClassVar[str] = "Positioning"
+
+    class Applied(Message):
+        """The user wants the robot at a pose."""
+
+        def __init__(self, pose: Pose) -> None:
+            super().__init__()
+            self.pose = pose
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._shown = {"x": "", "y": "", "angle": ""}
+
+    def compose(self) -> ComposeResult:
+        """Three fields, two buttons, and a line that says what is wrong."""
+        for field, (name, unit, _) in _FIELDS.items():
+            with Horizontal(classes="field"):
+                yield Label(f"{name}, {unit}", markup=False)
+                yield NumberInput(id=field, compact=True, select_on_focus=True)
+        with Horizontal(classes="links"):
+            yield Static("[@click=app.act('home')]m Start[/]")
+            yield Static("[@click=app.act('random')]j Random[/]")
+        yield Static("[@click=app.act('poses')]P Saved poses[/]", classes="link")
+        yield Static(_USE, id="message", markup=False)
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show the pose in the fields that are not being typed into."""
+        pose = snapshot.instant.pose
+        values = {"x": pose.x_mm, "y": pose.y_mm, "angle": shown_heading_deg(pose.heading_deg)}
+        for field, value in values.items():
+            text = f"{value:.1f}".removesuffix(".0")
+            text = "0" if text == "-0" else text
+            for entry in self.query(f"#{field}").results(Input):
+                if self._shown[field] != text and not self._typing(entry):
+                    self._shown[field] = entry.value = text
+                    entry.remove_class("wrong")
+
+    def _typing(self, entry: Input) -> bool:
+        # A field with a word in it that was not put there by `show` is left alone until it is applied.
+        return entry.has_focus and entry.value != self._shown[entry.id or ""]
+
+    @on(Input.Submitted)
+    def _apply(self, event: Input.Submitted) -> None:
+        event.stop()
+        message = self.query_one("#message", Static)
+        values = {}
+        for field in _FIELDS:
+            entry = self.query_one(f"#{field}", Input)
+            entry.remove_class("wrong")
+            try:
+                values[field] = parse_field(field, entry.value)
+            except ValueError as error:
+                entry.add_class("wrong")
+                entry.focus()
+                message.update(str(error))
+                self.set_class(True, "-wrong")
+                return
+        for field in _FIELDS:
+            self._shown[field] = self.query_one(f"#{field}", Input).value
+        message.update(_USE)
+        self.set_class(False, "-wrong")
+        self.post_message(self.Applied(Pose(values["x"], values["y"], values["angle"])))

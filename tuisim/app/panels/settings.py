@@ -1,0 +1,104 @@
+"""Settings: every field of robot, pen and world, each with what is wrong with it below."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, VerticalScroll
+from textual.message import Message
+from textual.widgets import Static
+
+from tuisim.app.setup.fields import Field, FieldGroup, find, sections, step
+from tuisim.app.setup.next_run import NextRun
+from tuisim.app.snapshot import Snapshot
+from tuisim.app.widgets.form import Choice, Row
+
+_LINKS = (
+    (("robot", "r Robots"), ("save-robot", "ctrl+r Save")),
+    (("profile", "F Profiles"), ("reset-robot", "ctrl+n Undo")),
+)
+
+
+class Settings(VerticalScroll, can_focus=False):
+    """A form as long as it takes, scrolled."""
+
+    TITLE: ClassVar[str] = "Settings"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("down", "app.focus_next", "Next field", show=False),
+        Binding("up", "app.focus_previous", "Field before", show=False),
+    ]
+
+    @dataclass
+    class Edited(Message):
+        """The user has entered a value."""
+
+        row: Row
+        edit: Field
+        text: str
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = self.TITLE
+        self._plan: NextRun | None = None
+        self._fields: list[str] = []
+        self._begins = False
+        """Whether it is to take the focus as soon as it has fields."""
+
+    def compose(self) -> ComposeResult:
+        """What can be done besides; the form follows with the plan."""
+        for pair in _LINKS:
+            with Horizontal(classes="links"):
+                for action, words in pair:
+                    yield Static(f"[@click=app.act('{action}')]{words}[/]")
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Nothing: it shows plans, not moments."""
+
+    def show_plan(self, plan: NextRun) -> None:
+        """Show the plan of the next run."""
+        self._plan = plan
+        parts = sections(plan)
+        edits = {edit.id: edit for part in parts for edit in part.edits}
+        if list(edits) != self._fields:
+            self._fields = list(edits)
+            self.call_later(self._rebuild, parts)
+            return
+        for row in self.query(Row):
+            if edit := edits.get(row.field):
+                row.show(edit.read(plan))
+
+    async def _rebuild(self, parts: list[FieldGroup]) -> None:
+        """Another robot may have other sensors, so other fields."""
+        focused = next((row.field for row in self.query(Row) if row.entry.has_focus), None)
+        await self.query(".form").remove()
+        for part in parts:
+            rows = [Row(edit.id, edit.label, bool(edit.choices)) for edit in part.edits]
+            for row in rows:
+                row.add_class("form")
+            await self.mount(Static(part.title, classes="form heading", markup=False), *rows)
+        if self._plan:
+            self.show_plan(self._plan)
+        for row in self.query(Row):
+            if row.field == focused:
+                row.entry.focus()
+        if self._begins:
+            self.begin()
+
+    def begin(self) -> None:
+        """Take the focus: it goes to a field in which letters are still keys of the app."""
+        choice = next(iter(self.query(Choice)), None)
+        self._begins = choice is None
+        if choice:
+            choice.focus()
+
+    @on(Row.Entered)
+    def _entered(self, event: Row.Entered) -> None:
+        event.stop()
+        edit = find(self._plan, event.row.field) if self._plan else None
+        if edit is not None and self._plan is not None:
+            text = step(edit, self._plan, event.by) if event.by else event.text
+            self.post_message(self.Edited(event.row, edit, text))

@@ -1,0 +1,1 @@
+"""Pure drawing of the world, the brick and the debugger, without Textual."""

@@ -1,0 +1,241 @@
+"""The brick: its display, text screen, lights and buttons, as lines of text."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.color import Color
+from rich.style import Style
+
+from tuisim.charts.text_runs import Rgb, Run
+from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
+
+_PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)
+_PAPER = Style(color=Color.from_rgb(*_INK_RGB), bgcolor=Color.from_rgb(*_PAPER_RGB))
+_INVERSE = Style(color=Color.from_rgb(*_PAPER_RGB), bgcolor=Color.from_rgb(*_INK_RGB))
+_PLAIN = Style()
+_CAPTION = Style(color="#a8a8a8")
+_BUTTON = Style(color="#e8e8e8", bgcolor="#4a4f57", bold=True)
+_PRESSED = Style(color="#101010", bgcolor="#ffd866", bold=True)
+_DARK_LED_RGB = (48, 48, 48)
+
+HALF_BLOCK_SCALE = 0.7
+"""From this scale on the display is drawn in half blocks; smaller it is drawn in dots, which keep twice the detail."""
+
+_SHADES = 5
+"""Shades between paper and ink that half blocks have: more would only cost bytes."""
+
+_DOT_SHARE = 0.25
+"""A dot is dark if so much of what it stands for is: thin lines are not lost."""
+
+_SYMBOLS = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "right": "▶", "down": "▼"}
+"""In the order in which they stand in one row."""
+
+_PAD_ROWS, _PAD_COLUMNS = 3, 23
+_PLACES = {"backspace": (0, 0), "up": (0, 10), "left": (1, 5), "enter": (1, 10), "right": (1, 15), "down": (2, 10)}
+"""Row and column of each button on the pad."""
+_BUTTON_COLUMNS = 3
+_LED_COLUMNS = 8
+
+_DOT_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)
+
+
+@dataclass(frozen=True, slots=True)
+class ButtonBox:
+    """Where a button is: row, first column, first column after it."""
+
+    row: int
+    first: int
+    end: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class BrickPicture:
+    """The drawn brick."""
+
+    lines: list[list[Run]]
+    buttons: tuple[ButtonBox, ...]
+
+
+def draw_brick(face: BrickState, pressed: Collection[str], width: int, height: int) -> BrickPicture:
+    """Return the brick in a panel of that inner size.
+
+    Args:
+        face: What it shows.
+        pressed: Buttons that are held down.
+        width: Columns, at least 1.
+        height: Rows, at least 1; the buttons come first, then the display, then the sound.
+    """
+    pad_rows = _PAD_ROWS if height >= 9 and width >= _PAD_COLUMNS + 2 * _LED_COLUMNS else 1
+    sound_rows = 1 if height >= pad_rows + 3 else 0
+    rows = max(0, height - pad_rows - sound_rows)
+    screen = _screen(face, width, rows) if rows else []
+    pad, buttons = _pad(face, pressed, width, pad_rows, len(screen))
+    sound = face.sound.removeprefix("[").removeprefix("♪ ").removesuffix("]") if face.sound[:1] == "[" else face.sound
+    heard: list[Run] = [(f"♪ {sound}"[:width] if sound else "", _CAPTION)]
+    return BrickPicture([*screen, *pad, *([heard] if sound_rows else [])], buttons)
+
+
+# The display
+
+
+def _screen(face: BrickState, width: int, rows: int) -> list[list[Run]]:
+    if face.shows_text and face.text is not None:
+        return _text_screen(face.text, width, rows)
+    return _display(face.picture, width, rows)
+
+
+def _text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
+    """The text in the terminal's own letters; what does not fit is cut."""
+    columns = min(width, screen.columns)
+    left, top = (width - columns) // 2, max(0, (rows - screen.rows) // 2)
+    lines: list[list[Run]] = [[] for _ in range(top)]
+    for row, text in enumerate(screen.lines[: rows - top]):
+        spans = [(start, end) for line, start, end in screen.inverse if line == row]
+        cells = text.ljust(screen.columns)[:columns]
+        line: list[Run] = [(" " * left, _PLAIN)]
+        for at, char in enumerate(cells):
+            style = _INVERSE if any(start <= at < end for start, end in spans) else _PAPER
+            if line[-1][1] is style:
+                line[-1] = (line[-1][0] + char, style)
+            else:
+                line.append((char, style))
+        lines.append(line)
+    return (lines + [[] for _ in range(rows)])[:rows]
+
+
+@lru_cache(maxsize=8)
+def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
+    scale = min(width / DISPLAY_WIDTH, 2 * rows / DISPLAY_HEIGHT, 1.0)
+    ink = np.unpackbits(np.frombuffer(picture, np.uint8)).reshape(DISPLAY_HEIGHT, ROW_BYTES * 8)[:, :DISPLAY_WIDTH]
+    dots = scale < HALF_BLOCK_SCALE
+    # A dot is half as wide and half as high as a half block.
+    fine = min(2 * scale, 1.0) if dots else scale
+    per_row = 4 if dots else 2
+    high = max(per_row, round(fine * DISPLAY_HEIGHT) // per_row * per_row)
+    across = max(2, round(fine * DISPLAY_WIDTH) // 2 * 2)
+    shares = shrunk(ink, min(high, DISPLAY_HEIGHT), min(across, DISPLAY_WIDTH))
+    drawn = _in_dots(shares) if dots else _in_half_blocks(shares)
+    left = (width - sum(len(text) for text, _ in drawn[0])) // 2
+    lines: list[list[Run]] = [[(" " * left, _PLAIN), *line] for line in drawn]
+    top = max(0, (rows - len(lines)) // 2)
+    return ([[] for _ in range(top)] + lines + [[] for _ in range(rows)])[:rows]
+
+
+def shrunk(ink: NDArray[np.uint8], rows: int, columns: int) -> NDArray[np.float64]:
+    """Return the share of dark pixels in each field of a coarser grid.
+
+    Args:
+        ink: 1 where a pixel is dark, shape (h, w).
+        rows, columns: The coarser grid, at most h and w.
+
+    Returns:
+        0 to 1, shape (rows, columns).
+    """
+    down = np.arange(rows + 1) * ink.shape[0] // rows
+    across = np.arange(columns + 1) * ink.shape[1] // columns
+    sums = np.add.reduceat(np.add.reduceat(ink, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1)
+    shares: NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
+    return shares
+
+
+def _in_dots(shares: NDArray[np.float64]) -> list[list[Run]]:
+    dark = shares >= _DOT_SHARE
+    rows, columns = dark.shape[0] // 4, dark.shape[1] // 2
+    fields = dark[: rows * 4, : columns * 2].reshape(rows, 4, columns, 2)
+    codes = (fields * _DOT_BITS[None, :, None, :]).sum(axis=(1, 3))
+    return [[("".join(chr(0x2800 + code) for code in row), _PAPER)] for row in codes.tolist()]
+
+
+def _in_half_blocks(shares: NDArray[np.float64]) -> list[list[Run]]:
+    shades = np.rint(shares * (_SHADES - 1)).astype(int)
+    lines = []
+    for upper, lower in zip(shades[::2].tolist(), shades[1::2].tolist(), strict=True):
+        line: list[Run] = []
+        for pair in zip(upper, lower, strict=True):
+            style = _pair_style(*pair)
+            char = " " if pair[0] == pair[1] else "▀"
+            if line and line[-1][1] is style and line[-1][0][-1] == char:
+                line[-1] = (line[-1][0] + char, style)
+            else:
+                line.append((char, style))
+        lines.append(line)
+    return lines
+
+
+@lru_cache(maxsize=_SHADES * _SHADES)
+def _pair_style(upper: int, lower: int) -> Style:
+    return Style(color=_shade(upper), bgcolor=_shade(lower))
+
+
+def _shade(step: int) -> Color:
+    part = step / (_SHADES - 1)
+    return Color.from_rgb(*(round(p + (i - p) * part) for p, i in zip(_PAPER_RGB, _INK_RGB, strict=True)))
+
+
+# Lights and buttons
+
+
+def led_rgb(red: int, green: int) -> Rgb:
+    """Return the colour of a pair of lights of brightness 0 to 255: together they are amber."""
+    if not red and not green:
+        return _DARK_LED_RGB
+    # A lamp that is on at all is seen to be on; the green ones are the brighter.
+    levels = [round(48 + 207 * level / 255) if level else 30 for level in (red, round(0.75 * green))]
+    return levels[0], levels[1], 20
+
+
+def led_name(red: int, green: int) -> str:
+    """Return the colour of a pair of lights in a word."""
+    if not red and not green:
+        return "off"
+    if not green:
+        return "red"
+    share = red / green
+    return "green" if not red else "yellow" if share < 0.5 else "amber" if share < 1.5 else "orange"
+
+
+def _lamps(face: BrickState) -> list[tuple[int, int]]:
+    """Red and green of the left and of the right pair."""
+    if not face.leds:
+        return [(0, 255), (0, 255)]
+    return [(face.leds.get(f"{side} red", 0), face.leds.get(f"{side} green", 0)) for side in ("left", "right")]
+
+
+def _lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
+    """One row of a pair of lights; the word is for terminals and eyes without colours."""
+    red, green, blue = led_rgb(*lamp)
+    ink = "#101010" if 3 * red + 6 * green > 1000 else "#d8d8d8"
+    style = Style(color=ink, bgcolor=Color.from_rgb(red, green, blue))
+    return (led_name(*lamp) if named else "").center(columns)[:columns], style
+
+
+def _pad(
+    face: BrickState, pressed: Collection[str], width: int, rows: int, top: int
+) -> tuple[list[list[Run]], tuple[ButtonBox, ...]]:
+    places = _PLACES if rows > 1 else {name: (0, 4 * at) for at, name in enumerate(_SYMBOLS)}
+    columns = _PAD_COLUMNS if rows > 1 else 4 * len(_SYMBOLS) - 1
+    led_columns = max(0, min(_LED_COLUMNS, (width - columns) // 2 - 1))
+    left = max(0, (width - columns - 2 * led_columns - 2) // 2) + led_columns + 1
+    lamps = _lamps(face)
+    lines: list[list[Run]] = []
+    boxes = []
+    for row in range(rows):
+        named = row == rows // 2
+        indent = (" " * max(0, left - led_columns - 1), _PLAIN)
+        line: list[Run] = [indent, _lamp(lamps[0], named, led_columns), (" ", _PLAIN)]
+        at = 0
+        for name, (button_row, column) in sorted(places.items(), key=lambda place: place[1]):
+            if button_row == row:
+                style = _PRESSED if name in pressed else _BUTTON
+                line += [(" " * (column - at), _PLAIN), (f" {_SYMBOLS[name]} ", style)]
+                at = column + _BUTTON_COLUMNS
+                boxes.append(ButtonBox(top + row, left + column, left + at, name))
+        line += [(" " * (columns - at + 1), _PLAIN), _lamp(lamps[1], named, led_columns)]
+        lines.append(line)
+    return lines, tuple(boxes)

@@ -1,0 +1,184 @@
+"""What a program that stands still looks like, as lines of text."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.style import Style
+
+from tuisim.charts.text_runs import Line, cut
+from tuisim.protocol import FrameState, Inspected, Paused, Variable
+
+_PLAIN = Style(color="#d8dee6")
+_NAME = Style(color="#9fd3ff")
+_VALUE = Style(color="#ffffff")
+_CHANGED = Style(color="#ffd75f", bold=True)
+_HEAD = Style(color="#87d7af", bold=True)
+_PALE = Style(color="#8c99a6")
+_WAITS = Style(color="#101010", bgcolor="#d7af5f")
+_ERROR = Style(color="#ff6e6e")
+_CHOSEN = Style(color="#ffffff", bgcolor="#2f4a68")
+
+_NAME_COLUMN = 16
+
+REASONS = {
+    "asked": "paused", "ticks": "ticks done", "step": "step", "line": "line reached", "break": "break",
+    "instant": "recorded", "end": "end of the program",
+}  # fmt: skip
+"""Words for `protocol.PAUSES`."""
+
+DOES = {
+    "running": ("space  pauses    n  holds at the next line",),
+    "waiting": ("The Output panel takes the answer.",),
+}
+"""By state of a program that stands nowhere: what can be done."""
+OVER = (
+    "The program is over.",
+    "",
+    "N  its last line    ,  a tick back",
+    "g  go to …          <  a second back",
+    "n  step through it anew",
+)
+EMPTY = (
+    "The program stands nowhere yet.",
+    "",
+    "n  next line      t  breakpoint",
+    "s  into a call    u  out of it",
+    "N  line back      w  watch",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class DebugView:
+    """What the panel shows."""
+
+    state: str = ""
+    """Word for the run when it stands nowhere."""
+    paused: Paused | None = None
+    looked: Inspected | None = None
+    past: bool = False
+    busy: bool = False
+    """Whether a former instant is still being worked out."""
+    source: str = ""
+    """The line itself, of a module beside the program: the code panel does not show that."""
+    now: tuple[int, float] | None = None
+    """Tick and simulated time of the instant that the other panels show."""
+
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether another instant than the one that is known here is looked at."""
+        return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
+
+
+def debug_lines(view: DebugView, width: int) -> list[Line]:
+    """Return the text for a panel of that inner width."""
+    if view.paused is None or view.looked is None:
+        if view.busy:
+            return _told("", ("working out that instant …",), width)
+        if view.state in DOES:
+            return _told(view.state, DOES[view.state], width)
+        return _told("", OVER if view.state == "ended" else EMPTY, width)
+    lines = _known(view, view.paused, view.looked, width)
+    if view.is_elsewhere and view.now:
+        # What is known belongs to another instant: it is pale until that of this one is there.
+        tick, time_s = view.now
+        head: Line = [(cut(f"{time_s:.2f} s · tick {tick} …", width), _HEAD)]
+        return [head, *([(text, _PALE) for text, _ in line] for line in lines[1:])]
+    return lines
+
+
+def _known(view: DebugView, paused: Paused, looked: Inspected, width: int) -> list[Line]:
+    """What is known of the instant at which the program stands."""
+    lines = [_where(view, paused, width)]
+    if view.source:
+        lines.append([(cut(f"  {view.source.strip()}", width), _VALUE)])
+    why = REASONS.get(paused.reason, paused.reason) + (f" {paused.detail}" if paused.detail else "")
+    if paused.value:
+        why += f": {paused.value}"
+    if not view.past and paused.reason not in ("asked", "instant"):
+        lines += [[(text, _CHANGED)] for text in textwrap.wrap(why, width)]
+    if looked.waiting:
+        lines += [[(f" {text} ", _WAITS)] for text in textwrap.wrap(looked.waiting, max(width - 2, 1))]
+    if looked.watches:
+        lines.append([("Watches", _HEAD)])
+        for watch in looked.watches:
+            if watch.error:
+                lines += [[(f"  {text}", _ERROR)] for text in textwrap.wrap(f"{watch.text}: {watch.error}", width - 2)]
+            else:
+                lines.append(_pair(watch.text, watch.value, _NAME, _VALUE, width))
+    frame = looked.stack[looked.frame] if looked.frame < len(looked.stack) else None
+    lines += _variables(_title(frame), looked.variables, width)
+    if looked.globals:
+        lines += _variables("Globals", looked.globals, width)
+    lines += _stack(looked, width)
+    if len(looked.threads) > 1:
+        lines.append([("Threads", _HEAD)])
+        for thread in looked.threads:
+            chosen = thread.name == looked.thread
+            text = f"{'▸' if chosen else ' '} {thread.name} line {thread.line}" if thread.line else f"  {thread.name}"
+            lines.append([(cut(f"{text} {thread.waiting}", width), _CHOSEN if chosen else _PLAIN)])
+    if looked.note:
+        lines += [[(text, _PALE)] for text in textwrap.wrap(looked.note, width)]
+    return lines
+
+
+def _told(head: str, texts: Sequence[str], width: int) -> list[Line]:
+    """Words where there is nothing else to show; in a narrow panel each key has a line of its own."""
+    if max(map(len, texts)) > width:
+        parts = [part for text in texts for part in re.split(" {3,}", text)]
+        texts = [row for part in parts for row in textwrap.wrap(part, width) or [""]]
+    return [*([[(head, _HEAD)]] if head else []), *([(text, _PALE)] for text in texts)]
+
+
+def _where(view: DebugView, paused: Paused, width: int) -> Line:
+    at = f"line {paused.line}" if paused.line else "no line"
+    if paused.file:
+        at += f" of {Path(paused.file).name}"
+    text = f"{at} · {paused.time_ns / 1e9:.2f} s"
+    tail = " …" if view.busy else " past" if view.past else ""
+    # The time says as much as the tick, which is left out rather than cut in two.
+    if len(whole := f"{text} · tick {paused.tick}") <= width - len(tail):
+        text = whole
+    return [(cut(text, width - len(tail)), _HEAD), (tail, _CHANGED)]
+
+
+def _title(frame: FrameState | None) -> str:
+    if frame is None:
+        return "Variables"
+    return "Variables" if frame.function == "<module>" else f"Variables of {frame.function}"
+
+
+def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Line]:
+    lines: list[Line] = [[(cut(title, width), _HEAD)]]
+    if not variables:
+        lines.append([("  none", _PALE)])
+    # What has changed is what one looks for.
+    for variable in sorted(variables, key=lambda one: not one.changed):
+        style = _CHANGED if variable.changed else _VALUE
+        lines.append(_pair(variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "))
+    return lines
+
+
+def _stack(looked: Inspected, width: int) -> list[Line]:
+    if len(looked.stack) < 2:
+        return []
+    lines: list[Line] = [[("Calls", _HEAD)]]
+    for at, frame in enumerate(looked.stack):
+        where = f"{frame.line} of {Path(frame.file).name}" if frame.file else f"{frame.line}"
+        module = "module" if frame.file else "program"
+        name = module if frame.function == "<module>" else f"{frame.function}()"
+        style = _CHOSEN if at == looked.frame else _PLAIN
+        lines.append([(cut(f"{'▸' if at == looked.frame else ' '} {name} line {where}", width), style)])
+    return lines
+
+
+def _pair(name: str, value: str, name_style: Style, style: Style, width: int, mark: str = " ") -> Line:
+    column = min(_NAME_COLUMN, max(6, width // 2 - 2), max(6, len(name)))
+    shown = cut(name, column).ljust(column)
+    room = width - column - 3
+    text = " ".join(value.split("\n"))
+    return [(f"{mark} ", _CHANGED), (shown, name_style), (" ", _PLAIN), (cut(text, room), style)]

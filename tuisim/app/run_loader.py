@@ -1,0 +1,85 @@
+"""Stored runs on their way into the app, where they are shown as runs that are over."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.app.labels import end_label
+from tuisim.app.loader import NOT_NOW
+from tuisim.app.setup.next_run import plan_of_run, with_arguments
+from tuisim.errors import LogError, TuisimError
+from tuisim.runs.handle import Program, program_again
+
+if TYPE_CHECKING:
+    from tuisim.app.app import LabApp
+    from tuisim.app.setup.mat import Mat
+    from tuisim.runs.run_folder import StoredRun
+
+
+def program_of(run: StoredRun) -> Program:
+    """Return the program of a run as it was then; it stands for its file only if that still says the same."""
+    from tuisim.config.program_file import read_program
+
+    stored = run.program
+    try:
+        same = bool(stored.path) and read_program(Path(stored.path)).text == stored.text
+    except TuisimError:
+        same = False
+    if same:
+        return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path)
+    return replace(program_again(run), path="")
+
+
+def open_run(lab: LabApp, run: str | StoredRun) -> None:
+    """Show a stored run, given by itself or by its number or id; what is wrong with it is said."""
+    if lab.bridge.in_run:
+        lab.say(NOT_NOW)
+        return
+    lab.run_worker(partial(_prepare_in_thread, lab, run), thread=True, group="mat", exclusive=True)
+
+
+def _prepare_in_thread(lab: LabApp, word: str | StoredRun) -> None:
+    from tuisim.app.setup.mat import blank_mat, prepare_mat_of
+    from tuisim.runs.store import RunStore
+
+    try:
+        run = RunStore().load_run(word) if isinstance(word, str) else word
+        if not run.telemetry.count:
+            raise LogError(
+                run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder)
+            )
+        # What is packed is unpacked here, where that may take its time, and may fail.
+        run.telemetry.record(0)
+        next(run.output.rows(), None)
+    except TuisimError as error:
+        lab.call_from_thread(lab.complain, error)
+        return
+    try:
+        mat = prepare_mat_of(run)
+    except TuisimError as error:
+        lab.call_from_thread(lab.complain, error)
+        mat = blank_mat(run.spec)
+    lab.call_from_thread(_show, lab, run, mat)
+
+
+def _show(lab: LabApp, run: StoredRun, mat: Mat) -> None:
+    if lab.bridge.in_run:
+        lab.say(NOT_NOW)
+        return
+    plan = with_arguments(plan_of_run(run.spec), run.program.arguments)
+    lab.loading.lay_out(plan, program_of(run), mat)
+    lab.bridge.replay(run)
+    end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
+    words = f"— {end_label(run.state)} at {end_s:.2f} s · {_title(run)}"
+    lab.run_changed(words, run.end.error_line if run.end else 0)
+    for note in run.notes:
+        lab.say(note)
+    lab.say(f"{_title(run)} is open: , < and g go back in it, R runs it anew")
+    lab.draw(force=True)
+
+
+def _title(run: StoredRun) -> str:
+    return f"Run {run.number}" if run.number else f"Run {run.id}"

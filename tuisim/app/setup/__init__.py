@@ -1,0 +1,1 @@
+"""The next run: what the user has chosen for it."""

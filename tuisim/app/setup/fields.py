@@ -1,0 +1,406 @@
+"""What can be edited of the plan of the next run: one line a field.
+
+To add a field: add a line in the function of its section.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tuisim.app.setup.next_run import NextRun, with_arguments, with_profile, with_robot, with_robot_edited, with_values
+from tuisim.app.widgets.form import reason, typed_number
+from tuisim.config.options import MAX_PEN_MM, MIN_PEN_MM, number, pen_color
+from tuisim.config.presets import ROBOTS
+from tuisim.core.parts import MOTOR_KINDS
+from tuisim.core.profile import PROFILES
+from tuisim.core.spec import (
+    BACKGROUND_FITS,
+    INPUT_PORTS,
+    MAX_RAYS,
+    MOUNTS,
+    OUTPUT_PORTS,
+    ROBOT_WEIGHTS,
+    STRATEGIES,
+    ColorSensorSpec,
+    GyroSpec,
+    RobotSpec,
+    SensorSpec,
+    UltrasonicSpec,
+)
+from tuisim.errors import ConfigError, RobotError
+
+ON, OFF = "on", "off"
+SWITCHED = (OFF, ON)
+MAX_NAME = 100
+MAX_LABEL = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One field."""
+
+    id: str
+    label: str
+    """With its unit, at most `MAX_LABEL` characters."""
+    read: Callable[[NextRun], str]
+    """What it shows."""
+    write: Callable[[NextRun, str], NextRun]
+    """Takes what was typed or chosen; raises ConfigError."""
+    choices: tuple[str, ...] = ()
+    """What there is to choose from; empty for a field that is typed into."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldGroup:
+    """Fields under one heading."""
+
+    title: str
+    edits: tuple[Field, ...]
+
+
+def sections(plan: NextRun) -> list[FieldGroup]:
+    """Return every field for a plan: which there are depends on the sensors of its robot."""
+    eyes = {eye.name: eye for eye in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)}
+    return [
+        FieldGroup("Program", (Field("arguments", "Arguments", _arguments, _with_arguments),)),
+        FieldGroup("Robot", _robot_edits()),
+        *(FieldGroup(f"Sensor {name}", _eye_edits(name, eye, plan)) for name, eye in eyes.items()),
+        FieldGroup("Ultrasonic", _sonar_edits(plan)),
+        FieldGroup("Gyro", _gyro_edits(plan)),
+        *(FieldGroup(part.name.capitalize(), _further_edits(part)) for part in plan.robot_choice.spec.further_sensors),
+        FieldGroup("Pen", _pen_edits()),
+        FieldGroup("World", _world_edits()),
+    ]
+
+
+def _shown(value: float) -> str:
+    text = f"{value:.6g}"
+    return "0" if text == "-0" else text
+
+
+def _number(text: str) -> float:
+    return typed_number(text, RobotError)
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise RobotError(f"must be a whole number, got {text.strip()[:20]!r}") from None
+
+
+# The robot. What is shown is the robot on its mat, what is changed is the robot as it was chosen.
+
+
+def _robot_edit(
+    edit_id: str,
+    label: str,
+    read: Callable[[RobotSpec], str],
+    change: Callable[[RobotSpec, str], RobotSpec],
+    choices: tuple[str, ...] = (),
+) -> Field:
+    """A field of the robot."""
+
+    def write(plan: NextRun, text: str) -> NextRun:
+        return with_robot_edited(plan, change(plan.robot_choice.spec, text))
+
+    return Field(edit_id, label, lambda plan: read(plan.spec.robot), write, choices)
+
+
+def _length(key: str, label: str) -> Field:
+    def change(robot: RobotSpec, text: str) -> RobotSpec:
+        changed: dict[str, Any] = {key: _number(text)}
+        return replace(robot, **changed)
+
+    return _robot_edit(key, label, lambda robot: _shown(getattr(robot, key)), change)
+
+
+def _named(robot: RobotSpec, text: str) -> RobotSpec:
+    name = text.strip()
+    if not name or len(name) > MAX_NAME or not name.isprintable():
+        raise RobotError(f"must be one line of 1 to {MAX_NAME} characters")
+    return replace(robot, name=name)
+
+
+def _weight_name(robot: RobotSpec) -> str:
+    return next((name for name, weight in ROBOT_WEIGHTS.items() if weight == robot.weight), _shown(robot.weight))
+
+
+def _weighed(robot: RobotSpec, text: str) -> RobotSpec:
+    word = text.strip().lower()
+    if word in ROBOT_WEIGHTS:
+        return replace(robot, weight=ROBOT_WEIGHTS[word])
+    try:
+        return replace(robot, weight=_number(word))
+    except RobotError as error:
+        raise RobotError(reason(error), f"or {', '.join(ROBOT_WEIGHTS)}") from None
+
+
+def _motor_edit(key: str, label: str) -> Field:
+    """The port of a wheel's motor; a motor that was there takes the port that became free."""
+    other = "right_port" if key == "left_port" else "left_port"
+
+    def change(robot: RobotSpec, port: str) -> RobotSpec:
+        ports: dict[str, Any] = {key: port}
+        if getattr(robot, other) == port:
+            ports[other] = getattr(robot, key)
+        return replace(robot, **ports)
+
+    return _robot_edit(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
+
+
+def _kind_edit(key: str, label: str) -> Field:
+    """The kind of a wheel's motor."""
+
+    def change(robot: RobotSpec, kind: str) -> RobotSpec:
+        kinds: dict[str, Any] = {key: kind}
+        return replace(robot, **kinds)
+
+    return _robot_edit(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
+
+
+def _robot_word(plan: NextRun) -> str:
+    word = Path(plan.words.get("robot", plan.robot.spec.name)).name
+    return f"{word}, edited" if plan.robot_is_edited else word
+
+
+def _robot_edits() -> tuple[Field, ...]:
+    return (
+        Field("preset", "", _robot_word, with_robot, tuple(ROBOTS)),
+        _robot_edit("name", "Name", lambda robot: robot.name, _named),
+        _length("wheel_diameter_mm", "Wheel ⌀ mm"),
+        _length("wheel_spacing_mm", "Spacing mm"),
+        _length("wheel_width_mm", "Width mm"),
+        _length("back_mm", "Back mm"),
+        _robot_edit("weight", "Weight", _weight_name, _weighed),
+        _motor_edit("left_port", "Left motor"),
+        _motor_edit("right_port", "Right motor"),
+        _kind_edit("left_motor", "Left kind"),
+        _kind_edit("right_motor", "Right kind"),
+    )
+
+
+# Sensors
+
+
+def _parts(robot: RobotSpec) -> dict[str, SensorSpec]:
+    """Every sensor by its name."""
+    return {sensor.name: sensor for sensor in robot.sensors}
+
+
+def _with_parts(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
+    """The robot with some of its sensors changed, at once: two may have swapped their ports."""
+    changed = {part.name: part for part in parts}
+    found: dict[str, Any] = {}
+    for mount in MOUNTS:
+        sensors = tuple(changed.get(part.name, part) for part in robot.sensors_in(mount))
+        found[mount.field] = sensors if mount.many else next(iter(sensors), None)
+    return replace(robot, **found)
+
+
+def _part_edit(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> Field:
+    """A field of a sensor."""
+
+    def change(robot: RobotSpec, text: str) -> RobotSpec:
+        changed: dict[str, Any] = {key: parse(text)}
+        return _with_parts(robot, replace(_parts(robot)[name], **changed))
+
+    def read(robot: RobotSpec) -> str:
+        value = getattr(_parts(robot)[name], key)
+        return value if isinstance(value, str) else _shown(value)
+
+    return _robot_edit(f"{name}.{key}", label, read, change, {"strategy": STRATEGIES}.get(key, ()))
+
+
+def _port_edit(name: str) -> Field:
+    """A sensor's port; a sensor that was there takes the port that became free."""
+
+    def change(robot: RobotSpec, port: str) -> RobotSpec:
+        parts = _parts(robot)
+        swapped = [replace(part, port=parts[name].port) for part in parts.values() if part.port == port]
+        return _with_parts(robot, *swapped, replace(parts[name], port=port))
+
+    return _robot_edit(f"{name}.port", "Port", lambda robot: _parts(robot)[name].port, change, INPUT_PORTS)
+
+
+def _used_edit(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> Field:
+    """Whether a sensor is there."""
+    return _robot_edit(f"{name}.used", "Used", lambda robot: ON if name in _parts(robot) else OFF, change, SWITCHED)
+
+
+def _free_port(robot: RobotSpec, wanted: str) -> str:
+    used = {part.port for part in _parts(robot).values()}
+    free = [port for port in (wanted, *INPUT_PORTS) if port not in used]
+    if not free:
+        raise RobotError("every port is in use", "switch another sensor off first")
+    return free[0]
+
+
+def _placed(plan: NextRun, text: str, name: str) -> NextRun:
+    """A colour sensor's x: where the mat has put the others, they stay."""
+    on_mat = {eye.name: eye for eye in plan.spec.robot.color_sensors}
+    robot = plan.robot_choice.spec
+    eyes = [replace(eye, x_mm=on_mat[eye.name].x_mm) for eye in robot.color_sensors]
+    eyes = [replace(eye, x_mm=_number(text)) if eye.name == name else eye for eye in eyes]
+    return with_robot_edited(plan, replace(robot, color_sensors=tuple(eyes)), moved=True)
+
+
+def _eye_edits(name: str, eye: ColorSensorSpec, plan: NextRun) -> tuple[Field, ...]:
+    def switched(robot: RobotSpec, word: str) -> RobotSpec:
+        others = tuple(other for other in robot.color_sensors if other.name != name)
+        if word == OFF:
+            return replace(robot, color_sensors=others)
+        if len(others) < len(robot.color_sensors):
+            return robot
+        again = replace(eye, port=_free_port(robot, eye.port))
+        order = [other.name for other in plan.robot.spec.color_sensors]
+        eyes = sorted((*others, again), key=lambda one: order.index(one.name) if one.name in order else len(order))
+        return replace(robot, color_sensors=tuple(eyes))
+
+    used = _used_edit(name, switched)
+    if name not in _parts(plan.robot_choice.spec):
+        return (used,)
+    x = Field(f"{name}.x_mm", "x mm", lambda now: _part_edit(name, "x_mm", "").read(now), partial(_placed, name=name))
+    return (
+        used,
+        _port_edit(name),
+        x,
+        _part_edit(name, "y_mm", "y mm"),
+        _part_edit(name, "diameter_mm", "⌀ mm", _whole),
+        _part_edit(name, "strategy", "Weighing", str),
+    )
+
+
+def _single_used(name: str, field: str, fresh: SensorSpec) -> Field:
+    """Whether the ultrasonic sensor or the gyro is there."""
+
+    def switched(robot: RobotSpec, word: str) -> RobotSpec:
+        changed: dict[str, Any] = {field: None}
+        if word == ON:
+            if getattr(robot, field) is not None:
+                return robot
+            changed[field] = replace(fresh, port=_free_port(robot, fresh.port))
+        return replace(robot, **changed)
+
+    return _used_edit(name, switched)
+
+
+def _angles(text: str) -> tuple[float, ...]:
+    angles = tuple(map(_number, text.replace(",", " ").split()))
+    if not 1 <= len(angles) <= MAX_RAYS or not all(-360 <= angle <= 360 for angle in angles):
+        raise RobotError(f"must be 1 to {MAX_RAYS} angles from -360 to 360, with blanks between them")
+    return angles
+
+
+def _sonar_edits(plan: NextRun) -> tuple[Field, ...]:
+    sonar = plan.robot_choice.spec.ultrasonic
+    fresh = sonar or plan.robot.spec.ultrasonic or UltrasonicSpec()
+    used = _single_used(fresh.name, "ultrasonic", fresh)
+    if sonar is None:
+        return (used,)
+    labels = (
+        ("x_mm", "x mm"), ("y_mm", "y mm"), ("angle_deg", "Angle °"), ("max_range_mm", "Range mm"),
+        ("noise_mm", "Noise ± mm"),
+    )  # fmt: skip
+
+    def fanned(robot: RobotSpec, text: str) -> RobotSpec:
+        assert robot.ultrasonic is not None
+        return replace(robot, ultrasonic=replace(robot.ultrasonic, ray_angles_deg=_angles(text)))
+
+    def fan(robot: RobotSpec) -> str:
+        return " ".join(map(_shown, robot.ultrasonic.ray_angles_deg)) if robot.ultrasonic else ""
+
+    rays = _robot_edit(f"{sonar.name}.ray_angles_deg", "Rays °", fan, fanned)
+    return (used, _port_edit(sonar.name), *(_part_edit(sonar.name, key, label) for key, label in labels), rays)
+
+
+def _gyro_edits(plan: NextRun) -> tuple[Field, ...]:
+    gyro = plan.robot_choice.spec.gyro
+    fresh = gyro or plan.robot.spec.gyro or GyroSpec()
+    used = _single_used(fresh.name, "gyro", fresh)
+    return (used,) if gyro is None else (used, _port_edit(gyro.name))
+
+
+def _further_edits(part: SensorSpec) -> tuple[Field, ...]:
+    keys = [field.name for field in fields(part) if type(getattr(part, field.name)) is float]
+    labels = [key.replace("_deg", " °").replace("_", " ")[:MAX_LABEL] for key in keys]
+    return (
+        _port_edit(part.name),
+        *(_part_edit(part.name, key, label) for key, label in zip(keys, labels, strict=True)),
+    )
+
+
+# Pen and world
+
+
+def _pen_edits() -> tuple[Field, ...]:
+    def place(key: str) -> Field:
+        def change(robot: RobotSpec, text: str) -> RobotSpec:
+            changed: dict[str, Any] = {key: _number(text)}
+            return replace(robot, pen=replace(robot.pen, **changed))
+
+        label = key.replace("_", " ")
+        return _robot_edit(f"pen.{key}", label, lambda robot: _shown(getattr(robot.pen, key)), change)
+
+    def width(plan: NextRun, text: str) -> NextRun:
+        return with_values(plan, pen_width_mm=number(MIN_PEN_MM, MAX_PEN_MM)(text.strip().replace(",", "."), ""))
+
+    return (
+        _switch("pen.down", "Down", lambda plan: plan.spec.robot.pen.down, "pen_down"),
+        Field("pen.color", "Colour", lambda plan: plan.spec.robot.pen.color,
+             lambda plan, text: with_values(plan, pen_color=pen_color(text.strip(), ""))),
+        Field("pen.width_mm", "Width mm", lambda plan: _shown(plan.spec.robot.pen.width_mm), width),
+        place("x_mm"),
+        place("y_mm"),
+        _switch("pen.marks", "Marks mat", lambda plan: plan.spec.world.pen_marks, "pen_marks"),
+    )  # fmt: skip
+
+
+def _switch(id_: str, label: str, read: Callable[[NextRun], bool], field: str) -> Field:
+    return Field(
+        id_,
+        label,
+        lambda plan: ON if read(plan) else OFF,
+        lambda plan, word: with_values(plan, **{field: word == ON}),
+        SWITCHED,
+    )
+
+
+def _world_edits() -> tuple[Field, ...]:
+    def profile(plan: NextRun) -> str:
+        return Path(plan.words.get("profile", plan.spec.profile.name)).name
+
+    return (
+        Field("profile", "Profile", profile, with_profile, tuple(PROFILES)),
+        _switch("solid", "Solid", lambda plan: plan.spec.world.solid, "solid"),
+        _switch("walls", "Walls", lambda plan: plan.spec.world.walls, "walls"),
+        Field("background_fit", "Image fit", lambda plan: plan.spec.world.background_fit,
+             lambda plan, word: with_values(plan, background_fit=word), BACKGROUND_FITS),
+    )  # fmt: skip
+
+
+def _arguments(plan: NextRun) -> str:
+    return shlex.join(plan.settings.arguments)
+
+
+def _with_arguments(plan: NextRun, text: str) -> NextRun:
+    try:
+        return with_arguments(plan, tuple(shlex.split(text)))
+    except ValueError:
+        raise ConfigError("a quote is not closed", "'…' and \"…\" keep blanks in one argument") from None
+
+
+def find(plan: NextRun, edit_id: str) -> Field | None:
+    """Return a field by its id, None if this robot has none such."""
+    return next((edit for section in sections(plan) for edit in section.edits if edit.id == edit_id), None)
+
+
+def step(edit: Field, plan: NextRun, by: int) -> str:
+    """Return the choice so many steps on from the present one."""
+    now, choices = edit.read(plan), edit.choices
+    return choices[(choices.index(now) + by) % len(choices)] if now in choices else choices[0]

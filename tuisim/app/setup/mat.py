@@ -1,0 +1,84 @@
+"""The mat of the world: prepared once, off the event loop, for sensors and for drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tuisim.core.field import Field
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from tuisim.config.mat_cache import FieldFiles
+    from tuisim.runs.run_folder import StoredRun
+
+
+MatKey = tuple[str, str, frozenset[int]]
+"""Name, how an own image fits, and the diameters of the discs that are prepared."""
+
+
+def mat_key(spec: RunSpec) -> MatKey:
+    """Return what has to be prepared for a run."""
+    diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
+    return spec.world.background, spec.world.background_fit, diameters
+
+
+@dataclass(frozen=True, slots=True)
+class Mat:
+    """A mat ready to be read and drawn."""
+
+    key: MatKey
+    field: Field | None
+    """None for one that is no longer to be had: then no sensor can be measured."""
+    pixels: NDArray[np.uint8]
+    """Shape (height, width, 3), rows from the top."""
+
+    def serves(self, spec: RunSpec) -> bool:
+        """Whether it is the mat of a run, prepared for its sensors."""
+        wanted = mat_key(spec)
+        return wanted[:2] == self.key[:2] and wanted[2] <= self.key[2]
+
+    @property
+    def name(self) -> str:
+        """As a specification calls it."""
+        return self.key[0]
+
+
+def prepare_mat(spec: RunSpec) -> Mat:
+    """Prepare the mat of a run. Slow the first time: call it in a thread.
+
+    Raises:
+        BackgroundError: there is no such mat, or its picture cannot be read.
+    """
+    from tuisim.config import assets, mat_cache
+
+    image = assets.background(spec.world.background).image
+    key = mat_key(spec)
+    return _opened(key, mat_cache.prepare(image, key[2], fit=key[1]))
+
+
+def prepare_mat_of(run: StoredRun) -> Mat:
+    """Return the very mat that a stored run was made on; it may be slow as `prepare_mat`.
+
+    Raises:
+        LogError: it is not to be had any more.
+    """
+    from tuisim.runs.mat import mat_files
+
+    return _opened(mat_key(run.spec), mat_files(run))
+
+
+def blank_mat(spec: RunSpec) -> Mat:
+    """Return a white sheet in the place of a mat that is gone; it has nothing for sensors to read."""
+    import numpy as np
+
+    return Mat(mat_key(spec), None, np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8))
+
+
+def _opened(key: MatKey, files: FieldFiles) -> Mat:
+    from tuisim.config import mat_cache
+
+    return Mat(key, mat_cache.open_field(files), mat_cache.mat_pixels(files))

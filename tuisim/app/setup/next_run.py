@@ -1,0 +1,235 @@
+"""The plan of the next run: choices, from which its specification is built anew after each change.
+
+Choices stay as they were made: a robot as it is listed or in its file, not as the mat of the moment has
+changed it. So what one mat or preset decides is gone with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tuisim.config.options import RobotChoice, Settings, settings_of
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
+from tuisim.errors import BackgroundError
+
+POSE_FIELDS = ("x_mm", "y_mm", "heading_deg")
+WORLD_FIELDS = (
+    "background", "mats", "background_fit", "robot", "obstacles", "walls", "solid", *POSE_FIELDS, "light_noise",
+    "motor_noise", "pen_down", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
+    "arguments",
+)  # fmt: skip
+"""Fields of `Settings` that a run is made of."""
+
+_ANY_MAT = "Empty_Map"
+
+_OF_THE_MAT: Mapping[str, Any] = dict.fromkeys(("obstacles", "background_fit", *POSE_FIELDS))
+"""What another mat brings with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class NextRun:
+    """What the next run is made of."""
+
+    settings: Settings
+    """The choices. Robot, obstacles and profile are themselves, so that no later change depends on a file."""
+    spec: RunSpec
+    words: Mapping[str, str]
+    """By field of `Settings`: the name or the file that robot, obstacles and profile came from, as far as known."""
+    robot: RobotChoice
+    """The robot as it was chosen, before anything was edited."""
+
+    @property
+    def robot_is_edited(self) -> bool:
+        """Whether the robot is another than the chosen one."""
+        return self.settings.robot != self.robot
+
+    @property
+    def robot_choice(self) -> RobotChoice:
+        """The robot with its edits, not as the mat changes it."""
+        assert isinstance(self.settings.robot, RobotChoice)
+        return self.settings.robot
+
+
+def plan_of(settings: Settings) -> NextRun:
+    """Return the plan that settings make.
+
+    Raises:
+        ConfigError: they name what is not there, or a file that is wrong.
+    """
+    from tuisim.config.build import build_run_spec
+
+    world, words = _resolved({field: getattr(settings, field) for field in WORLD_FIELDS})
+    settings = replace(settings, **world)
+    return NextRun(settings, build_run_spec(settings), words, world["robot"])
+
+
+def plan_of_spec(spec: RunSpec) -> NextRun:
+    """Return the plan of a run of which nothing else is known."""
+    from tuisim.config.world_writer import settings_from
+
+    return replace(plan_of(settings_of(settings_from(spec))), spec=spec)
+
+
+def plan_of_run(spec: RunSpec) -> NextRun:
+    """Return the plan of doing a run again, also when its mat is gone: then it has to be found before it can start."""
+    try:
+        return plan_of_spec(spec)
+    except BackgroundError:
+        elsewhere = replace(spec, world=replace(spec.world, background=_ANY_MAT))
+        return replace(plan_of_spec(elsewhere), spec=spec)
+
+
+def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
+    """Robot, obstacles and profile as themselves, and the words that stood for them."""
+    from tuisim.config.obstacles import load_obstacles
+    from tuisim.config.profiles import load_profile
+    from tuisim.config.robots import choose_robot
+
+    found, words = dict(choices), {}
+    for field, load in (("robot", choose_robot), ("obstacles", load_obstacles), ("profile", load_profile)):
+        if isinstance(word := found.get(field), str):
+            found[field], words[field] = load(word), word
+    return found, words
+
+
+def _built(plan: NextRun, **changes: Any) -> NextRun:
+    from tuisim.config.build import build_run_spec
+
+    settings = replace(plan.settings, **changes)
+    return replace(plan, settings=settings, spec=build_run_spec(settings))
+
+
+def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
+    """Return the plan with what a program's magic line or a world file says; the rest stays.
+
+    Args:
+        plan: The plan so far.
+        choices: By field of `Settings`; what has nothing to do with the world is left out.
+
+    Raises:
+        ConfigError: they name what is not there, or a file that is wrong.
+    """
+    said, words = _resolved({field: value for field, value in choices.items() if field in WORLD_FIELDS})
+    if "background" in said:
+        said = {**_OF_THE_MAT, **said}
+    elif said.keys() & set(POSE_FIELDS):
+        said = {**dict.fromkeys(POSE_FIELDS), **said}
+    kept = {field: word for field, word in plan.words.items() if field not in said}
+    return replace(_built(plan, **said), words=kept | words, robot=said.get("robot", plan.robot))
+
+
+def with_mat(plan: NextRun, name: str) -> NextRun:
+    """Return the plan on another mat, with its start pose, its obstacles and its sensor places.
+
+    Raises:
+        BackgroundError: there is no such mat.
+    """
+    return with_choices(plan, {"background": name})
+
+
+def with_robot(plan: NextRun, word: str) -> NextRun:
+    """Return the plan with another robot, by name or from a file.
+
+    Raises:
+        RobotError: there is none of that name, or the file is wrong.
+    """
+    return with_choices(plan, {"robot": word})
+
+
+def with_profile(plan: NextRun, word: str) -> NextRun:
+    """Return the plan with another profile, by name or from a file.
+
+    Raises:
+        ProfileError: there is none of that name, or the file is wrong.
+    """
+    # Whether things are solid is the profile's business until the user says it anew.
+    return with_choices(plan, {"profile": word, "solid": None})
+
+
+def with_robot_as_chosen(plan: NextRun) -> NextRun:
+    """Return the plan with every edit of the robot undone."""
+    return _built(plan, robot=plan.robot)
+
+
+def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> NextRun:
+    """Return the plan with an edited robot.
+
+    Args:
+        plan: The plan so far.
+        robot: What `plan.robot_choice.spec` has become.
+        moved: Whether a colour sensor was given a place: then the mat's places no longer apply to any.
+
+    Raises:
+        ConfigError: the mat is gone.
+    """
+    choice = plan.robot_choice
+    return _built(plan, robot=replace(choice, spec=robot, own_places=choice.own_places or moved))
+
+
+def robot_to_save(plan: NextRun) -> RobotSpec:
+    """Return the robot as it was chosen and edited, not as the mat has changed it, with the pen of the plan."""
+    return replace(plan.robot_choice.spec, pen=plan.spec.robot.pen)
+
+
+def with_obstacle_set(plan: NextRun, word: str) -> NextRun:
+    """Return the plan with a set of obstacles, by name or from a file.
+
+    Raises:
+        ObstacleError: there is none of that name, or the file is wrong.
+    """
+    return with_choices(plan, {"obstacles": word})
+
+
+def with_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
+    """Return the plan with these obstacles."""
+    settings = replace(plan.settings, obstacles=obstacles)
+    words = {field: word for field, word in plan.words.items() if field != "obstacles"}
+    spec = replace(plan.spec, world=replace(plan.spec.world, obstacles=obstacles))
+    return replace(plan, settings=settings, spec=spec, words=words)
+
+
+def with_values(plan: NextRun, **values: Any) -> NextRun:
+    """Return the plan with some fields of `Settings` changed that need no file.
+
+    Raises:
+        ConfigError: the mat is gone, or a value is impossible.
+    """
+    return _built(plan, **values)
+
+
+# These come many times a second while something is dragged: the specification is changed, not built anew.
+
+
+def at_pose(plan: NextRun, pose: Pose) -> NextRun:
+    """Return the plan with another start."""
+    settings = replace(plan.settings, x_mm=pose.x_mm, y_mm=pose.y_mm, heading_deg=pose.heading_deg)
+    return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, start=pose)))
+
+
+def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
+    """Return the plan with other noise."""
+    # A robot file may say how far its motors and sensors stray: that holds until the user says it.
+    before = plan.spec.world.noise
+    motor = plan.settings.motor_noise if noise.motor == before.motor else noise.motor
+    light = plan.settings.light_noise if noise.light == before.light else noise.light
+    settings = replace(plan.settings, light_noise=light, motor_noise=motor)
+    return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, noise=noise)))
+
+
+def with_arguments(plan: NextRun, arguments: tuple[str, ...]) -> NextRun:
+    """Return the plan with other arguments of the program."""
+    return replace(plan, settings=replace(plan.settings, arguments=arguments))
+
+
+def with_seed(plan: NextRun, seed: int) -> NextRun:
+    """Return the plan with another seed."""
+    return replace(plan, settings=replace(plan.settings, seed=seed), spec=replace(plan.spec, seed=seed))
+
+
+def with_pen(plan: NextRun, down: bool) -> NextRun:
+    """Return the plan with the pen down or up at the start."""
+    robot = replace(plan.spec.robot, pen=replace(plan.spec.robot.pen, down=down))
+    return replace(plan, settings=replace(plan.settings, pen_down=down), spec=replace(plan.spec, robot=robot))

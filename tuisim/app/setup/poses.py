@@ -1,0 +1,138 @@
+"""Poses of the robot: saved ones, kept in the user's data folder, and random ones clear of obstacles."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from tuisim.atomic import make_private_folder
+from tuisim.core.collision import outline
+from tuisim.core.geometry import Pose, world_point
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+from tuisim.errors import ConfigError
+
+MOST_TRIES = 2000
+
+Corners = Sequence[tuple[float, float]]
+
+
+def random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
+    """Return a pose at whole mm and degrees at which the robot's outline lies on the field.
+
+    Args:
+        spec: Robot and world; where things are solid, the outline is clear of every obstacle.
+        chance: Where the numbers come from.
+
+    Returns:
+        None if no free place was found.
+    """
+    for _ in range(MOST_TRIES):
+        x_mm, y_mm = chance.randint(0, FIELD_WIDTH_MM), chance.randint(0, FIELD_HEIGHT_MM)
+        pose = Pose(float(x_mm), float(y_mm), float(chance.randint(-179, 180)))
+        if fits(spec, pose):
+            return pose
+    return None
+
+
+def fits(spec: RunSpec, pose: Pose) -> bool:
+    """Return whether the outline of the robot lies on the field, and clear of obstacles where those are solid."""
+    corners = [world_point(pose, x, y) for x, y in outline(spec.robot)]
+    if not all(0 <= x <= FIELD_WIDTH_MM and 0 <= y <= FIELD_HEIGHT_MM for x, y in corners):
+        return False
+    if not spec.world.solid:
+        return True
+    boxes = (
+        ((o.x_mm, o.y_mm), (o.x_mm + o.width_mm, o.y_mm), (o.x_mm, o.y_mm + o.height_mm),
+         (o.x_mm + o.width_mm, o.y_mm + o.height_mm))
+        for o in spec.world.obstacles
+    )  # fmt: skip
+    return not any(_overlap(corners, box, pose.heading_deg) for box in boxes)
+
+
+def _overlap(one: Corners, other: Corners, heading_deg: float) -> bool:
+    """Whether two rectangles overlap: no side of either parts them."""
+    heading = math.radians(heading_deg)
+    axes = ((1.0, 0.0), (0.0, 1.0), (math.cos(heading), math.sin(heading)), (-math.sin(heading), math.cos(heading)))
+    for across, up in axes:
+        ours, theirs = ([x * across + y * up for x, y in corners] for corners in (one, other))
+        if max(ours) <= min(theirs) or max(theirs) <= min(ours):
+            return False
+    return True
+
+
+FILE = "poses.toml"
+MAX_POSES = 500
+MAX_NAME = 40
+
+_HEAD = "# Poses saved in tuisim: mm from the lower left corner, degrees counter-clockwise from +x."
+_LIMITS = {"x_mm": 10_000.0, "y_mm": 10_000.0, "heading_deg": 36_000.0}
+
+
+def poses_file() -> Path:
+    """Return where poses are kept."""
+    from tuisim.config.home import home_folder
+
+    return home_folder() / FILE
+
+
+def load_poses() -> dict[str, Pose]:
+    """Return the saved poses by name, in the order in which they were saved.
+
+    Raises:
+        ConfigError: their file cannot be read or is wrong.
+    """
+    from tuisim.config.reader import Section, read_file
+
+    path = poses_file()
+    if not path.exists():
+        return {}
+    table = Section(read_file(path, ConfigError), str(path), ConfigError)
+    table.allow(("poses",))
+    poses = table.section("poses")
+    found = {}
+    for name in poses:
+        place = poses.section(name)
+        place.allow(_LIMITS)
+        found[name] = Pose(*(place.number(key, -limit, limit) for key, limit in _LIMITS.items()))
+    return found
+
+
+def save_pose(name: str, pose: Pose) -> None:
+    """Save a pose; one of that name is replaced.
+
+    Raises:
+        ConfigError: the name is no name, the file is wrong or cannot be written, or there are too many.
+    """
+    name = name.strip()
+    if not name or len(name) > MAX_NAME or not name.isprintable():
+        raise ConfigError(f"a pose needs a name of 1 to {MAX_NAME} characters")
+    poses = {**load_poses(), name: pose}
+    if len(poses) > MAX_POSES:
+        raise ConfigError(f"{MAX_POSES} poses are saved already", "delete some first", file=str(poses_file()))
+    _write(poses)
+
+
+def delete_pose(name: str) -> None:
+    """Delete a saved pose.
+
+    Raises:
+        ConfigError: the file is wrong or cannot be written.
+    """
+    _write({other: pose for other, pose in load_poses().items() if other != name})
+
+
+def _write(poses: Mapping[str, Pose]) -> None:
+    from tuisim.config.toml_writer import toml_key, toml_lines, write_toml
+
+    path = poses_file()
+    lines = [_HEAD, "", "[poses]"]
+    for name, pose in poses.items():
+        lines += ["", f"[poses.{toml_key(name)}]", *toml_lines(asdict(pose))]
+    try:
+        make_private_folder(path.parent)
+    except OSError as error:
+        raise ConfigError(f"cannot be made: {error.strerror or error}", file=str(path.parent)) from None
+    write_toml(path, lines, ConfigError, owner_only=True)

@@ -1,0 +1,136 @@
+"""What the panels show: one frozen value for each frame."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tuisim.core.field import Field
+from tuisim.core.geometry import Pose
+from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
+from tuisim.core.sensors.color import ColorReading
+from tuisim.core.spec import RunSpec
+from tuisim.core.state import Instant
+from tuisim.runs.brick_state import BrickState
+
+IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
+"""Run states: no run yet, child is starting, time moves, stands still, waits in input(), over."""
+
+GOOD_ENDS = ("finished", "stopped")
+"""Ends of a run that are no failure (`protocol.Ended.end`)."""
+
+_DARK = BrickState()
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """One moment as every panel sees it. Sensor values are those of `instant`."""
+
+    state: str
+    end: str
+    """How the run ended (`protocol.Ended.end`), empty unless `state` is ended."""
+    spec: RunSpec
+    field: Field | None
+    """None until the mat has been prepared."""
+    instant: Instant
+    time_s: float
+    line: int
+    """Line of the program that lets the time pass, 0 for none."""
+    speed: float
+    """1.0 real time, 0 as fast as possible."""
+    colors: Mapping[str, ColorReading]
+    """By sensor name, such as `left`."""
+    ultrasonic_mm: int | None
+    rays: tuple[tuple[float, float], ...]
+    """Ultrasonic rays as (world angle in degrees, length in mm)."""
+    gyro_deg: int
+    gyro_rate_dps: int
+    pen_down: bool
+    further: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    """What the sensors measure that not every robot has, by telemetry column, such as `bumper_pressed`."""
+    stalled: tuple[bool, bool] = (False, False)
+    """Whether the left and the right motor are told to run but cannot turn."""
+    next_spec: RunSpec | None = None
+    """What the next run will be; differs from `spec` in what was changed during the run. None: the same."""
+
+    face: BrickState = _DARK
+    """What the brick shows."""
+    turns: tuple[tuple[float, float], ...] = ()
+    """Position in degrees and speed in degrees per second of each motor that does not drive the robot."""
+    pressed: frozenset[str] = frozenset()
+    """The brick's buttons that are held down."""
+
+    past: bool = False
+    """Whether this is an instant that is looked back at, and not the newest one."""
+    now_tick: int = 0
+    """The newest tick of the run."""
+    now_pose: Pose | None = None
+    """Where the robot is now, while another instant is looked at."""
+
+    @property
+    def failed(self) -> bool:
+        """Whether the run is over and did not end well."""
+        return self.state == ENDED and bool(self.end) and self.end not in GOOD_ENDS
+
+    @property
+    def planned(self) -> RunSpec:
+        """What the next run will be."""
+        return self.next_spec or self.spec
+
+
+def snapshot_of(
+    instant: Instant,
+    spec: RunSpec,
+    field: Field | None,
+    *,
+    state: str,
+    end: str,
+    line: int,
+    speed: float,
+    pen_down: bool,
+    stalled: tuple[bool, bool] = (False, False),
+    next_spec: RunSpec | None = None,
+) -> Snapshot:
+    """Return the picture of one moment, every sensor measured."""
+    sonar = spec.robot.ultrasonic
+    rays = tuple(ultrasonic.rays_mm(instant.pose, sonar, spec.world)) if sonar else ()
+    has_gyro = spec.robot.gyro is not None
+    return Snapshot(
+        state=state,
+        end=end,
+        spec=spec,
+        field=field,
+        instant=instant,
+        time_s=instant.tick / spec.profile.tick_hz,
+        line=line,
+        speed=speed,
+        colors={s.name: color.reading(s, instant, field) for s in spec.robot.color_sensors} if field else {},
+        ultrasonic_mm=ultrasonic.reading_mm(sonar, instant, spec.world) if sonar else None,
+        rays=rays,
+        gyro_deg=gyro.angle_deg(instant) if has_gyro else 0,
+        gyro_rate_dps=gyro.rate_dps(instant) if has_gyro else 0,
+        further=further_readings(instant, spec, field) if field else {},
+        pen_down=pen_down,
+        stalled=stalled,
+        next_spec=next_spec,
+    )
+
+
+def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
+    """Return what the sensors measure that not every robot has, by telemetry column."""
+    values: dict[str, float] = {}
+    for kind, sensor in with_kinds(spec.robot.further_sensors):
+        values |= zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True)
+    return values
+
+
+def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
+    """Return what the chart draws of a moment though the program printed nothing, by trace name."""
+    values = {f"{s.name} red %": color.reading(s, instant, field).red_percent for s in spec.robot.color_sensors}
+    if spec.robot.ultrasonic:
+        values["ultrasonic mm"] = float(ultrasonic.reading_mm(spec.robot.ultrasonic, instant, spec.world))
+    if spec.robot.gyro:
+        values["gyro °"] = float(gyro.angle_deg(instant))
+    further = further_readings(instant, spec, field)
+    return values | {column.replace("_", " "): value for column, value in further.items()}

@@ -1,0 +1,1 @@
+"""The terminal: driver, frame buffer, pacing and cells."""

@@ -1,0 +1,183 @@
+"""Widgets that repaint only the cells that changed: one for pictures, one for text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from rich.segment import Segment
+from rich.style import Style
+from textual.geometry import Region
+from textual.strip import Strip
+from textual.widget import Widget
+
+from tuisim.app.render.cells import Cells, changed_runs, to_cells
+from tuisim.app.render.colors import TRUECOLOR, ColorMode, reduce_pixels
+from tuisim.app.render.mat import Pixels
+from tuisim.app.terminal.strips import CellStrip, color_depth
+from tuisim.charts.text_runs import Run, cut_line
+
+_TEXT_GAP = 8
+"""Unchanged characters that cost less than a new cursor position and style."""
+
+
+class RowsView(Widget):
+    """A widget that keeps its own rows."""
+
+    ALLOW_SELECT = False
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return the rows of a region, without Textual's cache, which would rebuild whole rows."""
+        return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
+
+
+class PixelView(RowsView):
+    """Shows a picture as half blocks: one column a pixel, one row two."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._raw: Pixels | None = None
+        self._shown: Pixels = np.empty((0, 0, 3), np.uint8)
+        self._cells: Cells = np.empty((0, 0), np.int64)
+        self._strips: list[Strip | None] = []
+
+    @property
+    def color_mode(self) -> ColorMode:
+        """What the terminal can show."""
+        return ColorMode(color_depth(self.app.console), bool(self.app.no_color))
+
+    @property
+    def ground_rgb(self) -> tuple[int, int, int]:
+        """Background colour of the widget."""
+        return self.background_colors[1].rgb
+
+    def set_picture(self, picture: Pixels) -> None:
+        """Show a picture of an even number of rows; only cells that differ are repainted."""
+        self._reduce(picture)
+        cells = to_cells(self._shown)
+        if cells.shape != self._cells.shape:
+            self._cells, self._strips = cells, [None] * len(cells)
+            self.refresh()
+            return
+        runs = changed_runs(self._cells, cells)
+        self._cells = cells
+        for row, _, _ in runs:
+            self._strips[row] = None
+        if runs:
+            self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
+
+    def clear_picture(self) -> None:
+        """Show nothing."""
+        if self._cells.size:
+            self._raw = None
+            self._cells = np.empty((0, 0), np.int64)
+            self._strips = []
+            self.refresh()
+
+    def _reduce(self, picture: Pixels) -> None:
+        """Bring a picture to the terminal's colours, where it differs from the last one."""
+        mode = self.color_mode
+        if mode.depth >= TRUECOLOR and not mode.grey:
+            self._raw = self._shown = picture
+            return
+        if self._raw is None or self._raw.shape != picture.shape:
+            self._shown = np.empty_like(picture)
+            rows, cols = np.indices(picture.shape[:2]).reshape(2, -1)
+        else:
+            rows, cols = np.nonzero((self._raw != picture).any(axis=2))
+        self._shown[rows, cols] = reduce_pixels(picture[rows, cols], rows, cols, mode)
+        self._raw = picture
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row."""
+        if y >= len(self._strips):
+            return self._blank()
+        strip = self._strips[y]
+        if strip is None:
+            strip = self._strips[y] = CellStrip(self._cells[y].tolist())
+        return strip
+
+    def _blank(self) -> Strip:
+        # A strip without a style would break Textual's filter for terminals without colours.
+        strip = Strip.blank(self.size.width, self.rich_style)
+        for line_filter in self.app.get_line_filters():
+            strip = strip.apply_filter(line_filter, self.background_colors[1])
+        return strip
+
+
+class LinesView(RowsView):
+    """Shows lines of styled text; only characters that differ are repainted."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lines: list[Sequence[Run]] = []
+        self._text_strips: list[Strip | None] = []
+
+    def set_lines(self, lines: Sequence[Sequence[Run]]) -> None:
+        """Show lines from the top; a longer one than the widget is wide ends in an ellipsis."""
+        width = self.size.width
+        old, self._lines = self._lines, [cut_line(line, width) if width else line for line in lines]
+        if len(old) != len(self._lines):
+            self._text_strips = [None] * len(self._lines)
+            self.refresh()
+            return
+        regions = []
+        for y, (before, now) in enumerate(zip(old, self._lines, strict=True)):
+            if before != now:
+                self._text_strips[y] = None
+                regions += [Region(x, y, length, 1) for x, length in _changes(before, now)]
+        if regions:
+            self.refresh(*regions)
+
+    def notify_style_update(self) -> None:
+        """Forget the rows when colours change."""
+        super().notify_style_update()
+        self._text_strips = [None] * len(self._lines)
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row."""
+        if y >= len(self._text_strips):
+            return self._made([])
+        strip = self._text_strips[y]
+        if strip is None or strip.cell_length != self.size.width:
+            strip = self._text_strips[y] = self._made(self._lines[y])
+        return strip
+
+    def _made(self, line: Sequence[Run]) -> Strip:
+        base = self.rich_style
+        whole = Strip([Segment(text, base + style) for text, style in line if text])
+        segments = list(whole.adjust_cell_length(self.size.width, base))
+        # What bypasses Textual's cache of styles has to apply its filters itself.
+        for line_filter in self.app.get_line_filters():
+            segments = line_filter.apply(segments, self.background_colors[1])
+        return Strip(segments, self.size.width)
+
+
+def _cut(strips: list[Strip], crop: Region, width: int, style: Style) -> list[Strip]:
+    """Bring rows to the columns of a region."""
+    first, last = crop.column_span
+    if first == 0 and last == width:
+        return [strip if strip.cell_length == width else strip.adjust_cell_length(width, style) for strip in strips]
+    return [strip.crop_extend(first, last, style) for strip in strips]
+
+
+def _spread(line: Sequence[Run]) -> list[tuple[str, Style]]:
+    return [(char, style) for text, style in line for char in text]
+
+
+def _changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]:
+    """Return the columns at which two lines differ, as (first, length)."""
+    old, new = _spread(before), _spread(now)
+    blank = (" ", Style.null())
+    width = max(len(old), len(new))
+    old += [blank] * (width - len(old))
+    new += [blank] * (width - len(new))
+    runs: list[tuple[int, int]] = []
+    for x in range(width):
+        if old[x] == new[x]:
+            continue
+        if runs and x - sum(runs[-1]) < _TEXT_GAP:
+            runs[-1] = (runs[-1][0], x + 1 - runs[-1][0])
+        else:
+            runs.append((x, 1))
+    return runs

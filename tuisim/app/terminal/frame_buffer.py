@@ -1,0 +1,254 @@
+"""What the terminal shows, cell by cell, so that only cells that differ are sent.
+
+Textual sends a widget's row from its left edge up to a cell that changed, and all of the screen several times while
+a dialog opens. Here each of its updates is compared with what has been sent before, and becomes the fewest codes that
+make the difference: a colour only where it changes, a jump over what stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+from rich.cells import cell_len, split_graphemes
+from rich.color import Color, ColorSystem
+from rich.console import Console
+from rich.style import Style
+from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
+from textual.strip import SGR_STYLES, Strip
+
+from tuisim.app.render.colors import PALETTE_256, TRUECOLOR, sgr_index
+from tuisim.app.terminal.strips import UPPER_HALF, CellStrip, color_depth
+
+_SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
+"""Attributes that show where there is no character: underlined, reversed, struck out, framed, overlined."""
+_REWRITTEN = 4
+"""So many unchanged characters cost no more than a jump over them."""
+
+
+class CellLook(NamedTuple):
+    """How a cell is written: parts of SGR codes."""
+
+    attributes: tuple[str, ...] = ()
+    foreground: str = "39"
+    """Empty where it cannot be seen."""
+    background: str = "49"
+    link: str = ""
+
+
+Cell = tuple[str, CellLook]
+"""What stands in a cell; the right half of a wide character is empty."""
+
+
+class FrameBuffer:
+    """The screen as it was sent."""
+
+    def __init__(self) -> None:
+        self._rows: dict[int, list[Cell | None]] = {}
+
+    def forget(self) -> None:
+        """The terminal may show anything now: everything is sent again."""
+        self._rows.clear()
+
+    def codes(self, update: CompositorUpdate, console: Console) -> str | None:
+        """Return the codes that bring the terminal from what it shows to an update, empty if it shows that already.
+
+        Args:
+            update: What Textual wants to send.
+            console: Says which colours there are.
+
+        Returns:
+            None for a kind of update that is not known; then it is not known either what the terminal shows after it.
+        """
+        pen = _Pen()
+        if isinstance(update, LayoutUpdate):
+            pieces = _pieces_of_all(update)
+        elif isinstance(update, ChopsUpdate):
+            pieces = _pieces_of_part(update)
+        else:
+            self.forget()
+            return None
+        for y, x, strip in pieces:
+            self._put(pen, y, x, _cells(strip, console))
+        return pen.finish()
+
+    def _put(self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]) -> None:
+        row = self._rows.setdefault(y, [])
+        if (lacking := first + len(cells) - len(row)) > 0:
+            row += [None] * lacking
+        for x, cell in enumerate(cells, first):
+            if row[x] != cell:
+                pen.write(x, y, cell, row)
+                row[x] = cell
+
+
+def _pieces_of_all(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
+    """Yield row, column and strip of all that is on the screen."""
+    for y, strips in enumerate(update.strips, update.region.y):
+        x = update.region.x
+        for strip in strips:
+            yield y, x, strip
+            x += strip.cell_length
+
+
+def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
+    """Yield row, column and strip of what may have changed."""
+    for y, first, last in update.spans:
+        for end, (x, strip) in zip(update.chop_ends[y], update.chops[y].items(), strict=False):
+            if strip is None or x >= last or end <= first:
+                continue
+            if isinstance(strip, CellStrip):
+                left, right = max(x, first), min(end, last)
+                yield y, left, strip.crop(left - x, right - x)
+            else:
+                # To its end, for a part could begin or end in the middle of a wide character.
+                yield y, x, strip.crop(0, end - x)
+
+
+def _cells(strip: Strip, console: Console) -> Sequence[Cell]:
+    if isinstance(strip, CellStrip):
+        depth = color_depth(console)
+        return [_half_block(cell, depth) for cell in strip.cells]
+    system = console._color_system or ColorSystem.TRUECOLOR
+    return [cell for text, style, control in strip if not control for cell in _written(text, style, system)]
+
+
+@lru_cache(maxsize=16384)
+def _half_block(cell: int, depth: int) -> Cell:
+    top, bottom = _rgb_codes(cell >> 24, depth), _rgb_codes(cell & 0xFFFFFF, depth)
+    return _simplest(UPPER_HALF, CellLook((), top[0], bottom[1]))
+
+
+@lru_cache(maxsize=8192)
+def _rgb_codes(rgb: int, depth: int) -> tuple[str, str]:
+    """Return the codes that make a colour the foreground and the background."""
+    if depth >= TRUECOLOR:
+        channels = f"{rgb >> 16};{rgb >> 8 & 255};{rgb & 255}"
+        return f"38;2;{channels}", f"48;2;{channels}"
+    number = sgr_index(rgb, depth)
+    if depth >= PALETTE_256:
+        return f"38;5;{number}", f"48;5;{number}"
+    shade = number if number < 8 else number + 52
+    return str(30 + shade), str(40 + shade)
+
+
+@lru_cache(maxsize=4096)
+def _written(text: str, style: Style | None, system: ColorSystem) -> tuple[Cell, ...]:
+    """Return the cells of a text."""
+    look = _look(style, system)
+    if text.isascii():
+        return tuple(_simplest(char, look) for char in text)
+    cells: list[Cell] = []
+    for start, end, width in split_graphemes(text)[0]:
+        if width:
+            cells += [_simplest(text[start:end], look), *[("", look)] * (width - 1)]
+    return tuple(cells)
+
+
+def _simplest(text: str, look: CellLook) -> Cell:
+    """Return the cell that looks the same with the fewest codes."""
+    if text == UPPER_HALF and look.foreground[1:] == look.background[1:] and not look.attributes:
+        text = " "
+    if text == " " and _SEEN_ON_BLANKS.isdisjoint(look.attributes):
+        return text, look._replace(attributes=(), foreground="")
+    return text, look
+
+
+@lru_cache(maxsize=4096)
+def _look(style: Style | None, system: ColorSystem) -> CellLook:
+    if style is None:
+        return CellLook()
+    shown = style._attributes & style._set_attributes
+    attributes = tuple(code for bit, code in enumerate(SGR_STYLES) if shown & 1 << bit)
+    foreground, background = _color_codes(style.color, system)[0], _color_codes(style.bgcolor, system)[1]
+    return CellLook(attributes, foreground, background, f"id={style._link_id};{style.link}" if style.link else "")
+
+
+def _color_codes(color: Color | None, system: ColorSystem) -> tuple[str, str]:
+    """Return the codes that make a colour the foreground and the background."""
+    if color is None:
+        return "39", "49"
+    if color.triplet is not None and system is ColorSystem.EIGHT_BIT:
+        # As in pictures, or a picture under a dialog would be sent again in colours that are hardly others.
+        return _rgb_codes(int.from_bytes(color.triplet, "big"), PALETTE_256)
+    least = color.downgrade(system)
+    return ";".join(least.get_ansi_codes()), ";".join(least.get_ansi_codes(foreground=False))
+
+
+class _Pen:
+    """Writes cells, and knows where the terminal's cursor is and how it would write.
+
+    Begins and ends with the terminal's own look.
+    """
+
+    def __init__(self) -> None:
+        self._parts: list[str] = []
+        self._look = CellLook()
+        self._x = self._y = -1
+
+    def write(self, x: int, y: int, cell: Cell, row: Sequence[Cell | None]) -> None:
+        """Write a cell of a row that stands there as it is."""
+        text, look = cell
+        if not text:
+            # The left half of the character covers it.
+            return
+        if (x, y) != (self._x, self._y):
+            self._go(x, y, row)
+        self._take(look)
+        self._parts.append(text)
+        # How wide a terminal draws what is no single narrow character is not certain.
+        self._x = x + 1 if text.isascii() or (len(text) == 1 and cell_len(text) == 1) else -1
+        self._y = y
+
+    def _go(self, x: int, y: int, row: Sequence[Cell | None]) -> None:
+        if y != self._y or not 0 <= self._x < x:
+            self._parts.append(f"\x1b[{y + 1};{x + 1}H")
+            return
+        between = row[self._x : x]
+        if len(between) <= _REWRITTEN and all(self._writes(cell) for cell in between):
+            self._parts += [cell[0] for cell in between if cell]
+        else:
+            self._parts.append(f"\x1b[{x - self._x}C")
+
+    def _writes(self, cell: Cell | None) -> bool:
+        """Whether a cell can be written without a code."""
+        return cell is not None and cell[0].isascii() and cell[0] != "" and not any(self._changes(cell[1]))
+
+    def _changes(self, look: CellLook) -> Iterable[str]:
+        """Yield the codes before something is written with a look."""
+        now = self._look
+        kept: tuple[str, ...] = now.attributes
+        if not look.foreground:
+            # A blank looks alike whether it is bold or not.
+            if not _SEEN_ON_BLANKS.isdisjoint(kept):
+                yield "0"
+                now, kept = CellLook(), ()
+        elif kept != look.attributes:
+            if not set(kept) <= set(look.attributes):
+                yield "0"
+                now, kept = CellLook(), ()
+            yield from (code for code in look.attributes if code not in kept)
+        if look.foreground and look.foreground != now.foreground:
+            yield look.foreground
+        if look.background != now.background:
+            yield look.background
+
+    def _take(self, look: CellLook) -> None:
+        if look.link != self._look.link:
+            self._parts.append(f"\x1b]8;{look.link or ';'}\x1b\\")
+        if changes := list(self._changes(look)):
+            self._parts.append(f"\x1b[{';'.join(changes)}m")
+        attributes, foreground = look.attributes, look.foreground
+        if not foreground:
+            begun = changes[:1] == ["0"]
+            attributes, foreground = ((), "39") if begun else (self._look.attributes, self._look.foreground)
+        self._look = CellLook(attributes, foreground, look.background, look.link)
+
+    def finish(self) -> str:
+        """Return all that was written."""
+        if self._look.link:
+            self._parts.append("\x1b]8;;\x1b\\")
+        if self._look != CellLook():
+            self._parts.append("\x1b[0m")
+        return "".join(self._parts)

@@ -1,0 +1,232 @@
+"""What the apps have in common: suspend, resume and end in order; write only what changed; the smallest terminal."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from textwrap import wrap
+from typing import Any, ClassVar, cast
+
+from rich.console import Console, ConsoleRenderable, RichCast
+from rich.control import Control
+from textual import events, on
+from textual._compositor import CompositorUpdate
+from textual.app import App
+from textual.command import Provider
+from textual.css.query import NoMatches
+from textual.driver import Driver
+from textual.filter import LineFilter
+from textual.geometry import Size
+from textual.screen import Screen
+
+from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.terminal.driver import TerminalDriver
+from tuisim.app.terminal.frame_buffer import FrameBuffer
+from tuisim.app.terminal.sanitize import Sanitize
+
+MINIMUM = Size(60, 18)
+"""Below this, panels and dialogs cannot be read."""
+
+
+def is_too_small(size: Size) -> bool:
+    """Return whether a terminal is too small for the apps."""
+    return size.width < MINIMUM.width or size.height < MINIMUM.height
+
+
+def laid_out(size: Size) -> Size:
+    """Return the size that panels and dialogs are laid out for in a terminal: none that they are not made for."""
+    return Size(max(size.width, MINIMUM.width), max(size.height, MINIMUM.height))
+
+
+def _wordings(size: Size) -> Iterator[str]:
+    """Yield the message, the fullest first."""
+    needed = f"{MINIMUM.width}×{MINIMUM.height}"
+    has = f"{size.width}×{size.height}"
+    yield f"Too small: tuisim needs {needed} or more, and this terminal has {has}. Enlarge it, or press q to quit."
+    yield f"Too small: tuisim needs {needed}, this terminal has {has}."
+    yield f"Too small: needs {needed}"
+    yield "Too small"
+
+
+def message_lines(size: Size) -> list[str]:
+    """Return the lines of the message that says that a terminal is too small: the fullest one that fits whole."""
+    for wording in _wordings(size):
+        lines = wrap(wording, max(size.width, 1), break_long_words=False)
+        if len(lines) <= size.height and all(len(line) <= size.width for line in lines):
+            return lines
+    return ["!"]
+
+
+class TooSmall(CompositorUpdate):
+    """Fills a terminal with the message.
+
+    Args:
+        size: Of the terminal.
+    """
+
+    def __init__(self, size: Size) -> None:
+        self._size = size
+
+    def render_segments(self, console: Console) -> str:
+        """Return the codes that show the message and nothing else."""
+        lines = message_lines(self._size)
+        top = (self._size.height - len(lines)) // 2
+        rows = (Control.move_to(0, top + at).segment.text + line for at, line in enumerate(lines))
+        return "\x1b[0m\x1b[2J" + "".join(rows)
+
+
+_HARMLESS = Sanitize()
+
+
+def is_leaving(app: App[Any]) -> bool:
+    """Return whether the app has been told to end: nothing may be opened any more, for it could not be drawn."""
+    # Textual has no public word for it.
+    return app._exit
+
+
+class TerminalApp(App[None]):
+    """An app that gives the terminal back in order, also when it is stopped or ended from outside."""
+
+    # Its palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
+    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = set()
+
+    def __init__(self) -> None:
+        super().__init__(driver_class=TerminalDriver)
+        self.frame_buffer = FrameBuffer()
+        self.too_small: Size | None = None
+        """Size of a terminal that is too small, None for one that is not."""
+        self._waiting_keys: deque[events.Key] = deque()
+        """Keys for a screen that is being opened."""
+
+    async def on_event(self, event: events.Event) -> None:
+        """Lay out for no smaller size than can be read; what cannot be seen cannot be clicked on."""
+        if isinstance(event, events.Resize):
+            was, self.too_small = self.too_small, event.size if is_too_small(event.size) else None
+            if self.too_small:
+                event = events.Resize(laid_out(event.size), laid_out(event.size))
+            if was != self.too_small:
+                # The layout may stay the same, and would not be drawn then.
+                self.call_later(self.draw_again)
+        elif isinstance(event, (events.InputEvent, events.Paste)) and self._is_deaf_to(event):
+            return
+        if isinstance(event, events.Key) and (self._waiting_keys or self._is_opening):
+            # A screen that is not built yet would lose it.
+            self._waiting_keys.append(events.Key(event.key, event.character))
+            return
+        await super().on_event(event)
+
+    def _is_deaf_to(self, event: events.Event) -> bool:
+        """Whether nobody is there to hear the user, or what is pointed at cannot be seen or has just been removed."""
+        if is_leaving(self):
+            return True
+        if not isinstance(event, events.MouseEvent):
+            return False
+        if self.too_small is not None:
+            return True
+        if not isinstance(event, events.MouseDown):
+            return False
+        # Until the next layout a screen still finds a removed widget, and fails when a selection is to begin there.
+        widget, _ = self.screen.get_widget_and_offset_at(event.x, event.y)
+        return widget is not None and not widget.is_attached
+
+    @on(ClosesOnce.Changed)
+    async def give_waiting_keys(self) -> None:
+        """Let the uppermost screen have the keys that were pressed while it was being opened."""
+        while self._waiting_keys and not self._is_opening:
+            await super().on_event(self._waiting_keys.popleft())
+
+    @property
+    def _is_opening(self) -> bool:
+        top = self.screen_stack[-1] if self.screen_stack else None
+        return isinstance(top, ClosesOnce) and not top.is_ready
+
+    def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
+        # Textual writes what it is given; where it would write nothing, the terminal does not come to show it either.
+        update: object = renderable
+        codes: str | None = None
+        if isinstance(screen, ClosesOnce) and screen.is_closed:
+            # One that was closed while it was being built still comes to draw itself.
+            renderable = None
+        elif self.too_small and renderable is not None:
+            renderable = cast(ConsoleRenderable, TooSmall(self.too_small))
+            self.frame_buffer.forget()
+        elif isinstance(update, CompositorUpdate) and self._writes:
+            codes = self.frame_buffer.codes(update, self.console)
+            if codes is not None:
+                renderable = cast(ConsoleRenderable, _Codes(codes)) if codes else None
+        super()._display(screen, renderable)
+        if codes:
+            self.painted(len(codes))
+
+    def painted(self, size: int) -> None:
+        """Be told that the terminal was sent what it did not show, so many characters."""
+
+    @property
+    def _writes(self) -> bool:
+        return self._running and not (self._closed or self._batch_count or self.is_headless or self._driver is None)
+
+    @on(events.DescendantFocus)
+    def still_cursor(self, event: events.DescendantFocus) -> None:
+        """Let no cursor blink: where nothing happens nothing is sent."""
+        if hasattr(event.widget, "cursor_blink"):
+            event.widget.cursor_blink = False
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Send everything again: a terminal of another size has cut or moved what it showed."""
+        self.frame_buffer.forget()
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Return what all that is drawn goes through."""
+        return [*super().get_line_filters(), _HARMLESS]
+
+    def on_ready(self) -> None:
+        """End the app as by a key when it is told to from outside."""
+        if self.is_headless:
+            return
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            # As a shell shows a program that the signal has ended.
+            loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
+        loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
+
+    @on(Driver.SignalResume)
+    def draw_again(self) -> None:
+        """Draw all of the screen: while the app was stopped the shell has written over it."""
+        self.frame_buffer.forget()
+        self.refresh(layout=True)
+
+    def action_suspend_process(self) -> None:
+        """Stop as a job of the shell that the app was started from, until the shell lets it go on."""
+        if isinstance(self._driver, TerminalDriver):
+            self.suspending()
+            if not self._driver.stop_as_job():
+                self.notify("No shell is there that could let tuisim go on, so it does not stop", markup=False)
+
+    def suspending(self) -> None:
+        """Be told that the app is about to stop."""
+
+    def action_command_palette(self) -> None:
+        """Open the command palette, unless it is open, or a dialog is: its commands would open dialogs above that."""
+        from tuisim.app.keys.palette import Palette
+
+        if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
+            self.push_screen(Palette())
+
+    def _handle_exception(self, error: Exception) -> None:
+        # A screen that was being opened when the app was told to end is taken down half built.
+        if not (is_leaving(self) and isinstance(error, NoMatches)):
+            super()._handle_exception(error)
+
+
+class _Codes(CompositorUpdate):
+    """An update that has been turned into codes."""
+
+    def __init__(self, codes: str) -> None:
+        self._codes = codes
+
+    def render_segments(self, console: Console) -> str:
+        """Return the codes."""
+        return self._codes

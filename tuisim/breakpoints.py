@@ -1,0 +1,316 @@
+"""Breaks: when a run is to hold, in a small language that app, command and child share.
+
+| text | holds when |
+| --- | --- |
+| `12` | line 12 is about to run |
+| `12 if x > 3` | … and the expression is true there |
+| `left.red% < 10`, `ultrasonic <= 200`, `gyro > 90`, `x_mm > 1000` | this becomes true, looked at after each tick |
+| `right.color changes`, `left.color == Blue` | a value becomes another one, a colour is seen |
+| `sample Colour < 50`, `sample Colour changes`, `sample Colour` | of a printed sample |
+| `print matches REGEX` | of a printed line |
+| `time 3.5` | so many simulated seconds have passed |
+| `stall` | a motor that runs is held fast |
+
+A `#` in front switches a break off. A break that compares holds when the comparison
+becomes true, not for as long as it stays so.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from tuisim.core.sensors import mounted
+from tuisim.core.sensors.color import COLOR_NAMES
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, UltrasonicSpec
+from tuisim.errors import ConfigError
+
+OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
+}  # fmt: skip
+"""By sign, the comparison."""
+CHANGES, SEEN = "changes", "is seen"
+"""Relations without a number: the value is another one than before; a sample was printed, whatever its value."""
+
+POSE_NAMES = ("x_mm", "y_mm", "heading_deg")
+WHEEL_NAMES = ("left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps")
+COLOR_PARTS = ("red", "green", "blue", "red%", "mean%", "color")
+"""What can be asked of a colour sensor, after its name and a dot."""
+ALLOWED = (
+    "12 · 12 if x > 3 · left.red% < 10 · left.color changes · ultrasonic < 200 · x_mm > 1000 · "
+    "sample Colour < 50 · print matches REGEX · time 3.5 · stall"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class LineBreak:
+    """A line of the program is about to run."""
+
+    line: int
+    condition: str = ""
+    """A Python expression that must be true, empty for none."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValueBreak:
+    """A sensor or the robot's place."""
+
+    quantity: str
+    """One of `quantities(robot)`."""
+    relation: str
+    """A key of `OPERATORS`, or `CHANGES`."""
+    number: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SampleBreak:
+    """A printed sample."""
+
+    name: str
+    relation: str
+    """A key of `OPERATORS`, `CHANGES` or `SEEN`."""
+    number: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class PrintBreak:
+    """A printed line in which a regular expression is found."""
+
+    pattern: str
+
+
+@dataclass(frozen=True, slots=True)
+class TimeBreak:
+    """So much simulated time has passed."""
+
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class StallBreak:
+    """A motor that runs is held fast."""
+
+
+BreakRule = LineBreak | ValueBreak | SampleBreak | PrintBreak | TimeBreak | StallBreak
+
+
+@dataclass(frozen=True, slots=True)
+class Breakpoint:
+    """One break."""
+
+    rule: BreakRule
+    text: str
+    """As it was written, in the common form and without the mark of one that is switched off."""
+    disabled: bool = False
+
+    def written(self) -> str:
+        """Return the text from which `parse_break` makes this break again."""
+        return f"# {self.text}" if self.disabled else self.text
+
+
+_SIGN = r"<=|>=|==|!=|<|>"
+_LINE = re.compile(r"(?:line\s+)?(\d+)(?:\s+if\s+(.*))?", re.DOTALL)
+_COMPARED = re.compile(rf"(.+?)\s*({_SIGN})\s*(\S+)")
+_WORDY = re.compile(r"(?:sensor\s+)?(\w+)\s+sensor(?:\s+(\w+)\s*(%)?)?")
+
+
+def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
+    """Return the break that a text describes.
+
+    Args:
+        text: In the language above.
+        robot: Checks the names of sensors; None passes any name.
+
+    Raises:
+        ConfigError: the text is no break; says what is allowed.
+    """
+    stripped = text.strip()
+    disabled = stripped.startswith("#")
+    bare = stripped.lstrip("#").strip()
+    rule = _rule(bare, robot)
+    return Breakpoint(rule, _common_text(rule, bare), disabled)
+
+
+def parse_breakpoints(texts: Iterable[str], robot: RobotSpec | None = None) -> tuple[Breakpoint, ...]:
+    """Return the breaks of several texts, as `parse_break`."""
+    return tuple(parse_break(text, robot) for text in texts)
+
+
+def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
+    """Return the breaks on lines by line; where there are several, one that is switched on goes first."""
+    found: dict[int, Breakpoint] = {}
+    for one in sorted(breaks, key=lambda one: not one.disabled):
+        line = break_line_of(one)
+        if line:
+            found[line] = one
+    return found
+
+
+def break_line_of(one: Breakpoint) -> int:
+    """Return the line of a break, 0 for one that is on no line."""
+    return one.rule.line if isinstance(one.rule, LineBreak) else 0
+
+
+def moved(one: Breakpoint, line: int) -> Breakpoint:
+    """Return a break on a line as the same break on another line."""
+    if not isinstance(one.rule, LineBreak):
+        return one
+    rule = LineBreak(line, one.rule.condition)
+    return Breakpoint(rule, _common_text(rule, one.text), one.disabled)
+
+
+def quantities(robot: RobotSpec) -> tuple[str, ...]:
+    """Return the names whose values a break can compare, for a robot."""
+    names: list[str] = []
+    for kind, sensor in mounted(robot):
+        match sensor:
+            case ColorSensorSpec():
+                names += [f"{sensor.name}.{part}" for part in COLOR_PARTS]
+            case GyroSpec():
+                names += [sensor.name, f"{sensor.name}.rate"]
+            case UltrasonicSpec():
+                names.append(sensor.name)
+            case _:
+                names += kind.columns(sensor)
+    return (*names, *POSE_NAMES, *WHEEL_NAMES)
+
+
+def _refuse(text: str, why: str, hint: str = ALLOWED) -> ConfigError:
+    return ConfigError(f"{text!r}: {why}", hint, key="break")
+
+
+def _rule(text: str, robot: RobotSpec | None) -> BreakRule:
+    if not text:
+        raise _refuse(text, "says nothing")
+    word, _, rest = text.partition(" ")
+    rest = rest.strip()
+    if found := _LINE.fullmatch(text):
+        return _line_rule(text, int(found[1]), found[2])
+    if text == "stall":
+        return StallBreak()
+    if word == "time":
+        return TimeBreak(_number(text, rest.removesuffix("s").strip(), least=0.0))
+    if word == "print":
+        return _print_rule(text, rest)
+    if word == "sample":
+        return _sample_rule(text, rest)
+    return _value_rule(text, robot)
+
+
+def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
+    if line < 1:
+        raise _refuse(text, "lines count from 1")
+    if condition is None:
+        return LineBreak(line)
+    condition = condition.strip()
+    if why := _why_no_expression(condition):
+        raise _refuse(text, why, "such as: 12 if x > 3")
+    return LineBreak(line, condition)
+
+
+def _why_no_expression(text: str) -> str:
+    """Say why Python cannot read an expression, empty if it can."""
+    try:
+        ast.parse(text, mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        return f"{text!r} is no expression: {getattr(error, 'msg', None) or error}"
+    return ""
+
+
+def parse_watch(text: str) -> str:
+    """Return an expression to look at, without blanks around it.
+
+    Raises:
+        ConfigError: Python cannot read it.
+    """
+    text = text.strip()
+    if why := _why_no_expression(text):
+        raise ConfigError(why, "such as len(values)", key="watch")
+    return text
+
+
+def _print_rule(text: str, rest: str) -> PrintBreak:
+    word, _, pattern = rest.partition(" ")
+    if word != "matches" or not pattern.strip():
+        raise _refuse(text, "what is printed can only be matched", "such as: print matches black|white")
+    try:
+        re.compile(pattern.strip())
+    except (re.error, OverflowError, RecursionError) as error:
+        raise _refuse(text, f"no regular expression: {error}", "such as: print matches black|white") from error
+    return PrintBreak(pattern.strip())
+
+
+def _sample_rule(text: str, rest: str) -> SampleBreak:
+    name, relation, value = _relation(rest)
+    if not name.isidentifier():
+        raise _refuse(text, "a sample has a name", "such as: sample Colour < 50, sample Colour changes")
+    return SampleBreak(name, relation or SEEN, _number(text, value) if value else 0.0)
+
+
+def _value_rule(text: str, robot: RobotSpec | None) -> ValueBreak:
+    written, relation, value = _relation(text)
+    if not relation:
+        raise _refuse(text, "is no break")
+    name = _quantity(written)
+    if robot is not None and name not in quantities(robot):
+        raise _refuse(text, f"this robot has no {written!r}", f"one of {', '.join(quantities(robot))}")
+    if not re.fullmatch(r"\w+(\.(rate|" + "|".join(map(re.escape, COLOR_PARTS)) + r"))?", name):
+        raise _refuse(text, f"there is no {written!r}")
+    if name.endswith(".color") and value in COLOR_NAMES:
+        return ValueBreak(name, relation, float(COLOR_NAMES.index(value)))
+    return ValueBreak(name, relation, _number(text, value) if value else 0.0)
+
+
+def _relation(text: str) -> tuple[str, str, str]:
+    """Return what is compared, the sign (or `CHANGES`, or nothing) and the number as written."""
+    words = text.split()
+    if len(words) > 1 and words[-1] == CHANGES:
+        return text[: -len(CHANGES)].strip(), CHANGES, ""
+    found = _COMPARED.fullmatch(text)
+    return (found[1], found[2], found[3]) if found else (text, "", "")
+
+
+def _quantity(written: str) -> str:
+    """Return the name of a quantity; `left sensor red %` is `left.red%`."""
+    found = _WORDY.fullmatch(written)
+    if not found:
+        return written.replace(" %", "%")
+    return f"{found[1]}.{found[2]}{found[3] or ''}" if found[2] else found[1]
+
+
+def _number(text: str, written: str, least: float = -math.inf) -> float:
+    try:
+        value = float(written)
+    except ValueError:
+        raise _refuse(text, f"{written!r} is no number") from None
+    if not math.isfinite(value) or value < least:
+        raise _refuse(text, f"{written!r} is not possible here")
+    return value
+
+
+def _common_text(rule: BreakRule, written: str) -> str:
+    """Return the text of a rule in the form that is shown."""
+    match rule:
+        case LineBreak(line=line, condition=condition):
+            return f"{line} if {condition}" if condition else str(line)
+        case ValueBreak(quantity=name, relation=relation) | SampleBreak(name=name, relation=relation):
+            head = f"sample {name}" if isinstance(rule, SampleBreak) else name
+            if relation in OPERATORS:
+                return f"{head} {relation} {_shown_number(rule)}"
+            return head if relation == SEEN else f"{head} {CHANGES}"
+        case PrintBreak(pattern=pattern):
+            return f"print matches {pattern}"
+        case TimeBreak(time_s=time_s):
+            return f"time {time_s:.12g}"
+        case StallBreak():
+            return written
+
+
+def _shown_number(rule: ValueBreak | SampleBreak) -> str:
+    if isinstance(rule, ValueBreak) and rule.quantity.endswith(".color") and rule.number in range(len(COLOR_NAMES)):
+        return COLOR_NAMES[int(rule.number)]
+    return f"{rule.number:.12g}"

@@ -1,0 +1,117 @@
+"""Axes: round limits, ticks and labels, also in character cells."""
+
+from __future__ import annotations
+
+import math
+
+_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+
+Limits = tuple[float, float]
+
+
+def nice_step(span: float, count: int) -> float:
+    """Return a round distance that divides `span` (above 0) into about `count` parts, at most."""
+    # Parts of the smallest numbers come out as nothing.
+    rough = max(span / max(count, 1), 1e-300)
+    magnitude = 10.0 ** math.floor(math.log10(rough))
+    return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
+
+
+def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
+    """Return round limits around values, so that they seldom change while values come in.
+
+    Args:
+        low: The least value.
+        high: The greatest one.
+        from_zero: Whether 0 is to be seen.
+    """
+    if from_zero:
+        low = min(low, 0.0)
+    size = max(abs(low), abs(high), 1.0)
+    if high - low < 1e-9 * size:
+        # One more or less would make no difference to a number with more than sixteen digits.
+        room = max(1.0, 1e-6 * size)
+        low, high = low - room, high + room
+    step = nice_step(high - low, 4)
+    return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
+
+
+def ticks(limits: Limits, count: int) -> list[float]:
+    """Return at most about `count` round positions inside limits."""
+    low, high = limits
+    step = nice_step(high - low, count)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [at * step for at in range(first, last + 1)]
+
+
+def label(value: float, step: float) -> str:
+    """Return a tick's label with no more digits than the distance between ticks needs."""
+    digits = max(0, math.ceil(-math.log10(step) - 1e-9)) if step < 1 else int(step % 1 != 0)
+    text = f"{value:.{digits}f}"
+    return "0" if float(text) == 0 else text
+
+
+__all__ = [
+    "Limits", "at_column", "column_of", "growing_limits", "label", "nice_step", "row_labels", "ticks", "time_axis",
+    "time_limits", "value_limits",
+]  # fmt: skip
+
+_SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
+
+
+def growing_limits(end_s: float) -> Limits:
+    """Return limits from 0 to soon after `end_s`, which grow in steps: a curve is not squeezed by each new point."""
+    step = nice_step(max(end_s, 1.0), 8)
+    return 0.0, max(math.ceil(end_s / step - 1e-9) * step, 1.0)
+
+
+def time_limits(end_s: float) -> Limits:
+    """Return limits from 0 to a round time after `end_s`, which grow in steps."""
+    for span_s in _SPANS_S:
+        if end_s <= span_s:
+            return 0.0, span_s
+    step = 60.0
+    while end_s > 5 * step:
+        step *= 2
+    return 0.0, math.ceil(end_s / step) * step
+
+
+def column_of(x: float, limits: Limits, columns: int) -> int:
+    """Return the character column of a value, 0 … columns - 1 for values inside the limits."""
+    low, high = limits
+    return math.floor((x - low) / (high - low) * (columns - 0.5))
+
+
+def at_column(column: int, limits: Limits, columns: int) -> float:
+    """Return the value in the middle of a character column."""
+    low, high = limits
+    return low + (high - low) * min(max((column + 0.25) / (columns - 0.5), 0.0), 1.0)
+
+
+def row_labels(limits: Limits, rows: int) -> dict[int, str]:
+    """Return labels of a vertical axis by row, 0 at the top."""
+    low, high = limits
+    if rows < 7:
+        # Limits are round: the two ends say more than one tick somewhere between them.
+        step = nice_step(high - low, 4)
+        return {rows - 1: label(low, step), 0: label(high, step)}
+    positions = ticks(limits, min(6, (rows - 1) // 2))
+    step = positions[1] - positions[0] if len(positions) > 1 else high - low
+    return {math.floor((high - y) / (high - low) * (rows - 0.25)): label(y, step) for y in positions}
+
+
+def time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, str]:
+    """Return a horizontal axis: the line with its ticks, and the labels below, each `columns` long."""
+    positions = ticks(limits, max(1, columns // 10))
+    step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
+    line, below = ["─"] * columns, [" "] * columns
+    free_from = 0
+    for at in positions:
+        column = column_of(at, limits, columns)
+        text = label(at, step) + (f" {unit}" if at == positions[-1] else "")
+        start = min(max(column - len(text) // 2, 0), columns - len(text))
+        line[column] = "┬"
+        if start >= free_from:
+            below[start : start + len(text)] = text
+            free_from = start + len(text) + 1
+    return "".join(line), "".join(below)

@@ -1,0 +1,184 @@
+"""Canvases of character cells: a chart over time, and one variable against another."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from rich.color import Color
+from rich.style import Style
+
+from tuisim.charts import axes
+from tuisim.charts.axes import Limits
+from tuisim.charts.decimation import min_max
+from tuisim.charts.text_runs import Rgb, Run
+from tuisim.runs.arrays import FloatArray
+
+TextRun = tuple[str, Rgb | None]
+"""A piece of a row in one colour, None where nothing is drawn."""
+
+BRAILLE = "braille"
+_CODES = re.compile(r"\x1b\[([0-9;]*)m")
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """One trace to be drawn."""
+
+    times_s: FloatArray
+    values: FloatArray
+    rgb: Rgb
+    marker: str = BRAILLE
+    """`braille`, or one character, for terminals without colours."""
+    rising: bool = True
+    """Whether the times rise, so that points may be left out; a path may go anywhere."""
+
+
+@lru_cache(maxsize=1)
+def _plotext() -> Any:
+    # Costs more than the rest of the app's start: imported when the first curve is drawn.
+    import plotext
+
+    # Otherwise a chart is cut to what plotext takes for the size of the terminal.
+    plotext.terminal.limit(False, False)
+    return plotext
+
+
+def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits) -> list[list[TextRun]]:
+    """Return curves as rows of text, without axes.
+
+    plotext has one figure a process: call this from one thread only.
+
+    Args:
+        curves: What to draw, the topmost last.
+        columns: Width in characters, at least 1.
+        rows: Height in characters, at least 1.
+        x_limits: Times at the left and right edge.
+        y_limits: Values at the lower and upper edge.
+    """
+    plotext = _plotext()
+    figure = plotext.figure
+    figure.clear()
+    figure.axes(False)
+    figure.canvas("default")
+    for axis, limits in (("x", x_limits), ("y", y_limits)):
+        for side in (0, 1):
+            figure.ruler(axis, side).frequency(0)
+        figure.ruler(axis, 0).lim(*limits)
+    figure.plot_size(columns, rows)
+    for curve in curves:
+        times_s, values = curve.times_s, curve.values
+        if curve.rising:
+            times_s, values = min_max(times_s, values, x_limits, columns)
+        if len(times_s):
+            marker = plotext.marker(curve.marker, curve.rgb)
+            signal = figure.signal(times_s.tolist(), values.tolist(), marker=marker)
+            figure.draw(signal.lines(curve.marker == BRAILLE))
+    text = figure.build().string()
+    return [_runs(line, columns) for line in text.split("\n")[:rows]]
+
+
+def _runs(line: str, columns: int) -> list[TextRun]:
+    """Read a row with colour codes; it is cut or filled to `columns`."""
+    runs: list[TextRun] = []
+    rgb: Rgb | None = None
+    left = columns
+    # re.split with one group gives text, codes, text, codes, …
+    for at, part in enumerate(_CODES.split(line)):
+        if at % 2:
+            numbers = part.split(";")
+            rgb = (int(numbers[2]), int(numbers[3]), int(numbers[4])) if numbers[:2] == ["38", "2"] else None
+        elif part and left:
+            runs.append((part[:left], rgb))
+            left -= len(part[:left])
+    if left:
+        runs.append((" " * left, None))
+    return runs
+
+
+_AXIS, _WORDS = Style(color="#a8a8a8"), Style(color="#d8dee6")
+_HERE = Style(color="#000000", bgcolor="#ffffff", bold=True)
+_DOTS_X, _DOTS_Y = 2, 4
+"""Dots of a braille character."""
+
+
+def seen_points(
+    xs: FloatArray, ys: FloatArray, limits: Sequence[axes.Limits], columns: int, rows: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the points of a path that a canvas can tell apart: of neighbours at the same dot only the first.
+
+    Args:
+        xs, ys: Finite, shape (n,).
+        limits: Of x and of y.
+        columns, rows: Size of the canvas in characters.
+    """
+    (left, right), (low, high) = limits
+    across = np.floor((xs - left) / (right - left) * (_DOTS_X * columns - 1)).astype(np.int64)
+    up = np.floor((ys - low) / (high - low) * (_DOTS_Y * rows - 1)).astype(np.int64)
+    dots = across * (_DOTS_Y * rows) + up
+    moved = np.flatnonzero(np.diff(dots, prepend=dots[:1] - 1))
+    if len(moved) > len(np.unique(dots)) * 4:
+        # It goes to and fro so often that no line could be followed: each dot once.
+        moved = np.unique(dots, return_index=True)[1]
+    return xs[moved], ys[moved]
+
+
+def xy_lines(
+    xs: FloatArray,
+    ys: FloatArray,
+    here: int | None,
+    names: tuple[str, str],
+    rgb: Rgb,
+    marker: str,
+    width: int,
+    height: int,
+) -> list[list[Run]]:
+    """Return the chart as lines of text.
+
+    Args:
+        xs, ys: Shape (n,); pairs that are not finite are left out.
+        here: Which of the points is looked at, None for none.
+        names: Of x and of y.
+        rgb: Colour of the curve.
+        marker: `braille`, or one character.
+        width, height: Size in characters.
+    """
+    good = np.isfinite(xs) & np.isfinite(ys)
+    title: list[Run] = [(f"{names[1]} against {names[0]}", _WORDS)]
+    if not good.any():
+        return [title, [("no point has both", _AXIS)]]
+    x_limits, y_limits = (axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys))
+    rows = max(height - 3, 1)
+    labels = axes.row_labels(y_limits, rows)
+    left = max(map(len, labels.values())) + 1
+    columns = max(width - left, 2)
+    points = seen_points(xs[good], ys[good], (x_limits, y_limits), columns, rows)
+    curve = Curve(*points, rgb, marker, rising=False)
+    drawn = canvas([curve], columns, rows, x_limits, y_limits)
+    lines = [title]
+    for row in range(rows):
+        text = labels.get(row, "")
+        inside = [(part, Style(color=Color.from_rgb(*color)) if color else _WORDS) for part, color in drawn[row]]
+        lines.append([(text.rjust(left - 1) + ("┤" if text else "│"), _AXIS), *inside])
+    if here is not None and good[here]:
+        title.append((f"   {names[0]} {xs[here]:.5g}  {names[1]} {ys[here]:.5g}", Style(bold=True)))
+        column = axes.column_of(float(xs[here]), x_limits, columns)
+        row = int((y_limits[1] - ys[here]) / (y_limits[1] - y_limits[0]) * (rows - 0.25))
+        _put(lines[1 + min(max(row, 0), rows - 1)], left + column)
+    line, below = axes.time_axis(x_limits, columns, "")
+    return [*lines, [(" " * (left - 1) + "└" + line, _AXIS)], [(" " * left + below, _AXIS)]]
+
+
+def _put(line: list[Run], column: int) -> None:
+    """Mark a character of a line."""
+    at = 0
+    for number, (text, style) in enumerate(line):
+        if at <= column < at + len(text):
+            inside = column - at
+            line[number : number + 1] = [(text[:inside], style), ("●", _HERE), (text[inside + 1 :], style)]
+            return
+        at += len(text)

@@ -1,0 +1,165 @@
+"""A chart as data: which points of which variables, and how they are to be drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.analysis.alignment import DISTANCE
+from tuisim.charts.axes import Limits, value_limits
+from tuisim.charts.canvas import seen_points
+from tuisim.charts.decimation import min_max
+from tuisim.errors import LogError, printable
+from tuisim.logs import units
+from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
+    from tuisim.analysis.traces import LogTrace
+
+_MOST = 1e150
+"""What is larger cannot be reckoned with: the distance between two such numbers may be infinite."""
+_DOTS_X, _DOTS_Y = 2, 4
+"""Parts of a character cell that `seen_points` tells apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """How a chart is looked at, besides what is ticked and which time is shown."""
+
+    facets: bool = False
+    """One chart for each variable."""
+    marks: bool = False
+    """Points instead of lines."""
+    hold: bool = False
+    """Keep each value until the next one comes."""
+    against: tuple[str, str] | None = None
+    """What is drawn against what, x and y, instead of all over time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One variable."""
+
+    name: str
+    xs: FloatArray
+    """Shape (n,), finite; rising but for a path."""
+    ys: FloatArray
+    """Shape (n,), finite."""
+    number: int
+    """Chooses colour and mark."""
+    other_scale: bool = False
+    """Whether it is drawn to the scale on the right where others are drawn to that on the left."""
+
+    @property
+    def label(self) -> str:
+        """Its name, with the unit where the name tells it."""
+        return with_unit(self.name)
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A part of the x axis that is set off, with a word on it."""
+
+    start: float
+    stop: float
+    text: str
+    name: str
+    """Variable that it is about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """All that is to be seen."""
+
+    title: str
+    lines: tuple[Line, ...]
+    x_limits: Limits
+    x_label: str
+    facets: bool = False
+    marks: bool = False
+    path: bool = False
+    """Whether one variable is drawn against another."""
+    spans: tuple[Span, ...] = ()
+    zoomed: bool = False
+    """Whether a part of the time is shown: then the vertical axis fits what is seen there."""
+
+
+def with_unit(name: str) -> str:
+    """Return a variable's name as it is written beside a chart."""
+    unit = unit_of(name)
+    return printable(f"{name} ({unit})" if unit else name)
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of a variable that its name tells, empty if it tells none."""
+    return units.unit_of(name.partition(" #")[0]).sign
+
+
+def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
+    """Return what a model shows: its ticked variables within its limits.
+
+    Args:
+        model: The log.
+        view: How to look at it.
+        columns, rows: Size of the picture, in pixels or in parts of characters: what it could not tell apart
+            is left out.
+
+    Raises:
+        LogError: no such variable to draw against.
+    """
+    x_limits = model.x_limits()
+    if view.against:
+        return _path(model, view.against, view.marks, columns, rows)
+    lines = []
+    for number, trace in enumerate(model.traces.ticked()):
+        trace.prepare(x_limits, columns, False)
+        lines.append(_line(trace, number, view.hold, x_limits, columns))
+    x_label = "time (s)" if model.log.layout.time else "row"
+    if model.alignment == DISTANCE:
+        x_label = "distance driven (mm)"
+    return Chart(
+        printable(model.log.title),
+        tuple(lines),
+        x_limits,
+        x_label,
+        view.facets and len(lines) > 1,
+        view.marks,
+        zoomed=model.limits is not None,
+    )
+
+
+def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
+    from tuisim.analysis.traces import held
+
+    xs, ys = min_max(trace.times_s, trace.values, x_limits, columns)
+    xs, ys = _clipped(*(held(xs, ys) if hold else (xs, ys)), x_limits)
+    return Line(trace.name, xs, ys, number, trace.other_scale)
+
+
+def _clipped(xs: FloatArray, ys: FloatArray, limits: Limits) -> tuple[FloatArray, FloatArray]:
+    """The part of a line that lies between limits, with the points where it enters and leaves them."""
+    inside = (xs >= limits[0]) & (xs <= limits[1])
+    if inside.all():
+        return xs, ys
+    crossed = [edge for edge in limits if xs[0] < edge < xs[-1]]
+    at = np.searchsorted(xs[inside], crossed)
+    return np.insert(xs[inside], at, crossed), np.insert(ys[inside], at, np.interp(crossed, xs, ys))
+
+
+def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int) -> Chart:
+    xs, ys = (model.along(name) for name in names)
+    places = model.trace.places
+    with np.errstate(invalid="ignore"):
+        good = (np.abs(xs) < _MOST) & (np.abs(ys) < _MOST)
+        if model.limits:
+            good &= (places >= model.limits[0]) & (places <= model.limits[1])
+    if not good.any():
+        raise LogError(f"no sample has both {names[0]} and {names[1]}", file=model.log.title)
+    limits = [value_limits(float(values[good].min()), float(values[good].max())) for values in (xs, ys)]
+    cells = max(columns // _DOTS_X, 1), max(rows // _DOTS_Y, 1)
+    xs, ys = seen_points(xs[good], ys[good], limits, *cells)
+    title, x_label = printable(model.log.title), with_unit(names[0])
+    return Chart(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)

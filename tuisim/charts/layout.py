@@ -1,0 +1,291 @@
+"""Where everything in a chart's picture stands, in pixels; `svg` and `png` only draw it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from tuisim.charts.axes import Limits, label, ticks, value_limits
+from tuisim.charts.figure import Chart, Line, unit_of
+from tuisim.charts.text_runs import Rgb
+from tuisim.logs.units import begins_at_zero
+from tuisim.runs.arrays import FloatArray
+
+COLORS: tuple[Rgb, ...] = (
+    (31, 119, 180), (217, 95, 2), (27, 158, 119), (201, 60, 140), (117, 112, 199), (166, 118, 29), (214, 39, 40),
+    (80, 150, 30), (23, 160, 190), (120, 120, 120),
+)  # fmt: skip
+"""Of the lines; to be told apart on white as well as on black."""
+
+FONT_PX = 13
+"""Height of the letters."""
+_LETTER_PX = 7.2
+"""What a letter takes of a line, on the safe side."""
+_PAD, _LINE_PX = 10, 20
+_FACET_GAP_PX = 12
+_LONG = 9
+"""Labels with more characters than that are written with a power of ten."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A straight line of an axis or of the grid behind the data."""
+
+    x1: float
+    y1: float
+    x2: float
+    y2: float
+    faint: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """A line of text."""
+
+    x: float
+    y: float
+    """Middle of the letters."""
+    text: str
+    anchor: str = "start"
+    """Which part of it stands at x: `start`, `middle` or `end`."""
+    rgb: Rgb | None = None
+    """None for the colour of the writing."""
+    strong: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Shade:
+    """An area that is set off."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A line of the data, or its points."""
+
+    points: FloatArray
+    """Shape (n, 2): x and y."""
+    rgb: Rgb
+    dots: bool = False
+
+
+Shape: TypeAlias = Rule | Words | Shade | Stroke
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A picture."""
+
+    title: str
+    width: int
+    height: int
+    shapes: tuple[Shape, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """A rectangle that data are drawn in."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+    x: Limits
+    y: Limits
+
+    def xs(self, values: FloatArray | float) -> FloatArray:
+        return np.asarray(self.left + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0])
+                          * (self.right - self.left))  # fmt: skip
+
+    def ys(self, values: FloatArray | float) -> FloatArray:
+        return np.asarray(self.bottom - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0])
+                          * (self.bottom - self.top))  # fmt: skip
+
+    def with_y(self, limits: Limits) -> _Frame:
+        return _Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
+
+
+def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> Drawing:
+    """Return the picture of a chart.
+
+    Args:
+        chart: What is to be seen.
+        width, height: Size in pixels.
+        titled: Whether the title stands above it.
+    """
+    shapes: list[Shape] = []
+    top: float = _PAD
+    if titled:
+        shapes.append(Words(_PAD, top + _LINE_PX / 2, _cut(chart.title, width - 2 * _PAD), strong=True))
+        top += _LINE_PX + 4
+    if not chart.facets:
+        legend, lines = _legend(chart.lines, width, top)
+        shapes += legend
+        top += lines * _LINE_PX + 4
+    groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
+    scales = [_Scales.of(group, chart.zoomed or chart.path) for group in groups]
+    left = _PAD + max(scale.left_px for scale in scales)
+    right = max(width - _PAD - max(max(scale.right_px for scale in scales), 3 * _LETTER_PX), left + 1)
+    bottom = height - _PAD - 2 * _LINE_PX
+    each = (bottom - top) / len(groups)
+    for at, (group, scale) in enumerate(zip(groups, scales, strict=True)):
+        upper, lower = top + at * each, top + (at + 1) * each
+        if chart.facets:
+            shapes.append(Words(left, upper + _LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True))
+            upper += _LINE_PX + 4
+        last = at == len(groups) - 1
+        lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
+        frame = _squared(chart, _Frame(left, upper, right, lower, chart.x_limits, scale.left))
+        shapes += _spans(chart, group, frame)
+        shapes += _axes(frame, scale, with_x=last)
+        shapes += _strokes(chart, group, scale, frame)
+    shapes.append(Words((left + right) / 2, bottom + 1.7 * _LINE_PX, chart.x_label, "middle"))
+    return Drawing(chart.title, width, height, tuple(shapes))
+
+
+def color_of(line: Line) -> Rgb:
+    """Return the colour of a line."""
+    return COLORS[line.number % len(COLORS)]
+
+
+def _cut(text: str, width_px: float) -> str:
+    most = max(int(width_px / _LETTER_PX), 1)
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape], int]:
+    """A stroke and the name of each line, and which have the scale on the right; how many lines of text that takes."""
+    shapes: list[Shape] = []
+    x, row = float(_PAD), 0
+    two = _with_two_scales(lines)
+    for line in lines:
+        text = _cut(line.label + (", right scale" if two and line.other_scale else ""), width - 2 * _PAD - 30)
+        taken = 30 + len(text) * _LETTER_PX
+        if x > _PAD and x + taken > width - _PAD:
+            x, row = float(_PAD), row + 1
+        y = top + (row + 0.5) * _LINE_PX
+        shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), color_of(line)))
+        shapes.append(Words(x + 28, y, text))
+        x += taken + 14
+    return shapes, row + 1 if lines else 0
+
+
+@dataclass(frozen=True, slots=True)
+class _Scales:
+    """The vertical scale on the left, and perhaps another on the right."""
+
+    left: Limits
+    right: Limits | None
+
+    @classmethod
+    def of(cls, lines: Sequence[Line], zoomed: bool) -> _Scales:
+        two = _with_two_scales(lines)
+        return cls(
+            _limits([line for line in lines if not line.other_scale] if two else lines, zoomed),
+            _limits([line for line in lines if line.other_scale], zoomed) if two else None,
+        )
+
+    @property
+    def left_px(self) -> float:
+        return _widest(self.left)
+
+    @property
+    def right_px(self) -> float:
+        return _widest(self.right) if self.right else 0.0
+
+
+def _with_two_scales(lines: Sequence[Line]) -> bool:
+    return 0 < sum(line.other_scale for line in lines) < len(lines)
+
+
+def _limits(lines: Sequence[Line], zoomed: bool) -> Limits:
+    ends = [(line.name, float(line.ys.min()), float(line.ys.max())) for line in lines if len(line.ys)]
+    if not ends:
+        return 0.0, 1.0
+    from_zero = not zoomed and any(begins_at_zero(*one) for one in ends)
+    return value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
+
+
+def _labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
+    """Round positions between limits and how they are written."""
+    positions = ticks(limits, max(count, 1))
+    step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
+    texts = [label(at, step) for at in positions]
+    if max(map(len, texts), default=0) > _LONG:
+        texts = [f"{at:.4g}" for at in positions]
+    return list(zip(positions, texts, strict=True))
+
+
+def _widest(limits: Limits) -> float:
+    # The number of ticks follows from the height; twenty have the longest labels of all.
+    return max((len(text) for _, text in _labelled(limits, 20)), default=1) * _LETTER_PX + 8
+
+
+def _squared(chart: Chart, frame: _Frame) -> _Frame:
+    """For a path over the field one mm is as long to the right as upwards."""
+    names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
+    if not chart.path or {unit_of(name) for name in names} != {"mm"}:
+        return frame
+    width_px, height_px = frame.right - frame.left, frame.bottom - frame.top
+    scale = max((frame.x[1] - frame.x[0]) / width_px, (frame.y[1] - frame.y[0]) / height_px)
+    limits = []
+    for (low, high), size_px in ((frame.x, width_px), (frame.y, height_px)):
+        more = (scale * size_px - (high - low)) / 2
+        limits.append((low - more, high + more))
+    return _Frame(frame.left, frame.top, frame.right, frame.bottom, limits[0], limits[1])
+
+
+def _axes(frame: _Frame, scale: _Scales, *, with_x: bool) -> list[Shape]:
+    shapes: list[Shape] = []
+    count = max(int((frame.bottom - frame.top) / 40), 2)
+    for value, text in _labelled(frame.y, count):
+        y = float(frame.ys(value))
+        shapes += [Rule(frame.left, y, frame.right, y, faint=True), Words(frame.left - 6, y, text, "end")]
+    for value, text in _labelled(frame.x, max(int((frame.right - frame.left) / 90), 2)):
+        x = float(frame.xs(value))
+        shapes.append(Rule(x, frame.top, x, frame.bottom, faint=True))
+        if with_x:
+            shapes.append(Words(x, frame.bottom + 0.7 * _LINE_PX, text, "middle"))
+    if scale.right:
+        other = frame.with_y(scale.right)
+        for value, text in _labelled(scale.right, count):
+            y = float(other.ys(value))
+            shapes += [Rule(frame.right, y, frame.right + 4, y), Words(frame.right + 7, y, text)]
+        shapes.append(Rule(frame.right, frame.top, frame.right, frame.bottom))
+    shapes.append(Rule(frame.left, frame.top, frame.left, frame.bottom))
+    shapes.append(Rule(frame.left, frame.bottom, frame.right, frame.bottom))
+    return shapes
+
+
+def _strokes(chart: Chart, lines: Sequence[Line], scale: _Scales, frame: _Frame) -> list[Shape]:
+    shapes: list[Shape] = []
+    for line in lines:
+        own = frame.with_y(scale.right) if scale.right and line.other_scale else frame
+        if len(line.xs):
+            points = np.column_stack((own.xs(line.xs), own.ys(line.ys)))
+            shapes.append(Stroke(points, color_of(line), dots=chart.marks or len(points) == 1))
+    if not shapes:
+        shapes.append(
+            Words((frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2, "no samples here", "middle")
+        )
+    return shapes
+
+
+def _spans(chart: Chart, lines: Sequence[Line], frame: _Frame) -> list[Shape]:
+    names = {line.name for line in lines}
+    shapes: list[Shape] = []
+    for span in chart.spans:
+        if span.name not in names or span.stop < frame.x[0] or span.start > frame.x[1]:
+            continue
+        x1, x2 = (float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop))
+        shapes.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
+        if len(span.text) * _LETTER_PX < x2 - x1:
+            shapes.append(Words((x1 + x2) / 2, frame.bottom - _LINE_PX / 2, span.text, "middle"))
+    return shapes

@@ -1,0 +1,277 @@
+"""The chart as lines of text: tick boxes, canvas with axes, and the values at a cursor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from rich.color import Color
+from rich.style import Style
+
+from tuisim.charts import axes
+from tuisim.charts.axes import Limits
+from tuisim.charts.canvas import BRAILLE, Curve, TextRun, canvas
+from tuisim.charts.text_runs import Run, cut
+from tuisim.charts.traces import Trace, Traces
+from tuisim.logs.units import begins_at_zero
+
+_AXIS = Style(color="#a8a8a8")
+_PLAIN = Style(color="#d8dee6")
+_CURSOR = Style(color="#ffffff", bgcolor="#44505e")
+_STRONG = Style(color="#ffffff", bold=True)
+
+_ROWS_A_LEGEND_LINE = 8
+"""A chart has one line of tick boxes for so many rows, so that most of it is left for the curves."""
+_MIN_TWO_SCALES = 36
+"""Narrower charts have no room for a second scale on the right."""
+
+EMPTY_TEXT = (
+    "Nothing logged yet. To log a value, print it with a name:",
+    "print('Colour: ' + str(value))",
+)
+EMPTY_SHORT = ("Nothing logged yet.", "print('Colour: '", "      + str(value))")
+
+
+@dataclass(frozen=True, slots=True)
+class ChartState:
+    """What the user has set."""
+
+    selected: str | None = None
+    """Name of the trace whose tick box has the focus."""
+    cursor_s: float | None = None
+    x_limits: Limits | None = None
+    """Fixed limits while the chart is frozen, None to follow."""
+    grey: bool = False
+    other_s: float | None = None
+    """A second cursor, that the first is measured from."""
+    unit: str = "s"
+    """Of the horizontal axis."""
+    marks: bool = False
+    """Draw the points as marks, not joined by lines."""
+    grows: bool = False
+    """Whether more is to come, so that the horizontal axis goes on a little beyond the data."""
+    zoomed: bool = False
+    """Whether a part of the time is looked at: then the vertical axis fits what is seen there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """Where a tick box is: row, first column, first column after it."""
+
+    row: int
+    first: int
+    end: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class ChartPicture:
+    """A drawn chart and where its parts are, in characters."""
+
+    lines: list[list[Run]]
+    boxes: tuple[Box, ...]
+    left: int = 0
+    top: int = 0
+    columns: int = 0
+    """Size of the canvas, 0 if there is none."""
+    rows: int = 0
+    x_limits: Limits = (0.0, 1.0)
+
+    def time_at(self, column: int, row: int) -> float | None:
+        """Return the time at a place, None beside the canvas."""
+        if 0 <= column - self.left < self.columns and 0 <= row - self.top < self.rows:
+            return axes.at_column(column - self.left, self.x_limits, self.columns)
+        return None
+
+
+@dataclass(slots=True)
+class ChartPainter:
+    """Draws charts; the canvas is kept for as long as its points and limits stay."""
+
+    _key: object = field(default=None, init=False)
+    _canvas: list[list[TextRun]] = field(default_factory=list, init=False)
+
+    def paint(self, traces: Traces, state: ChartState, width: int, height: int) -> ChartPicture:
+        """Return the chart in a panel of that inner size, each at least 1."""
+        lines, boxes = _tick_boxes(traces, state, width, min(max(height // _ROWS_A_LEGEND_LINE, 1), 3))
+        drawn = traces.drawn()
+        if not drawn:
+            return ChartPicture((lines + _empty(len(traces) > 0, width, height - len(lines)))[:height], boxes)
+        values = [values_at(drawn, state.cursor_s, state.unit, width)] if state.cursor_s is not None else []
+        with_line = height >= 9
+        rows = max(height - len(lines) - len(values) - 1 - with_line, 1)
+        x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
+        scales = _Scales.of(drawn, width, rows, state.zoomed)
+        columns = max(width - scales.left_width - scales.right_width, 2)
+        self._draw(drawn, scales, columns, rows, x_limits, state.grey or state.marks)
+        left, top = scales.left_width, len(lines)
+        cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
+        at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
+        lines += [scales.framed(row, _with_cursors(self._canvas[row], at)) for row in range(rows)]
+        line, below = axes.time_axis(x_limits, columns, state.unit)
+        if with_line:
+            lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), _AXIS)])
+        lines.append([(" " * left + below, _AXIS)])
+        return ChartPicture([*lines, *values][:height], boxes, left, top, columns, rows, x_limits)
+
+    def _draw(
+        self, drawn: list[Trace], scales: _Scales, columns: int, rows: int, x_limits: Limits, marks: bool
+    ) -> None:
+        points = [(trace.name, len(trace.times_s)) for trace in drawn]
+        key = (points, scales.left, scales.right, columns, rows, x_limits, marks)
+        if key == self._key:
+            return
+        self._key = key
+        curves = [scales.curve(trace, marks) for trace in drawn]
+        self._canvas = canvas(curves, columns, rows, x_limits, scales.left)
+
+
+@dataclass(frozen=True, slots=True)
+class _Scales:
+    """The vertical scale on the left, and perhaps another on the right."""
+
+    left: Limits
+    right: Limits | None
+    left_labels: dict[int, str]
+    right_labels: dict[int, str]
+
+    @classmethod
+    def of(cls, drawn: list[Trace], width: int, rows: int, zoomed: bool) -> _Scales:
+        others = [trace for trace in drawn if trace.other_scale]
+        two = 0 < len(others) < len(drawn) and width >= _MIN_TWO_SCALES
+        left = _limits([trace for trace in drawn if not trace.other_scale] if two else drawn, zoomed)
+        right = _limits(others, zoomed) if two else None
+        labels = axes.row_labels(right, rows) if right else {}
+        return cls(left, right, axes.row_labels(left, rows), labels)
+
+    @property
+    def left_width(self) -> int:
+        return max(map(len, self.left_labels.values()), default=0) + 1
+
+    @property
+    def right_width(self) -> int:
+        return max(map(len, self.right_labels.values()), default=0) + 1 if self.right else 0
+
+    def curve(self, trace: Trace, marks: bool) -> Curve:
+        values = trace.values
+        if self.right and trace.other_scale:
+            share = (values - self.right[0]) / (self.right[1] - self.right[0])
+            values = self.left[0] + share * (self.left[1] - self.left[0])
+        return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
+
+    def framed(self, row: int, inside: list[Run]) -> list[Run]:
+        text = self.left_labels.get(row, "")
+        line = [(text.rjust(self.left_width - 1) + ("┤" if text else "│"), _AXIS), *inside]
+        if self.right:
+            text = self.right_labels.get(row, "")
+            line.append((("├" if text else "│") + text.ljust(self.right_width - 1), _AXIS))
+        return line
+
+
+def _time_limits(end_s: float, grows: bool) -> Limits:
+    if grows:
+        return axes.growing_limits(end_s)
+    return 0.0, end_s if end_s > 0 else 1.0
+
+
+def _limits(traces: Sequence[Trace], zoomed: bool) -> Limits:
+    ends = [(trace.name, float(trace.values.min()), float(trace.values.max())) for trace in traces]
+    from_zero = not zoomed and any(begins_at_zero(*one) for one in ends)
+    return axes.value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
+
+
+def _color(trace: Trace) -> Style:
+    return Style(color=Color.from_rgb(*trace.rgb))
+
+
+def _styled(rgb: tuple[int, int, int] | None) -> Style:
+    return Style(color=Color.from_rgb(*rgb)) if rgb else _PLAIN
+
+
+def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
+    """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
+    line: list[Run] = []
+    at = 0
+    for text, rgb in runs:
+        done = 0
+        for inside in (column - at for column in columns):
+            if 0 <= inside < len(text):
+                mark = text[inside]
+                line.append((text[done:inside], _styled(rgb)))
+                line.append((mark if mark != " " else "│", _styled(rgb) + _CURSOR if mark != " " else _CURSOR))
+                done = inside + 1
+        line.append((text[done:], _styled(rgb)))
+        at += len(text)
+    return [run for run in line if run[0]]
+
+
+def _tick_boxes(
+    traces: Traces, state: ChartState, width: int, most_lines: int
+) -> tuple[list[list[Run]], tuple[Box, ...]]:
+    """Return the lines of tick boxes that fit, those around the selected one, and where the boxes are."""
+    lines: list[list[tuple[str, Trace]]] = [[]]
+    used = 0
+    for trace in traces:
+        text = cut(f"[{'x' if trace.on else ' '}] {trace.name}", max(width - 2, 1))
+        if used and used + 2 + len(text) > width - 2:
+            lines.append([])
+            used = 0
+        used += len(text) + (2 if used else 0)
+        lines[-1].append((text, trace))
+    chosen = next((at for at, line in enumerate(lines) for _, trace in line if trace.name == state.selected), 0)
+    first = max(0, chosen - most_lines + 1)
+    shown = lines[first : first + most_lines]
+    made, boxes = [], []
+    for row, line in enumerate(shown):
+        runs, column = [], 0
+        for text, trace in line:
+            if column:
+                runs.append(("  ", _PLAIN))
+                column += 2
+            boxes.append(Box(row, column, column + len(text), trace.name))
+            runs += _box_runs(text, trace, trace.name == state.selected, state.grey)
+            column += len(text)
+        made.append(runs)
+    hidden = len(lines) - first - len(shown), first
+    if made and any(hidden):
+        # More above, below, or both; the arrows have two columns of their own.
+        space = width - 1 - sum(len(text) for text, _ in made[-1])
+        arrow = "↕" if all(hidden) else "↓" if hidden[0] else "↑"
+        made[-1].append((" " * max(space, 0) + arrow, _AXIS))
+    return [line for line in made if line], tuple(boxes)
+
+
+def _box_runs(text: str, trace: Trace, selected: bool, grey: bool) -> list[Run]:
+    color = _color(trace) if trace.on else _AXIS
+    if grey and trace.on:
+        text = text.replace("[x]", f"[{trace.mark}]", 1)
+    return [(text, color + Style(reverse=True) if selected else color)]
+
+
+def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> list[Run]:
+    """Return the line that says what each trace is at a time, as many as there is room for."""
+    line: list[Run] = [(f"{cursor_s:.2f} {unit}", _STRONG)]
+    used = len(line[0][0])
+    for at, trace in enumerate(drawn):
+        value = trace.at(cursor_s)
+        text = f"{value:.5g}" if value is not None else "–"
+        more = len(drawn) - at - 1
+        need = 2 + len(trace.name) + 1 + len(text)
+        if used + need + (4 if more else 0) > width:
+            line.append((f" +{more + 1}"[: max(width - used, 0)], _AXIS))
+            break
+        line += [("  ", _PLAIN), (f"{trace.name} ", _color(trace)), (text, _STRONG)]
+        used += need
+    return line
+
+
+def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
+    """Return what stands where the canvas would be."""
+    words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
+    if some:
+        words = (*words, "", "↑ ↓ and space tick a trace") if width >= 26 else words
+    above = max((height - len(words)) // 2, 0)
+    widest = max(map(len, words))
+    margin = " " * max((width - widest) // 2, 0)
+    lines: list[list[Run]] = [[] for _ in range(above)]
+    return lines + [[(margin + text, _STRONG if "print" in text or "str(" in text else _PLAIN)] for text in words]

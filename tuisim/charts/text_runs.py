@@ -1,0 +1,39 @@
+"""What drawings are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+from rich.style import Style
+
+from tuisim.charts.robot_image import Rgb as Rgb
+
+Run: TypeAlias = tuple[str, Style]
+"""A piece of a line in one style."""
+
+Line: TypeAlias = list[Run]
+"""A line of text."""
+
+
+def cut(text: str, width: int) -> str:
+    """Return a text of at most so many characters; one that is cut ends in an ellipsis."""
+    return text if len(text) <= width else text[: max(0, width - 1)] + "…"[:width]
+
+
+def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
+    """Return a line of at most so many characters; one of which more than blanks is cut ends in an ellipsis."""
+    if sum(len(text) for text, _ in line) <= width or not "".join(text for text, _ in line)[width:].strip():
+        return line
+    kept: list[Run] = []
+    left = width
+    for text, style in line:
+        kept.append((cut(text, left) if len(text) > left else text, style))
+        left -= len(text)
+        if left < 0:
+            return kept
+        if left == 0:
+            # It is the next piece that is cut away: this one tells of it.
+            kept[-1] = (text[:-1] + "…", style)
+            return kept
+    return kept

@@ -1,0 +1,298 @@
+"""Pictures of runs for notebooks and scripts: the world, what the colour sensors see, the chart. Pillow only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil, cos, radians, sin
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any
+
+from tuisim.charts.axes import Limits, label, ticks, value_limits
+from tuisim.charts.robot_image import COLORED, draw_robot, shape_of
+from tuisim.core.css_colors import css_rgb
+from tuisim.core.geometry import Pose, world_point
+from tuisim.core.sensors.ultrasonic import rays_mm
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
+from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.runs.samples import Sample
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+
+MM_PER_PX = 3
+"""Scale of the world's picture."""
+
+CHART_SIZE = (760, 300)
+"""Width and height of the chart in pixels."""
+
+ARRAY_PX = 6
+"""Side of one sensor pixel in the arrays' picture."""
+
+_TRACE_COLORS = ((31, 119, 180), (255, 127, 14), (44, 160, 44), (214, 39, 40), (148, 103, 189), (140, 86, 75))
+_OBSTACLE, _OBSTACLE_EDGE, _RAY = (150, 150, 160), (20, 20, 20), (230, 120, 0)
+_RIM, _FRAME = (232, 234, 238), (70, 74, 82)
+_FRAME_PX = 2
+_MARGIN_LEFT, _MARGIN = 64, 24
+_LETTERS_PX = 12
+_MOST = 1e150
+"""What is larger is drawn there: the distance between two such numbers may be infinite."""
+_LONG = 8
+"""Labels with more characters than that are written with a power of ten."""
+
+_FIELD_PX = (FIELD_WIDTH_MM // MM_PER_PX, FIELD_HEIGHT_MM // MM_PER_PX)
+
+Point = tuple[float, float]
+
+
+def _at(x_mm: float, y_mm: float) -> Point:
+    return x_mm / MM_PER_PX, (FIELD_HEIGHT_MM - y_mm) / MM_PER_PX
+
+
+@dataclass(frozen=True, slots=True)
+class WorldView:
+    """What a picture of the world shows: the field in its frame, and around it room for a robot on its edge."""
+
+    rim_px: int
+    """Width of that room."""
+
+    @property
+    def width_px(self) -> int:
+        """Width of the picture."""
+        return _FIELD_PX[0] + 2 * self.rim_px
+
+    @property
+    def height_px(self) -> int:
+        """Height of the picture."""
+        return _FIELD_PX[1] + 2 * self.rim_px
+
+    @property
+    def mm_per_px(self) -> float:
+        """Scale."""
+        return MM_PER_PX
+
+    def to_px(self, x_mm: float, y_mm: float) -> Point:
+        """Return where a point of the world is in the picture; whole numbers are corners of pixels."""
+        x_px, y_px = _at(x_mm, y_mm)
+        return self.rim_px + x_px, self.rim_px + y_px
+
+
+def world_view(robot: RobotSpec) -> WorldView:
+    """Return what a picture shows in which a robot is wholly to be seen as long as its axle is on the field."""
+    return WorldView(ceil(shape_of(robot).reach_mm / MM_PER_PX) + _FRAME_PX)
+
+
+@dataclass(frozen=True, slots=True)
+class PenTrace:
+    """What the pen of a run has drawn."""
+
+    color: str
+    width_px: int
+    lines: tuple[tuple[Point, ...], ...]
+    """In pixels from the upper left corner of the field."""
+
+
+def pen_trace(spec: RunSpec, telemetry: NDArray[Any]) -> PenTrace:
+    """Return what the pen has drawn.
+
+    Args:
+        spec: What the run is made of.
+        telemetry: As from `datalog.views.TelemetryView.array`.
+    """
+    import numpy as np
+
+    pen = spec.robot.pen
+    # As `core.geometry.world_point`, for all ticks at once.
+    turn = np.radians(telemetry["heading_deg"] - 90.0)
+    x_mm = telemetry["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
+    y_mm = telemetry["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
+    points = np.stack([x_mm, FIELD_HEIGHT_MM - y_mm], axis=1) / MM_PER_PX
+    down = np.concatenate([[False], (telemetry["flags"] & FLAG_PEN_DOWN) != 0, [False]])
+    starts, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(~down[1:] & down[:-1])
+    lines = []
+    for start, end in zip(starts, ends, strict=True):
+        line = points[start:end]
+        moved = np.any(np.diff(np.round(line * 2), axis=0) != 0, axis=1)
+        # Most ticks bring the pen less than half a pixel on.
+        lines.append(tuple(map(tuple, line[np.concatenate([[True], moved])].tolist())))
+    width_px = max(1, round(pen.width_mm / MM_PER_PX))
+    return PenTrace(pen.color, width_px, tuple(line for line in lines if len(line) > 1))
+
+
+def world_picture(
+    spec: RunSpec, mat: NDArray[np.uint8], pose: Pose | None = None, traces: Sequence[PenTrace] = (), *,
+    rays: bool = False,
+) -> Image:  # fmt: skip
+    """Return mat, obstacles, pen traces and robot.
+
+    Args:
+        spec: What the run is made of.
+        mat: Shape (height, width, 3), rows from the top.
+        pose: Where the robot is, by default at its start.
+        traces: What pens have drawn.
+        rays: Whether the ultrasonic sensor's rays are drawn.
+
+    Returns:
+        What `world_view` says of the robot, in that size.
+    """
+    import numpy as np
+    from PIL import Image, ImageDraw
+
+    # What is left of the last column, when each pixel is three mm, is less than one.
+    field = Image.fromarray(mat).reduce(MM_PER_PX, box=(0, 0, _FIELD_PX[0] * MM_PER_PX, _FIELD_PX[1] * MM_PER_PX))
+    draw = ImageDraw.Draw(field)
+    for box in spec.world.obstacles:
+        low = _at(box.x_mm, box.y_mm)
+        high = _at(box.x_mm + box.width_mm, box.y_mm + box.height_mm)
+        draw.rectangle((low[0], high[1], high[0], low[1]), fill=_OBSTACLE, outline=_OBSTACLE_EDGE)
+    for trace in traces:
+        for line in trace.lines:
+            draw.line(line, fill=css_rgb(trace.color), width=trace.width_px)
+    pose = pose or spec.world.start
+    if rays and spec.robot.ultrasonic is not None:
+        _draw_rays(draw, spec, pose)
+    view = world_view(spec.robot)
+    picture = Image.new("RGB", (view.width_px, view.height_px), _RIM)
+    corners = (view.rim_px - _FRAME_PX, view.rim_px - _FRAME_PX,
+               view.rim_px + _FIELD_PX[0] + _FRAME_PX - 1, view.rim_px + _FIELD_PX[1] + _FRAME_PX - 1)  # fmt: skip
+    ImageDraw.Draw(picture).rectangle(corners, fill=_FRAME)
+    picture.paste(field, (view.rim_px, view.rim_px))
+    pixels = np.array(picture)
+    draw_robot(pixels, view, pose, shape_of(spec.robot), COLORED)
+    return Image.fromarray(pixels)
+
+
+def _draw_rays(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:
+    sensor = spec.robot.ultrasonic
+    assert sensor is not None
+    x_mm, y_mm = world_point(pose, sensor.x_mm, sensor.y_mm)
+    for angle_deg, length_mm in rays_mm(pose, sensor, spec.world):
+        turn = radians(angle_deg)
+        end = _at(x_mm + cos(turn) * length_mm, y_mm + sin(turn) * length_mm)
+        draw.line([_at(x_mm, y_mm), end], fill=_RAY)
+
+
+def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:
+    """Return the sensors' pixel arrays side by side.
+
+    Args:
+        arrays: Sensor and its RGB bytes, d × d pixels, row by row.
+    """
+    from PIL import Image
+
+    tiles = [
+        Image.frombytes("RGB", (sensor.diameter_mm,) * 2, pixels).resize(
+            (sensor.diameter_mm * ARRAY_PX,) * 2, Image.Resampling.NEAREST
+        )
+        for sensor, pixels in arrays
+    ]
+    whole = Image.new(
+        "RGB", (sum(t.width + 12 for t in tiles) or 1, max((t.height for t in tiles), default=1)), "white"
+    )
+    left = 0
+    for tile in tiles:
+        whole.paste(tile, (left, 0))
+        left += tile.width + 12
+    return whole
+
+
+def chart_picture(samples: Iterable[Sample]) -> Image:
+    """Return the samples over simulated time, one line a name."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    traces: dict[str, list[Point]] = {}
+    for sample in samples:
+        traces.setdefault(sample.name, []).append((sample.time_s, sample.value))
+    picture = Image.new("RGB", CHART_SIZE, "white")
+    draw = ImageDraw.Draw(picture)
+    draw.font = ImageFont.load_default(_LETTERS_PX)
+    width, height = CHART_SIZE
+    draw.rectangle((_MARGIN_LEFT, _MARGIN, width - _MARGIN, height - _MARGIN), outline="black")
+    if not traces:
+        draw.text((_MARGIN_LEFT + 8, _MARGIN + 8), "no samples", fill="black")
+        return picture
+    traces = {name: _drawable(_thinned(trace)) for name, trace in traces.items()}
+    points = [point for trace in traces.values() for point in trace]
+    lows, highs = [min(axis) for axis in zip(*points, strict=True)], [max(axis) for axis in zip(*points, strict=True)]
+    frame = _ChartFrame.around((lows[0], highs[0]), (lows[1], highs[1]))
+    _draw_axes(draw, frame)
+    _draw_traces(draw, traces, frame)
+    return picture
+
+
+@dataclass(frozen=True, slots=True)
+class _ChartFrame:
+    """The rectangle that the samples are drawn in, and which values its edges stand for."""
+
+    x: Limits
+    y: Limits
+    x_ticks: tuple[float, ...]
+    y_ticks: tuple[float, ...]
+
+    @classmethod
+    def around(cls, x: Limits, y: Limits) -> _ChartFrame:
+        """The frame of samples in these limits."""
+        # A single moment stands at the left; values that are all the same have one label, in the middle.
+        end = x[1] if x[1] > x[0] else x[0] + 1.0
+        limits, constant = value_limits(*y), y[0] == y[1]
+        if constant:
+            half = y[0] - limits[0]
+            limits = (y[0] - half, y[0] + half)
+        y_ticks = (y[0],) if constant else tuple(ticks(limits, 5))
+        return cls((x[0], end), limits, tuple(ticks((x[0], end), 8)), y_ticks)
+
+    def to_px(self, x: float, y: float) -> Point:
+        """Return where a sample is in the picture."""
+        width, height = CHART_SIZE
+        share_x, share_y = (x - self.x[0]) / (self.x[1] - self.x[0]), (y - self.y[0]) / (self.y[1] - self.y[0])
+        return (_MARGIN_LEFT + share_x * (width - _MARGIN - _MARGIN_LEFT),
+                height - _MARGIN - share_y * (height - 2 * _MARGIN))  # fmt: skip
+
+
+def _draw_axes(draw: ImageDraw, frame: _ChartFrame) -> None:
+    """Write what the ticks stand for: values at the left, simulated seconds below."""
+    for value in frame.y_ticks:
+        y_px = frame.to_px(frame.x[0], value)[1]
+        draw.line((_MARGIN_LEFT - 4, y_px, _MARGIN_LEFT, y_px), fill="black")
+        draw.text((_MARGIN_LEFT - 8, y_px), _tick_label(value, frame.y_ticks), fill="black", anchor="rm")
+    for second in frame.x_ticks:
+        x_px, y_px = frame.to_px(second, frame.y[0])
+        unit = " s" if second == frame.x_ticks[-1] else ""
+        draw.line((x_px, y_px, x_px, y_px + 4), fill="black")
+        draw.text((x_px, y_px + 6), _tick_label(second, frame.x_ticks) + unit, fill="black", anchor="mt")
+
+
+def _tick_label(value: float, places: Sequence[float]) -> str:
+    text = label(value, places[1] - places[0]) if len(places) > 1 else f"{value:.6g}"
+    return text if len(text) <= _LONG else f"{value:.2e}"
+
+
+def _thinned(trace: list[Point]) -> list[Point]:
+    """Return what there is to see of a trace: of each stretch narrower than a pixel its lowest and highest point."""
+    step = len(trace) // (2 * CHART_SIZE[0])
+    if step < 2:
+        return trace
+    kept = trace[:1]
+    for at in range(0, len(trace), step):
+        stretch = sorted(trace[at : at + step], key=itemgetter(1))
+        kept += sorted((stretch[0], stretch[-1]))
+    return [*kept, trace[-1]]
+
+
+def _drawable(trace: list[Point]) -> list[Point]:
+    return [(x, min(max(y, -_MOST), _MOST)) for x, y in trace]
+
+
+def _draw_traces(draw: ImageDraw, traces: Mapping[str, list[Point]], frame: _ChartFrame) -> None:
+    left_px = _MARGIN_LEFT + 8.0
+    for order, (name, trace) in enumerate(traces.items()):
+        color = _TRACE_COLORS[order % len(_TRACE_COLORS)]
+        line = [frame.to_px(x, y) for x, y in trace]
+        draw.line(line, fill=color, width=2)
+        for x_px, y_px in line[:: max(1, len(line) // 200)]:
+            draw.ellipse((x_px - 2, y_px - 2, x_px + 2, y_px + 2), fill=color)
+        draw.text((left_px, 4), name, fill=color)
+        left_px += draw.textlength(name) + 20

@@ -1,0 +1,88 @@
+"""How a run ended, for the shell: exit code, last-state line, JSON object."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
+from tuisim.core.geometry import shown_heading_deg
+from tuisim.protocol import NO_ANSWER, Ended
+from tuisim.runs.records import STDERR
+from tuisim.runs.run_folder import RunEnd, StoredRun
+from tuisim.runs.samples import counts_of
+
+EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
+EXIT_BROKEN_PIPE = 141
+"""What a shell shows for a program that SIGPIPE has ended."""
+SIGNALLED = 128
+"""Exit codes above it mean that somebody wants no more, and so no further program either."""
+LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit", "disk_full"})
+"""The ends of a run that a limit brought about."""
+
+
+def exit_code_of(ended: Ended | RunEnd) -> int:
+    """Return the shell's exit code for the end of a run."""
+    if ended.end == "finished":
+        return EXIT_RAISED if ended.exit_code else 0
+    return EXIT_LIMIT if ended.end in LIMIT_ENDS else EXIT_RAISED
+
+
+def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
+    """Return a stored run as plain data: what it was, how it ended, where the robot is, what it logged.
+
+    Args:
+        run: The run.
+        most_bytes: Lines and samples of a longer output are not counted: they are None.
+    """
+    last = run.telemetry.last()
+    end = run.end
+    counts = counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
+    return {
+        "run": run.number,
+        "id": run.id,
+        "created": run.created,
+        "program": run.program.name,
+        "path": run.program.path,
+        "arguments": list(run.program.arguments),
+        "background": run.spec.world.background,
+        "robot": run.spec.robot.name,
+        "profile": run.spec.profile.name,
+        "seed": run.spec.seed,
+        "state": run.state,
+        "tick": last.tick if last else 0,
+        "time_s": run.time_s,
+        "x_mm": last.x_mm if last else run.spec.world.start.x_mm,
+        "y_mm": last.y_mm if last else run.spec.world.start.y_mm,
+        "heading_deg": last.heading_deg if last else run.spec.world.start.heading_deg,
+        "lines": counts.lines if counts else None,
+        "samples": counts.samples if counts else None,
+        "summary": end.summary if end else "",
+        "error": end.error if end else "",
+        "error_line": end.error_line if end else 0,
+        "notes": list(run.notes),
+    }
+
+
+def last_state(facts: dict[str, Any]) -> str:
+    """Return the line that a run ends with, from what `describe` returned."""
+    state = facts["state"].replace("_", " ")
+    what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
+    samples = "" if facts["samples"] is None else f"{facts['samples']} sample{'s' * (facts['samples'] != 1)} · "
+    return (
+        f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
+        f"x {facts['x_mm']:.2f} mm, y {facts['y_mm']:.2f} mm, heading {shown_heading_deg(facts['heading_deg']):.2f}° · "
+        f"{samples}run {facts['run']}"
+    )
+
+
+def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
+    """Print how a run ended: the program's own traceback and the last state on stderr, or JSON on stdout."""
+    facts = describe(run)
+    if facts["error"] and not any(row.stream == STDERR for row in run.output.rows()):
+        echo_error_lines(facts["error"].rstrip("\n"))
+    if facts["error"].rstrip("\n").endswith(NO_ANSWER):
+        echo_error("`tuisim run` asks nobody: give each answer with --input TEXT, or run the program in the app.")
+    if as_json:
+        echo_json({**facts, "exit_code": exit_code}, flush=True)
+    else:
+        echo_error(last_state(facts))

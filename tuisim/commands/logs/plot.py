@@ -1,0 +1,123 @@
+"""`tuisim log plot`: the chart of a log, in the shell or as a file."""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.charts.figure import View, chart_of
+from tuisim.charts.files import CHART_FORMATS, Size, format_of, save_chart
+from tuisim.commands.echo import echo_chart, echo_error
+from tuisim.commands.logs.sources import names_of, the_source
+from tuisim.errors import ConfigError, LogError, listed
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
+    from tuisim.logs.log import Log
+
+_SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
+_LEAST_COLUMNS, _ROWS = 20, (12, 32)
+"""Of the chart in the shell: narrower terminals get this width, and its height lies between these two."""
+
+
+def plot(arguments: Namespace) -> int:
+    """Draw a log: to the file that `out` names, else as text.
+
+    Raises:
+        ConfigError: an option makes no sense.
+        LogError: the log cannot be read, or there is no such variable.
+        ExportError: the file cannot be written.
+    """
+    if arguments.json:
+        raise ConfigError("does not take --json", "--out chart.svg, chart.png or chart.txt", key="plot")
+    target = Path(arguments.out) if arguments.out else None
+    kind = format_of(target) if target else CHART_FORMATS[".txt"]
+    size = _size(arguments.size, kind.least, kind.most) if arguments.size else None
+    log = the_source(arguments)
+    model = _model(log, arguments)
+    view = View(arguments.facets, arguments.marks, against=_against(log, model, arguments))
+    _check_seen(model)
+    if target:
+        save_chart(model, view, target, size)
+    else:
+        _show(model, view, size)
+    hidden = [trace.name for trace in model.traces if not trace.on]
+    if hidden and not arguments.variable:
+        echo_error(f"note: not drawn: {listed(hidden)}; --variable NAME draws one")
+    return 0
+
+
+def _check_seen(model: Model) -> None:
+    """Make sure that there is something to draw."""
+    ticked = model.traces.ticked()
+    if not any(len(trace.pyramid.times_s) for trace in ticked):
+        raise LogError(f"no numbers in {listed(trace.name for trace in ticked)}", file=model.log.title)
+    if not any(len(trace.pyramid.between(*model.x_limits())[0]) for trace in ticked):
+        low, high = model.traces.span_s()
+        raise LogError("no samples in that time", f"they lie between {low:g} s and {high:g} s", file=model.log.title)
+
+
+def _size(text: str, least: Size, most: Size) -> Size:
+    match = _SIZE.fullmatch(text)
+    size = (int(match[1]), int(match[2])) if match else None
+    if size is None or not all(low <= side <= high for low, side, high in zip(least, size, most, strict=True)):
+        allowed = " to ".join(f"{width}x{height}" for width, height in (least, most))
+        raise ConfigError(f"cannot draw a chart of {text!r}", f"width and height, {allowed}", key="--size")
+    return size
+
+
+def _model(log: Log, arguments: Namespace) -> Model:
+    """The log with the wanted variables ticked and the wanted time chosen."""
+    from tuisim.analysis.model import Model
+    from tuisim.analysis.source import LogRequest, OpenedLog
+
+    model = Model(OpenedLog(LogRequest(), log))
+    if arguments.variable and not arguments.against:
+        names = names_of(log, arguments)
+        for trace in model.traces:
+            trace.on = trace.name in names
+    start, stop = getattr(arguments, "from"), arguments.to
+    if start is None and stop is None:
+        return model
+    low, high = model.traces.span_s()
+    low, high = low if start is None else start, high if stop is None else stop
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise ConfigError(f"nothing lies between {low:g} s and {high:g} s", "--from comes before --to", key="plot")
+    model.limits = low, high
+    return model
+
+
+def _against(log: Log, model: Model, arguments: Namespace) -> tuple[str, str] | None:
+    if not arguments.against:
+        return None
+    if len(arguments.variable) > 1:
+        raise ConfigError("draws one --variable against another", f"got {len(arguments.variable)}", key="--against")
+    y = arguments.variable[0] if arguments.variable else model.selected
+    if y not in log.names:
+        # A column beside the samples, such as y_mm; where there are several runs, it is of the first.
+        return arguments.against, y
+    model.selected = y
+    return arguments.against, y
+
+
+def _show(model: Model, view: View, size: Size | None) -> None:
+    """Print the chart, in colours where there is a terminal that has them."""
+    from rich.console import Console
+
+    from tuisim.charts.text import text_of
+
+    terminal = shutil.get_terminal_size()
+    width, height = size or (max(terminal.columns, _LEAST_COLUMNS), min(max(terminal.lines - 2, _ROWS[0]), _ROWS[1]))
+    finer = CHART_FORMATS[".txt"].finer
+    chart = chart_of(model, view, width * finer[0], height * finer[1])
+    console = Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False)
+    colors = console.color_system is not None and not console.no_color
+    # Written by ourselves: the console would end the process where a pipe is closed.
+    with console.capture() as captured:
+        console.print(text_of(chart, width, height, colors=colors), soft_wrap=True)
+    echo_chart(captured.get())

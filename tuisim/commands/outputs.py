@@ -1,0 +1,26 @@
+"""The files that a command is to write, checked before it begins."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from tuisim.errors import ConfigError
+from tuisim.logs.export import check_target
+
+
+def check_targets(targets: Iterable[str | Path]) -> None:
+    """Complain about files that cannot be written, and about one that is named twice.
+
+    Raises:
+        ConfigError: two of them are the same file.
+        ExportError: one cannot be written.
+    """
+    seen: set[str] = set()
+    for target in targets:
+        check_target(target)
+        real = os.path.realpath(target)
+        if real in seen:
+            raise ConfigError(f"{real} is named twice", "give each export its own file", key="--export")
+        seen.add(real)

@@ -1,0 +1,129 @@
+"""Watches one headless run: passes on what it prints, stops it on ctrl-C."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable, Iterable
+from itertools import groupby
+from types import FrameType
+from typing import Self, TextIO
+
+from tuisim.commands.echo import echo_error
+from tuisim.commands.exit_status import EXIT_BROKEN_PIPE
+from tuisim.commands.progress import aside
+from tuisim.protocol import Ended, Message
+from tuisim.runs.handle import RunHandle
+from tuisim.runs.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
+
+POLL_S = 0.05
+"""How long a printed line may wait before it is passed on."""
+
+
+class Interrupts:
+    """Ctrl-C and SIGTERM, from the start of the first run until all is written that was asked for.
+
+    The first one stops the run at hand, and no further one is begun; what has been logged is exported all the same.
+    A second one ends the command at once.
+    """
+
+    def __init__(self) -> None:
+        self.exit_code = 0
+        """As a shell shows a program that the signal has ended; 0 while there was none."""
+        self._handle: RunHandle | None = None
+
+    def __enter__(self) -> Self:
+        self._before = {number: signal.signal(number, self._take) for number in (signal.SIGINT, signal.SIGTERM)}
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def watch(self, handle: RunHandle) -> None:
+        """Take a run as the one at hand."""
+        self._handle = handle
+        if self.exit_code:
+            handle.stop()
+
+    def _take(self, number: int, frame: FrameType | None) -> None:
+        if self.exit_code:
+            if self._handle is not None and self._handle.ended is None:
+                self._handle.kill()
+            raise KeyboardInterrupt
+        self.exit_code = 128 + number
+        if self._handle is not None:
+            self._handle.stop()
+
+
+class Follower:
+    """Follows one run.
+
+    Args:
+        handle: The run.
+        out: Where its printed lines go; error text and speech go to stderr.
+        listen: Called with each event of the run, after what was printed before it.
+        tell: Called now and then, to say how far the run is.
+    """
+
+    def __init__(
+        self,
+        handle: RunHandle,
+        out: TextIO,
+        listen: Callable[[Message], None] | None = None,
+        tell: Callable[[RunHandle], None] = lambda _: None,
+    ) -> None:
+        self._tell = tell
+        self._listen = listen
+        self._handle = handle
+        self._out = out
+        self.cut = 0
+        """The exit code that a closed stdout asks for, else 0."""
+        self.lost = ""
+        """Why printed lines could not be passed on, empty if they were."""
+
+    def to_the_end(self) -> Ended:
+        """Wait until the run has ended, and return how."""
+        while True:
+            events: list[Message] = []
+            if self._listen is None:
+                ended = self._handle.wait(POLL_S)
+            else:
+                self._handle.wait_for_event(POLL_S)
+                events = self._handle.pump()
+                ended = self._handle.ended
+            self._pass_on(self._handle.output.new_rows())
+            self._tell(self._handle)
+            for event in events:
+                if self._listen is not None:
+                    self._listen(event)
+            if ended:
+                return ended
+
+    def _pass_on(self, rows: Iterable[OutputRow]) -> None:
+        """Write rows in the order in which they came, also where some go to stdout and some to stderr."""
+        for to_stdout, group in groupby(rows, key=lambda row: row.stream == STDOUT):
+            if to_stdout:
+                with aside(self._out):
+                    self._write("".join(row.text + "\n" for row in group))
+                continue
+            for row in group:
+                # What it prints is the program's affair, as in a shell; what it says stands in a line of ours.
+                if row.stream == STDERR:
+                    with aside(sys.stderr):
+                        sys.stderr.write(row.text + "\n")
+                elif row.stream == SPEECH:
+                    echo_error(line_of(row))
+
+    def _write(self, text: str) -> None:
+        if self.cut or self.lost:
+            return
+        try:
+            self._out.write(text)
+            self._out.flush()
+        except BrokenPipeError:
+            self.cut = EXIT_BROKEN_PIPE
+            self._handle.stop()
+        except OSError as error:
+            # The run and its recording are worth more than its echo here.
+            self.lost = f"cannot write to stdout: {error.strerror or error}"

@@ -1,0 +1,242 @@
+"""From the words of a command line to what is run: program, settings, specification.
+
+The command line wins over the world file, the world file over the program's magic line, and that over
+the defaults.
+"""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tuisim.commands.echo import echo_error
+from tuisim.commands.notebooks import NotRun, check_folder, known_programs, known_programs_of
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import ARGUMENTS_FOLLOW, RobotChoice, Settings, given, settings_of
+from tuisim.config.program_file import ProgramSource, read_program
+from tuisim.config.robots import choose_robot
+from tuisim.config.worlds import WorldFile, load_world, means_world
+from tuisim.core.spec import RunSpec
+from tuisim.errors import ConfigError
+from tuisim.notebook.cells import is_notebook
+from tuisim.runs.handle import Program, field_files
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+_OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors"})
+"""Fields of `Settings` that have nothing to do with what is run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """All that starting a run, or the app, needs."""
+
+    program: Program | None
+    settings: Settings
+    spec: RunSpec
+    world: WorldFile | None = None
+    label: str = ""
+    """What it is called in a table; empty for the program's name."""
+
+
+def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
+    """Complain if the program's arguments belong to nobody.
+
+    Args:
+        words: Programs and worlds, as the user named them.
+        arguments: The parsed command line.
+
+    Raises:
+        ConfigError: there is no program, more than one, or a notebook.
+    """
+    programs = [word for word in words if not means_world(word)]
+    if getattr(arguments, "run", None) is not None:
+        raise ConfigError("a stored run has arguments of its own", "leave them out", key=ARGUMENTS_FOLLOW)
+    if len(programs) > 1:
+        raise ConfigError("arguments go to one program", f"got {len(programs)}", key=ARGUMENTS_FOLLOW)
+    if not programs and not any(map(means_world, words)) and not arguments.world:
+        raise ConfigError("arguments need a program", "tuisim PROGRAM -- ARGUMENTS", key=ARGUMENTS_FOLLOW)
+    if programs and os.path.isdir(programs[0]):
+        raise ConfigError(f"{programs[0]} is a folder, whose notebooks take no arguments", key=ARGUMENTS_FOLLOW)
+    if programs and is_notebook(programs[0]):
+        raise ConfigError(f"{programs[0]} is a notebook, whose cells take no arguments", key=ARGUMENTS_FOLLOW)
+
+
+def find_program(word: str) -> Path:
+    """Return the file that a word means: a path, else the name of an example program; it may not be there.
+
+    Raises:
+        ConfigError: nobody can tell whether it is there, such as with a name that is too long.
+    """
+    path = Path(word)
+    try:
+        path.exists()
+    except OSError as error:
+        raise ConfigError(f"cannot read {word}: {error.strerror or error}") from error
+    if not path.name or path.parent != Path() or path.exists():
+        return path
+    from tuisim.config.assets import programs_folder
+
+    for name in (path.name, f"{path.name}.py"):
+        if (example := programs_folder() / name).is_file():
+            return example
+    return path
+
+
+def _world(words: Sequence[str], arguments: Namespace) -> WorldFile | None:
+    """The world that is named, as a word or with the switch."""
+    switch = arguments.world
+    named = [word for word in words if means_world(word)] + ([] if switch is None else [switch])
+    if len(named) > 1:
+        raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
+    return load_world(named[0], given(arguments).get("mats")) if named else None
+
+
+def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -> Prepared:
+    in_world = world.settings if world else {}
+    if word is None:
+        if "arguments" in arguments:
+            named = world.path if world else arguments.world
+            raise ConfigError(f"{named} names no program that could take arguments", key=ARGUMENTS_FOLLOW)
+        settings = settings_of(in_world, given(arguments))
+        return Prepared(None, settings, _spec(settings), world)
+    return _of_source(read_program(find_program(word)), world, arguments)
+
+
+def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
+    settings = settings_of(file.switches, world.settings if world else {}, given(arguments))
+    return Prepared(_program(file, settings), settings, _spec(settings), world)
+
+
+def _spec(settings: Settings) -> RunSpec:
+    """Return the run's specification; what there is to know of the robot's file is said on stderr."""
+    robot = settings.robot if isinstance(settings.robot, RobotChoice) else choose_robot(settings.robot, "-r")
+    for note in robot.notes:
+        echo_error(f"note: {note}")
+    return build_run_spec(replace(settings, robot=robot) if robot.notes else settings)
+
+
+def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
+    try:
+        return _of_source(file, world, arguments)
+    except ConfigError as error:
+        # A notebook has many: a mat or robot that there is not says in which of them.
+        raise ConfigError(error.message, error.hint, file="" if error.file else file.name) from None
+
+
+def _program(file: ProgramSource, settings: Settings) -> Program:
+    return Program(
+        name=file.name,
+        text=file.text,
+        prelude=settings.preload or file.prelude,
+        path=file.path,
+        arguments=settings.arguments,
+        module_folder=file.module_folder,
+    )
+
+
+def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
+    """Read what the app is opened with: nothing, a program, a world, or a program in a world.
+
+    Args:
+        words: What the user named.
+        arguments: The parsed command line.
+
+    Raises:
+        ConfigError: program, magic line, world or switches are wrong, or there are two programs.
+    """
+    world = _world(words, arguments)
+    programs = [word for word in words if not means_world(word)]
+    if len(programs) > 1:
+        raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
+    word = programs[0] if programs else world.program if world else None
+    if word is not None and is_notebook(word):
+        return _of_cell(known_programs(word)[0].source, world, arguments)
+    return _prepared(word, world, arguments)
+
+
+def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tuple[StoredRun, Prepared]:
+    """Read a stored run that the app is to show.
+
+    Args:
+        run: Its number, its id or the start of it, its folder's path, or `last`.
+        words: What else the user named, which must be nothing.
+        arguments: The parsed command line.
+
+    Raises:
+        ConfigError: a program, a world or a switch for one is named besides.
+        LogError: there is no such run, or it is damaged.
+    """
+    chosen = given(arguments)
+    if words or arguments.world or (wrong := sorted(chosen.keys() - _OF_THE_APP)):
+        what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
+        raise ConfigError(f"a stored run has a program and a world of its own, not {what}", "name one", key="--run")
+    stored = RunStore().load_run(Path(run) if "/" in run else run)
+    program = stored.program
+    opened = Program(
+        program.name, program.text, program.prelude, program.path, program.arguments,
+        module_folder=program.module_folder,
+    )  # fmt: skip
+    return stored, Prepared(opened, settings_of(chosen), stored.spec)
+
+
+def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared | NotRun]:
+    """Read programs to run one after another, all in the world that is named, if one is.
+
+    What is wrong in one notebook of a folder does not keep the others from running.
+
+    Args:
+        words: Programs and at most one world, as the user named them.
+        arguments: The parsed command line.
+
+    Raises:
+        ConfigError: a program, magic line, world or switch is wrong, or there is no program.
+    """
+    world = _world(words, arguments)
+    programs = [word for word in words if not means_world(word)]
+    if not programs and world and world.program is not None:
+        programs = [world.program]
+    if not programs:
+        where = f"{world.path} names no program" if world else "no program is named"
+        raise ConfigError(where, "tuisim run PROGRAM…")
+    prepared: list[Prepared | NotRun] = []
+    for word in programs:
+        if os.path.isdir(word):
+            prepared += _of_folder(word, world, arguments)
+        elif is_notebook(word):
+            prepared += [_checked(_of_cell(program.source, world, arguments)) for program in known_programs(word)]
+        else:
+            prepared.append(_checked(_prepared(word, world, arguments)))
+    return prepared
+
+
+def _of_folder(word: str, world: WorldFile | None, arguments: Namespace) -> list[Prepared | NotRun]:
+    # What is wrong with the command line is not to be told for each cell.
+    build_run_spec(settings_of(world.settings if world else {}, given(arguments)))
+    found: list[Prepared | NotRun] = []
+    for path in check_folder(word, run_all=arguments.all):
+        label = os.path.relpath(path, word)
+        try:
+            programs = known_programs_of(path)
+        except ConfigError as error:
+            found.append(NotRun(label, error))
+            continue
+        for program in programs:
+            cell = f"{label}#{program.number}"
+            try:
+                found.append(replace(_checked(_of_source(program.source, world, arguments)), label=cell))
+            except ConfigError as error:
+                found.append(NotRun(cell, error))
+    if not found:
+        raise ConfigError("has no notebook with a program", "program cells begin with %%sim_magic", file=word)
+    return found
+
+
+def _checked(one: Prepared) -> Prepared:
+    """Read the picture of a mat of the user's own: a damaged one shows only then. The catalogue's are whole."""
+    if os.path.isabs(one.spec.world.background):
+        field_files(one.spec)
+    return one

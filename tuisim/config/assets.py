@@ -1,0 +1,250 @@
+"""Where the mats and the example programs are, and what they are called.
+
+Both folders, `backgrounds` and `programs`, are looked for in the folder that the
+environment variable TUISIM_ASSETS names; without it beside the package (a checkout or an
+editable install), then inside it (an installed copy).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from tuisim.config.mat_image import check_file
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import Obstacle
+from tuisim.errors import BackgroundError, ConfigError, ObstacleError
+from tuisim.source import source_lines
+
+CATALOG = "catalog.toml"
+OWN_START = Pose(200.0, 800.0, 0.0)
+"""Where a robot starts on an image of the user's own."""
+_PACKAGE = Path(__file__).resolve().parent.parent
+_FOLDERS = ("backgrounds", "programs")
+_KEYS = {"title", "original", "shipped", "start", "obstacles", "sensor_x_mm"}
+
+
+@dataclass(frozen=True, slots=True)
+class Background:
+    """One mat: of the catalogue, or an own image."""
+
+    name: str
+    title: str
+    start: Pose
+    image: Path
+    obstacles: tuple[Obstacle, ...] = ()
+    """What stands on the mat by itself."""
+    sensor_x_mm: Mapping[str, float] = field(default_factory=dict)
+    """Colour sensors that sit elsewhere while this mat is used, by name."""
+    original: str = ""
+    """File name of its picture in the browser simulator of the course, empty if it had none."""
+    shipped: bool = True
+    """Whether there is a picture of ours."""
+    is_own: bool = False
+    """Whether the picture is the user's, in a folder of mats."""
+    fit: str | None = None
+    """How the picture becomes a mat unless the user says it, one of `core.spec.BACKGROUND_FITS`; None is the first."""
+
+
+class ProgramFile(NamedTuple):
+    """One example program."""
+
+    name: str
+    """File name, such as `log_greys.py`."""
+    path: Path
+    title: str
+    """First line of the program's docstring, empty if it has none."""
+
+
+def _folder(name: str) -> Path:
+    given = os.environ.get("TUISIM_ASSETS")
+    places = [Path(given)] if given else [_PACKAGE.parent, _PACKAGE / "_assets"]
+    # Beside the package, one folder of such a name alone may be anybody's.
+    needed = (name,) if given else _FOLDERS
+    for place in places:
+        if all((place / each).is_dir() for each in needed):
+            return place / name
+    looked = " and ".join(str(place) for place in places)
+    hint = "TUISIM_ASSETS may name the folder that holds backgrounds and programs"
+    raise ConfigError(f"no folder {name!r} in {looked}", hint)
+
+
+def backgrounds_folder() -> Path:
+    """Return the folder of the mats and their catalogue.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    return _folder("backgrounds")
+
+
+def programs_folder() -> Path:
+    """Return the folder of the example programs.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    return _folder("programs")
+
+
+def _title_of(path: Path) -> str:
+    import ast
+
+    try:
+        lines = source_lines(path.read_text(encoding="utf-8"))
+        # A program may begin with a notebook's magic line, which is not Python.
+        module = ast.parse("\n".join("" if line.startswith("%") else line for line in lines))
+    except (SyntaxError, ValueError, OSError):
+        return ""
+    return (ast.get_docstring(module) or "").partition("\n")[0].strip()
+
+
+def programs() -> list[ProgramFile]:
+    """Return the example programs by name.
+
+    Raises:
+        ConfigError: there is no folder of programs.
+    """
+    return [ProgramFile(path.name, path, _title_of(path)) for path in sorted(programs_folder().glob("*.py"))]
+
+
+def _number(value: object, key: str, file: Path) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise BackgroundError(f"must be a number, got {value!r}", file=str(file), key=key)
+    return float(value)
+
+
+def _numbers(table: object, keys: tuple[str, ...], key: str, file: Path) -> list[float]:
+    """The values of a table that has exactly these keys."""
+    if not isinstance(table, dict) or set(table) != set(keys):
+        raise BackgroundError(f"must have {', '.join(keys)}, got {table!r}", file=str(file), key=key)
+    return [_number(table[each], f"{key}.{each}", file) for each in keys]
+
+
+def _obstacle(sides: object, key: str, file: Path) -> Obstacle:
+    if not isinstance(sides, list) or len(sides) != 4:
+        message = f"must be [x_mm, y_mm, width_mm, height_mm], got {sides!r}"
+        raise BackgroundError(message, file=str(file), key=key)
+    x_mm, y_mm, width_mm, height_mm = (_number(side, key, file) for side in sides)
+    try:
+        return Obstacle(x_mm, y_mm, width_mm, height_mm)
+    except ObstacleError as error:
+        raise BackgroundError(error.message, error.hint, file=str(file), key=key) from error
+
+
+def _background(name: str, entry: object, file: Path) -> Background:
+    """One mat from its table in the catalogue."""
+    if not isinstance(entry, dict):
+        raise BackgroundError(f"must be a table, got {entry!r}", file=str(file), key=name)
+    if unknown := sorted(set(entry) - _KEYS):
+        hint = f"allowed are {', '.join(sorted(_KEYS))}"
+        raise BackgroundError("no such key", hint, file=str(file), key=f"{name}.{unknown[0]}")
+    title = entry.get("title")
+    if not isinstance(title, str) or not title:
+        raise BackgroundError(f"must be a line of text, got {title!r}", file=str(file), key=f"{name}.title")
+    start = _numbers(entry.get("start"), ("x_mm", "y_mm", "heading_deg"), f"{name}.start", file)
+    original, shipped = entry.get("original", ""), entry.get("shipped", True)
+    if not isinstance(original, str):
+        raise BackgroundError(f"must be a file name, got {original!r}", file=str(file), key=f"{name}.original")
+    if not isinstance(shipped, bool):
+        raise BackgroundError(f"must be true or false, got {shipped!r}", file=str(file), key=f"{name}.shipped")
+    boxes, sensors = entry.get("obstacles", []), entry.get("sensor_x_mm", {})
+    if not isinstance(boxes, list):
+        raise BackgroundError(f"must be a list, got {boxes!r}", file=str(file), key=f"{name}.obstacles")
+    if not isinstance(sensors, dict):
+        raise BackgroundError(f"must be a table, got {sensors!r}", file=str(file), key=f"{name}.sensor_x_mm")
+    return Background(
+        name=name,
+        title=title,
+        start=Pose(*start),
+        image=file.parent / f"{name}.png",
+        obstacles=tuple(_obstacle(box, f"{name}.obstacles", file) for box in boxes),
+        sensor_x_mm={sensor: _number(x, f"{name}.sensor_x_mm.{sensor}", file) for sensor, x in sensors.items()},
+        original=original,
+        shipped=shipped,
+    )
+
+
+def backgrounds() -> Mapping[str, Background]:
+    """Return every mat that has a picture of ours by name, in the order of the catalogue.
+
+    Raises:
+        As `catalogue`.
+    """
+    return {name: mat for name, mat in catalogue().items() if mat.shipped}
+
+
+def catalogue() -> Mapping[str, Background]:
+    """Return every mat of the catalogue by name, in its order.
+
+    Raises:
+        ConfigError: there is no folder of mats.
+        BackgroundError: the catalogue cannot be read or says something impossible.
+    """
+    import tomllib
+
+    file = backgrounds_folder() / CATALOG
+    try:
+        entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BackgroundError(f"cannot be read: {error.strerror or error}", file=str(file)) from error
+    except ValueError as error:
+        raise BackgroundError(f"is not TOML: {error}", file=str(file)) from error
+    return {name: _background(name, entry, file) for name, entry in entries.items()}
+
+
+def background(name: str) -> Background:
+    """Return one mat as a specification calls it: of the catalogue, or an image of the user's own.
+
+    What has a folder in it or a suffix is the path of an image, and so is the name of a file
+    here; a name of the catalogue goes first. An own mat is called after its file, without
+    the suffix.
+
+    Args:
+        name: Such as `Lollipop`, `maze.png` or `~/mats/maze.jpg`.
+
+    Raises:
+        BackgroundError: there is none of that name, or its picture is missing.
+        ConfigError: there is no folder of mats.
+    """
+    known = catalogue()
+    if name not in known:
+        if is_image_path(name):
+            return own_background(Path(name))
+        raise BackgroundError(f"no such mat {name!r}", names_hint(name, list(known)))
+    found = known[name]
+    if not found.image.is_file():
+        raise BackgroundError(f"the mat {name!r} has no picture", file=str(found.image))
+    return found
+
+
+def is_image_path(name: str) -> bool:
+    """Return whether a word that names no mat of the catalogue means an image."""
+    return os.sep in name or bool(Path(name).suffix) or os.path.isfile(name)
+
+
+def own_background(path: Path) -> Background:
+    """Return an image as a mat, with the robot at OWN_START.
+
+    Raises:
+        BackgroundError: there is no such file, or it cannot be a picture.
+    """
+    try:
+        image = Path(os.path.abspath(path.expanduser()))
+    except RuntimeError as error:
+        raise BackgroundError(f"no such folder: {error}", file=str(path)) from error
+    check_file(image)
+    return Background(image.stem, f"The image {image.name}", OWN_START, image)
+
+
+def names_hint(name: str, known: list[str]) -> str:
+    """Return the hint for a wrong name of a mat: the nearest one, and all that there are."""
+    from difflib import get_close_matches
+
+    by_lower = {each.lower(): each for each in known}
+    near = get_close_matches(name.lower(), by_lower, n=1, cutoff=0.5)
+    guess = f"did you mean {by_lower[near[0]]}? " if near else ""
+    return f"{guess}there are {', '.join(known)}, or the path of an image"

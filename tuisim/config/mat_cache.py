@@ -1,0 +1,234 @@
+"""Mats made ready for the sensors: an image becomes raw files that are mapped, not read.
+
+`prepare` does the slow part once for each image and disc diameter and keeps it in the
+cache folder; `open_field` maps what it made. What only `prepare` needs is imported there,
+so that a child process opens a field at once.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.atomic import PART_SUFFIX, make_private_folder, replacing, sweep
+from tuisim.config.mat_image import check_fit, decode, fits_as_it_is, read_file
+from tuisim.core.field import Field, disc_mask
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.errors import BackgroundError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+MAX_CACHED_FILES = 30
+"""The sums of one diameter are 33 MB; beyond so many files the least recently used go."""
+
+MAX_DIAMETER_PX = 128
+"""One disc row of white pixels must fit a signed 16-bit sum."""
+
+_LAYOUT = 1
+"""Part of the file names: another layout or another way to decode needs another number."""
+_BLOCK_ROWS = 64
+"""Rows summed at a time, so that they stay in the processor's cache."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldFiles:
+    """Where a prepared mat lies. Any process may open it, as long as the cache keeps it."""
+
+    width_px: int
+    height_px: int
+    pixels: Path
+    """Raw bytes, rows from the top, red, green and blue of each pixel."""
+    sums: tuple[tuple[int, Path], ...]
+    """Disc diameter and the file with its sums, laid out as `core.field.Field` says."""
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the files as dictionaries, lists, strings and numbers, ready for JSON."""
+        return {
+            "width_px": self.width_px,
+            "height_px": self.height_px,
+            "pixels": str(self.pixels),
+            "sums": [[diameter, str(path)] for diameter, path in self.sums],
+        }
+
+    @classmethod
+    def from_plain(cls, data: Mapping[str, Any]) -> FieldFiles:
+        """Rebuild what `to_plain` wrote.
+
+        Raises:
+            KeyError, TypeError, ValueError: `data` was not written by `to_plain`.
+        """
+        sums = tuple((int(diameter), Path(path)) for diameter, path in data["sums"])
+        return cls(int(data["width_px"]), int(data["height_px"]), Path(data["pixels"]), sums)
+
+
+def cache_folder() -> Path:
+    """Return where prepared mats are kept: `cache` in TUISIM_HOME, else the user's cache folder."""
+    if home := os.environ.get("TUISIM_HOME"):
+        return Path(home) / "cache"
+    import platformdirs
+
+    return platformdirs.user_cache_path("tuisim")
+
+
+def _pixels_size() -> int:
+    return FIELD_HEIGHT_MM * FIELD_WIDTH_MM * 3
+
+
+def _sums_size(diameter: int) -> int:
+    return (FIELD_HEIGHT_MM + diameter) * (FIELD_WIDTH_MM + diameter) * 3 * 4
+
+
+def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> FieldFiles:
+    """Make an image ready to be read by colour sensors of some diameters.
+
+    What the cache already has is not made again.
+
+    Args:
+        image: Any picture that Pillow reads, within the limits of `pictures`.
+        diameters: Disc diameters in pixels, in any order, also repeated.
+        fit: How an image of another size than the field meets it, one of
+            `core.spec.BACKGROUND_FITS`; see `pictures`.
+
+    Raises:
+        BackgroundError: the image cannot be read, a diameter or `fit` is impossible, or the
+            cache folder cannot be written.
+    """
+    import hashlib
+
+    wanted = sorted(set(diameters))
+    for diameter in wanted:
+        if not 1 <= diameter <= MAX_DIAMETER_PX:
+            raise BackgroundError(f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}")
+    check_fit(fit)
+    content = read_file(image)
+    folder = cache_folder() / "fields"
+    how = "" if fits_as_it_is(content) else f"{fit}-"
+    stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{how}{_LAYOUT}"
+    sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in wanted)
+    files = FieldFiles(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
+    missing = [(diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))]
+    if not _in_use(files.pixels, _pixels_size()) or missing:
+        _make(files, missing, decode(content, image, fit))
+    return files
+
+
+def _in_use(path: Path, size: int) -> bool:
+    """Whether the cache has a file of that size; if so, it counts as used now."""
+    try:
+        if path.stat().st_size != size:
+            return False
+        os.utime(path)
+    except OSError:
+        return False
+    return True
+
+
+def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np.uint8]) -> None:
+    """Write the pixels and the missing sums into the cache, then make room."""
+    folder = files.pixels.parent
+    try:
+        make_private_folder(folder)
+        _store(files.pixels, pixels)
+        for diameter, path in missing:
+            _store(path, _disc_sums(pixels, diameter))
+        _trim(folder, {files.pixels, *(path for _, path in files.sums)})
+    except OSError as error:
+        raise BackgroundError(
+            f"the mat cannot be prepared: {error.strerror or error}",
+            "TUISIM_HOME may name another folder that can be written",
+            file=str(folder),
+        ) from error
+
+
+def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
+    """Return the sums over every disc, shape (height + d, width + d, 3); see `core.field.Field`."""
+    import numpy as np
+
+    height, width, _ = pixels.shape
+    # From one disc to its right neighbour the sum gains the pixel after each row of the
+    # disc and loses the row's first: two small additions a row, and one running total.
+    dark = np.zeros((height + 2 * diameter, width + 2 * diameter + 1, 3), np.int16)
+    dark[diameter : diameter + height, diameter + 1 : diameter + 1 + width] = pixels
+    around = dark.reshape(len(dark), -1)
+    spans = [
+        (row, 3 * inside.index(True), 3 * (diameter - inside[::-1].index(True)))
+        for row, inside in enumerate(disc_mask(diameter))
+        if any(inside)
+    ]
+    sums = np.empty((height + diameter, width + diameter, 3), np.uint32)
+    samples = 3 * (width + diameter)
+    for top in range(0, len(sums), _BLOCK_ROWS):
+        block = sums[top : top + _BLOCK_ROWS]
+        change = np.zeros((len(block), samples), np.int16)
+        for row, first, after in spans:
+            beneath = around[top + row : top + row + len(block)]
+            change += beneath[:, after : after + samples]
+            change -= beneath[:, first : first + samples]
+        # A negative change wraps around in unsigned numbers, and the total wraps back.
+        np.cumsum(change.reshape(block.shape), axis=1, dtype=np.uint32, out=block)
+    return sums
+
+
+def _store(path: Path, array: NDArray[Any]) -> None:
+    """Write an array's bytes; another process sees the whole file or none."""
+    with replacing(path, lasting=False, owner_only=True) as stream:
+        stream.write(array.data)
+
+
+def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
+    for path in folder.iterdir():
+        # Another process may be making room too.
+        with suppress(FileNotFoundError):
+            yield path.stat().st_mtime, path
+
+
+def _trim(folder: Path, keep: set[Path]) -> None:
+    """Remove the least recently used files beyond MAX_CACHED_FILES, and what killed processes left."""
+    sweep(folder)
+    cached = [path for _, path in sorted(_by_age(folder)) if path.suffix != PART_SUFFIX]
+    surplus = max(0, len(cached) - MAX_CACHED_FILES)
+    for path in [path for path in cached if path not in keep][:surplus]:
+        path.unlink(missing_ok=True)
+
+
+def _mapped(path: Path, size: int) -> memoryview:
+    try:
+        with path.open("rb") as stream:
+            found = os.fstat(stream.fileno()).st_size
+            if found != size:
+                raise BackgroundError(f"has {found} bytes, not {size}", "remove it: it is made again", file=str(path))
+            return memoryview(mmap.mmap(stream.fileno(), size, access=mmap.ACCESS_READ))
+    except OSError as error:
+        message = f"the prepared mat cannot be opened: {error.strerror or error}"
+        raise BackgroundError(message, file=str(path)) from error
+
+
+def open_field(files: FieldFiles) -> Field:
+    """Map a prepared mat, in any process.
+
+    Raises:
+        BackgroundError: a file is gone, for example because the cache made room, or is not whole.
+    """
+    width, height = files.width_px, files.height_px
+    pixels = _mapped(files.pixels, 3 * width * height)
+    sums = {d: _mapped(path, 12 * (width + d) * (height + d)).cast("I") for d, path in files.sums}
+    return Field(width, height, pixels, sums)
+
+
+def mat_pixels(files: FieldFiles) -> NDArray[np.uint8]:
+    """Return a prepared mat for drawing: shape (height, width, 3), rows from the top, read-only.
+
+    Raises:
+        BackgroundError: the file is gone or not whole.
+    """
+    import numpy as np
+
+    shape = (files.height_px, files.width_px, 3)
+    return np.frombuffer(_mapped(files.pixels, shape[0] * shape[1] * 3), np.uint8).reshape(shape)

@@ -1,0 +1,323 @@
+"""The switches that the command line and a program's magic line share, and the settings they make.
+
+To add a switch: add a line to `SWITCHES`, and its field to `Settings`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NoReturn
+
+from tuisim.core.parts import BeaconSpec, RemotePress
+from tuisim.core.profile import ProfileSpec
+from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, Obstacle, RobotSpec
+from tuisim.errors import ConfigError
+
+ARGUMENTS_FOLLOW = "--"
+"""All after this word of the command line is the program's."""
+PRELOADS = ("none", "imports", "preloaded")
+COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
+MAX_POSITION_MM = 10_000
+MAX_ANGLE_DEG = 36_000
+MAX_SEED = 2**63 - 1
+MIN_PEN_MM, MAX_PEN_MM = 0.1, 200.0
+MIN_SPEED, MAX_SPEED = 0.01, 1000.0
+MAX_SPEED_WORD = "max"
+
+
+@dataclass(frozen=True, slots=True)
+class RobotChoice:
+    """A robot that has been read, and what its file decides beside it."""
+
+    spec: RobotSpec
+    motor_noise: int | None = None
+    """The motor noise of a run that says none of its own."""
+    own_places: bool = True
+    """Whether its colour sensors stay where they are on a mat that has places of its own for them."""
+    light_noise: int | None = None
+    """The light noise of a run that says none of its own."""
+    notes: tuple[str, ...] = ()
+    """What to know of the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the switches and a world file decide. None leaves the choice to the mat, robot, profile or program."""
+
+    background: str = "Empty_Map"
+    """A mat's name, or an image file."""
+    mats: str | None = None
+    """A folder with mats of the user's own."""
+    background_fit: str | None = None
+    robot: str | RobotChoice = "Default_Robot"
+    """Its name or file, or itself."""
+    obstacles: str | tuple[Obstacle, ...] | None = None
+    """Their name or file, or themselves."""
+    walls: bool = True
+    solid: bool | None = None
+    x_mm: float | None = None
+    y_mm: float | None = None
+    heading_deg: float | None = None
+    light_noise: int | None = None
+    motor_noise: int | None = None
+    pen_down: bool | None = None
+    pen_color: str | None = None
+    pen_width_mm: float | None = None
+    pen_marks: bool = False
+    beacon: BeaconSpec | None = None
+    """An infrared beacon on the field."""
+    remote: tuple[RemotePress, ...] = ()
+    """What is pressed on the infrared remote control."""
+    profile: str | ProfileSpec = "robolab"
+    """Its name or file, or itself."""
+    seed: int = 0
+    arguments: tuple[str, ...] = ()
+    """What the program finds in `sys.argv`, after its path: what stands after `--`."""
+    preload: str | None = None
+    speed: float | None = None
+    """1.0 real time, 0 as fast as possible; None: real time in the app, as fast as possible headless."""
+    autorun: bool = False
+    clear_trace: bool = False
+    quiet: bool = False
+    rays: bool = False
+    panels_on: tuple[str, ...] = ()
+    panels_off: tuple[str, ...] = ()
+    fps: int = 20
+    colors: str = "auto"
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """One line of `SWITCHES`."""
+
+    group: str
+    flags: tuple[str, ...]
+    field: str
+    """The field of `Settings` that it sets."""
+    help: str
+    metavar: str = ""
+    """How its value is called; empty for a switch without a value."""
+    convert: Callable[[str, str], Any] | None = None
+    """From the value's text and the first flag to the value of the field."""
+    panel: str = ""
+    """The panel that a switch without a value puts on or off; otherwise it sets its field to `value`."""
+    value: bool = True
+    magic_flags: tuple[str, ...] = ()
+    """Further names in a magic line, where the command line means something else by them."""
+
+
+def nearest(name: str, allowed: Iterable[str]) -> str:
+    """Return the hint for a wrong name: the nearest ones, else all of them."""
+    names = list(allowed)
+    by_lower = {known.lower(): known for known in names}
+    close = [by_lower[lower] for lower in difflib.get_close_matches(name.lower(), by_lower, 3, 0.5)]
+    return f"did you mean {' or '.join(close)}?" if close else f"one of {', '.join(names)}"
+
+
+def number(low: float, high: float) -> Callable[[str, str], float]:
+    """Return a converter from the text after a flag to a number in a range; it raises ConfigError for others."""
+
+    def convert(text: str, flag: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not low <= value <= high:
+            raise ConfigError(f"must be a number from {low:g} to {high:g}, got {text!r}", key=flag)
+        return value
+
+    return convert
+
+
+def whole(low: int, high: int) -> Callable[[str, str], int]:
+    """Return a converter from the text after a flag to a whole number in a range; it raises ConfigError for others."""
+
+    def convert(text: str, flag: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = low - 1
+        if not low <= value <= high:
+            raise ConfigError(f"must be a whole number from {low} to {high}, got {text!r}", key=flag)
+        return value
+
+    return convert
+
+
+def _one_of(allowed: Sequence[str]) -> Callable[[str, str], str]:
+    def convert(text: str, flag: str) -> str:
+        if text not in allowed:
+            raise ConfigError(f"no such value {text!r}", f"one of {', '.join(allowed)}", key=flag)
+        return text
+
+    return convert
+
+
+def _name(text: str, flag: str) -> str:
+    if not text.strip():
+        raise ConfigError("a name is missing", key=flag)
+    return text
+
+
+def _on_off(text: str, flag: str) -> bool:
+    return _one_of(("on", "off"))(text, flag) == "on"
+
+
+def pen_color(text: str, flag: str) -> str:
+    """Return a colour in small letters.
+
+    Raises:
+        ConfigError: it is neither a CSS name nor `#rrggbb`.
+    """
+    from tuisim.core.css_colors import css_names, css_rgb
+
+    if css_rgb(text) is None:
+        near = difflib.get_close_matches(text.lower(), css_names(), 3)
+        guess = f"did you mean {' or '.join(near)}? " if near else ""
+        raise ConfigError(f"no such colour {text!r}", f"{guess}any CSS colour name, or #rrggbb", key=flag)
+    return text.lower()
+
+
+def _speed(text: str, flag: str) -> float:
+    if text == MAX_SPEED_WORD:
+        return 0.0
+    try:
+        return number(MIN_SPEED, MAX_SPEED)(text, flag)
+    except ConfigError:
+        allowed = f"{MAX_SPEED_WORD}, or a number from {MIN_SPEED:g} to {MAX_SPEED:g}"
+        raise ConfigError(f"no such speed {text!r}", allowed, key=flag) from None
+
+
+_position = number(-MAX_POSITION_MM, MAX_POSITION_MM)
+_angle = number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
+
+WORLD, RUN, APP, PANEL = "world", "run", "app", "panels (app)"
+
+SWITCHES: tuple[Option, ...] = (
+    Option(WORLD, ("-b", "--background"), "background", "mat, see `tuisim backgrounds`, or image file", "MAT", _name),
+    Option(WORLD, ("--mats",), "mats", "folder with pictures of mats, named as in `-b`", "FOLDER", _name),
+    Option(
+        WORLD,
+        ("--background-fit",),
+        "background_fit",
+        "how an image fills the field",
+        "|".join(BACKGROUND_FITS),
+        _one_of(BACKGROUND_FITS),
+    ),
+    Option(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "robot, see `tuisim robots`, or file", "ROBOT", _name),
+    Option(WORLD, ("-o", "--obstacles"), "obstacles", "see `tuisim obstacles`, or file", "NAME", _name),
+    Option(WORLD, ("--walls",), "walls", "walls on the edges of the field", "on|off", _on_off),
+    Option(WORLD, ("--solid",), "solid", "obstacles and walls stop the robot"),
+    Option(WORLD, ("--no-solid",), "solid", "the robot drives through them", value=False),
+    Option(WORLD, ("-x", "--x", "--xpos"), "x_mm", "start x in mm", "MM", _position),
+    Option(WORLD, ("-y", "--y", "--ypos"), "y_mm", "start y in mm", "MM", _position),
+    Option(WORLD, ("-a", "--angle"), "heading_deg", "start heading, counter-clockwise from +x", "DEG", _angle),
+    Option(WORLD, ("-N", "--sensornoise"), "light_noise", "light noise, 0 … 128", "N", whole(0, MAX_LIGHT_NOISE)),
+    Option(WORLD, ("-M", "--motornoise"), "motor_noise", "motor noise, 0 … 500", "N", whole(0, MAX_MOTOR_NOISE)),
+    Option(WORLD, ("-p", "--pendown"), "pen_down", "start with the pen down"),
+    Option(WORLD, ("-P", "--pencolor"), "pen_color", "any CSS name, or #rrggbb", "COLOUR", pen_color),
+    Option(WORLD, ("--pen-width",), "pen_width_mm", "width of the trace", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
+    Option(WORLD, ("--pen-marks",), "pen_marks", "the sensors see what the pen draws"),
+    Option(RUN, ("--profile",), "profile", "rules of the brick, see `tuisim profiles`, or file", "NAME", _name),
+    Option(RUN, ("--seed",), "seed", "seed of noise and of `random`", "N", whole(0, MAX_SEED)),
+    Option(RUN, ("--speed",), "speed", "max, or times real time", "N", _speed),
+    Option(RUN, ("--preload",), "preload", "names given to the program", "|".join(PRELOADS), _one_of(PRELOADS)),
+    Option(APP, ("-R", "--autorun"), "autorun", "run at once"),
+    Option(APP, ("-C", "--clear"), "clear_trace", "start with a clear trace"),
+    Option(APP, ("-u", "--ultrasound"), "rays", "show the ultrasonic rays"),
+    Option(APP, ("-q", "--quiet"), "quiet", "never speak aloud"),
+    Option(APP, ("--fps",), "fps", "most frames a second, 1 … 60", "N", whole(1, 60)),
+    Option(APP, ("--colors",), "colors", "auto, truecolor, 256, 16 or none", "DEPTH", _one_of(COLOR_DEPTHS)),
+    Option(PANEL, ("-O", "--output"), "panels_on", "show the output", panel="output"),
+    Option(PANEL, ("-A", "--array"), "panels_on", "show the sensor arrays", panel="arrays"),
+    Option(PANEL, ("-c", "--chart"), "panels_on", "show the chart", panel="chart"),
+    Option(PANEL, ("-i", "--instrumentation"), "panels_on", "show the instrumentation", panel="instrumentation"),
+    Option(PANEL, ("-z", "--noisecontrols"), "panels_on", "show the noise", panel="noise"),
+    Option(PANEL, ("-Z", "--settings"), "panels_on", "show the settings", panel="settings"),
+    Option(PANEL, ("-X", "--positioning"), "panels_on", "show the positioning", panel="positioning"),
+    Option(PANEL, ("-D", "--code"), "panels_on", "show the code", panel="code"),
+    Option(PANEL, ("-W", "--hideworld"), "panels_off", "hide the world", panel="world", magic_flags=("--world",)),
+    Option(PANEL, ("-H", "--hidecontrols", "--hide"), "panels_off", "hide the simulator controls", panel="controls"),
+)
+"""Every shared switch, in the order of the help."""
+
+PANELS = tuple(switch.panel for switch in SWITCHES if switch.panel)
+"""Every panel that a switch shows or hides."""
+
+
+class SwitchParser(argparse.ArgumentParser):
+    """An argument parser whose complaints are ConfigErrors, and which knows `SWITCHES` on request."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise a ConfigError instead of printing the usage.
+
+        Raises:
+            ConfigError: always.
+        """
+        text = message.removeprefix("argument ").replace("unrecognized arguments:", "no such switch or argument:")
+        raise ConfigError(text, f"see `{self.prog} --help`" if self.add_help else "")
+
+    def add_programs(self, dest: str) -> None:
+        """Add what a magic line cannot have: the programs, and `--world`."""
+        what = "a Python file, a notebook or one of its cells (FILE.ipynb#2), or an example's name"
+        self.add_argument(dest, nargs="*", metavar="PROGRAM", help=what)
+        self.add_argument("--world", metavar="FILE", help="a world file; it may also stand before the program")
+
+    def add_switches(self, *, magic: bool = False) -> None:
+        """Add every shared switch; one that is not given leaves no trace in the namespace.
+
+        Args:
+            magic: Whether this is about a magic line, not the command line.
+        """
+        groups = {group: self.add_argument_group(group) for group in dict.fromkeys(s.group for s in SWITCHES)}
+        for switch in SWITCHES:
+            how: dict[str, Any] = {"dest": switch.field, "default": argparse.SUPPRESS, "help": switch.help}
+            if switch.panel:
+                how |= {"action": "append_const", "const": switch.panel}
+            elif switch.metavar:
+                how |= {"type": _converter(switch), "metavar": switch.metavar}
+            else:
+                how |= {"action": "store_const", "const": switch.value}
+            groups[switch.group].add_argument(*switch.flags, *(switch.magic_flags if magic else ()), **how)
+
+
+def _converter(switch: Option) -> Callable[[str], Any]:
+    convert, flag = switch.convert, switch.flags[0]
+    assert convert is not None
+    return lambda text: convert(text, flag)
+
+
+_FIELDS = frozenset(switch.field for switch in SWITCHES) | {"arguments"}
+
+
+def given(namespace: argparse.Namespace) -> dict[str, Any]:
+    """Return the shared switches and the program's arguments that were given, by field of `Settings`."""
+    found = {field: value for field, value in vars(namespace).items() if field in _FIELDS}
+    return {field: tuple(value) if isinstance(value, list) else value for field, value in found.items()}
+
+
+def parse_words(words: Sequence[str]) -> dict[str, Any]:
+    """Return the switches in the words of a magic line, by field of `Settings`.
+
+    Raises:
+        ConfigError: a word is no switch, or a value is wrong.
+    """
+    parser = SwitchParser(prog="tuisim", add_help=False, allow_abbrev=False)
+    parser.add_switches(magic=True)
+    return given(parser.parse_args(list(words)))
+
+
+def settings_of(*layers: Mapping[str, Any]) -> Settings:
+    """Return the settings that layers of given switches make; a later layer wins, panels add up."""
+    settings = Settings()
+    for layer in layers:
+        panels = {
+            key: tuple(dict.fromkeys((*getattr(settings, key), *layer.get(key, ()))))
+            for key in ("panels_on", "panels_off")
+        }
+        settings = replace(settings, **{**layer, **panels})
+    return settings

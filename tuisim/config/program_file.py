@@ -1,0 +1,253 @@
+"""A program file: its text, its magic line, and which prelude it gets."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shlex
+import symtable
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.config.assets import programs
+from tuisim.config.options import nearest, parse_words
+from tuisim.config.preludes import PRELUDE_TEXTS
+from tuisim.errors import ConfigError
+from tuisim.source import decode_source, source_lines
+
+MAX_PROGRAM_BYTES = 4 << 20
+
+PRELUDES: Mapping[str, str] = {
+    "sim_magic": "none",
+    "sim_magic_imports": "imports",
+    "sim_magic_preloaded": "preloaded",
+}
+"""The prelude that each magic stands for."""
+
+_FILE_FIELDS = {"background", "robot", "obstacles", "profile"}
+"""Settings that may name a file."""
+
+_MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
+_READS_ANY_NAME = {"eval", "exec", "globals", "vars"}
+"""Functions that may use a name without its standing in the program."""
+
+_DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
+
+
+@dataclass(frozen=True, slots=True)
+class Magic:
+    """A program's magic line."""
+
+    line: int
+    """From 1."""
+    prelude: str
+    switches: Mapping[str, Any]
+    """By field of `Settings`."""
+    comment: bool
+    """Whether it stands in a comment; if not, it is not Python and must become one."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramSource:
+    """A program as read from its file."""
+
+    name: str
+    """File name."""
+    path: str
+    text: str
+    """The source; a magic line that is none has become a comment, so that line numbers are the file's own."""
+    prelude: str
+    """none, imports or preloaded."""
+    switches: Mapping[str, Any] = field(default_factory=dict)
+    """Switches of the magic line, by field of `Settings`; files in them are found from the program's folder."""
+    module_folder: str = ""
+    """Folder of the notebook that it is a cell of; empty for a program with a file of its own."""
+
+
+def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
+    """Yield (line number, text) of the lines before the first statement, a docstring left out."""
+    closing = ""
+    for number, raw in enumerate(lines, start=1):
+        line = raw.strip()
+        if closing:
+            closing = "" if closing in line else closing
+        elif not line or line.startswith(("#", "%")):
+            yield number, line
+        elif opened := _DOCSTRING.match(line):
+            quote = opened.group(1)
+            if quote not in line[opened.end() :]:
+                closing = quote
+        else:
+            return
+
+
+def beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the switches of a magic line with the files that they name found from a folder.
+
+    Args:
+        folder: Where the program is, or the notebook that holds it.
+        switches: By field of `Settings`.
+    """
+    found = dict(switches)
+    if "mats" in found:
+        found["mats"] = str(folder / os.path.expanduser(found["mats"]))
+    for field_name in _FILE_FIELDS & found.keys():
+        word = found[field_name]
+        if os.sep in word or Path(word).suffix:
+            found[field_name] = str(folder / os.path.expanduser(word))
+    return found
+
+
+def find_magic(text: str, name: str) -> Magic | None:
+    """Return the magic line that stands before the program's first statement, if there is one.
+
+    Args:
+        text: The program.
+        name: Its file name, for errors.
+
+    Raises:
+        ConfigError: the magic is none of `PRELUDES`, or a switch in it is wrong.
+    """
+    for number, line in _head(source_lines(text)):
+        match = _MAGIC.fullmatch(line)
+        if match is None:
+            continue
+        where = f"{name}, line {number}"
+        if match["name"] not in PRELUDES:
+            raise ConfigError(f"no such magic %%{match['name']}", nearest(match["name"], PRELUDES), file=where)
+        try:
+            switches = parse_words(shlex.split(match["words"]))
+        except ConfigError as error:
+            raise ConfigError(error.message, error.hint, file=where) from None
+        except ValueError as error:
+            raise ConfigError(f"the magic line cannot be split into words: {error}", file=where) from None
+        return Magic(number, PRELUDES[match["name"]], switches, match["comment"] is not None)
+    return None
+
+
+def prelude_for(text: str) -> str:
+    """Return the prelude that a program without a magic line gets.
+
+    One that imports the library, or needs no name of a prelude, gets none.
+    """
+    try:
+        if _imports_ev3dev2(ast.parse(text)):
+            return "none"
+        used, defined = _global_names(text)
+    # The program's own mistakes are reported when it runs; here a glance must do.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return "none" if re.search(r"^\s*(from|import)\s+ev3dev2\b", text, re.MULTILINE) else "preloaded"
+    _, ready = _global_names(PRELUDE_TEXTS["preloaded"])
+    return "preloaded" if (used - defined) & (ready | _READS_ANY_NAME) else "none"
+
+
+def _global_names(text: str) -> tuple[set[str], set[str]]:
+    """Return the global names that a text uses, and those that it defines."""
+    used: set[str] = set()
+    defined: set[str] = set()
+    tables = [symtable.symtable(text, "", "exec")]
+    while tables:
+        table = tables.pop()
+        tables += table.get_children()
+        for symbol in table.get_symbols():
+            if table.get_type() != "module" and not symbol.is_global():
+                continue
+            if symbol.is_referenced():
+                used.add(symbol.get_name())
+            if symbol.is_assigned() or symbol.is_imported():
+                defined.add(symbol.get_name())
+    return used, defined
+
+
+def _imports_ev3dev2(tree: ast.AST) -> bool:
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import(names=names) if any(alias.name.split(".")[0] == "ev3dev2" for alias in names):
+                return True
+            case ast.ImportFrom(module=str(module), level=0) if module.split(".")[0] == "ev3dev2":
+                return True
+    return False
+
+
+def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
+    """Return a program from its text.
+
+    Raises:
+        ConfigError: its magic line is wrong.
+    """
+    magic = find_magic(text, name)
+    if magic is None:
+        return ProgramSource(name, path, text, prelude_for(text))
+    if not magic.comment:
+        lines = source_lines(text)
+        lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"
+        text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
+    return ProgramSource(name, path, text, str(magic.switches.get("preload", magic.prelude)), magic.switches)
+
+
+def read_program(path: Path) -> ProgramSource:
+    """Read a program file; files that its magic line names are looked for beside it.
+
+    Raises:
+        ConfigError: it is missing, a directory, no Python text, too large, or its magic line is wrong.
+    """
+    shown = str(path)
+    try:
+        if path.is_dir():
+            raise ConfigError("is a directory, not a program", "name a Python file", file=shown)
+        if not path.exists():
+            raise ConfigError("there is no such program", _neighbours(path), file=shown)
+        # A device or a pipe may never end.
+        if not path.is_file():
+            raise ConfigError("is not a regular file", "name a Python file", file=shown)
+        with path.open("rb") as file:
+            data = file.read(MAX_PROGRAM_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(f"cannot be read: {reason}", file=shown) from None
+    if len(data) > MAX_PROGRAM_BYTES:
+        raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", "name a Python file", file=shown)
+    if path.suffix == ".ipynb":
+        raise ConfigError("is a notebook", "name a Python file", file=shown)
+    return program_of_text(_decode(data, shown), path, path.name)
+
+
+def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
+    """Return a program from its text as if it had been read; files that its magic line names are found beside it.
+
+    Args:
+        text: With `\\n` as line ends.
+        path: Its file, which need not be there; None for none.
+        name: What it is called.
+
+    Raises:
+        ConfigError: its magic line is wrong.
+    """
+    program = parse_program(text, name, str(path) if path else "")
+    return replace(program, switches=beside(path.parent if path else Path.cwd(), program.switches))
+
+
+def _decode(data: bytes, shown: str) -> str:
+    text, _ = decode_source(data, shown)
+    if "\0" in text:
+        raise ConfigError("is not Python text: it holds null characters", "name a Python file", file=shown)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _neighbours(path: Path) -> str:
+    """The hint for a missing file: programs beside it with a like name, else examples, and where to find more."""
+    import difflib
+
+    try:
+        beside = [other.name for other in path.parent.glob("*.py")]
+    except OSError:
+        beside = []
+    close = difflib.get_close_matches(path.name, beside, 3)
+    if not close and path.parent == Path():
+        # A word without a folder may also have meant an example, which needs no suffix.
+        stems = [file.path.stem for file in programs()]
+        close = [f"{stem}{path.suffix}" for stem in difflib.get_close_matches(path.stem, stems, 3)]
+    return f"did you mean {' or '.join(close)}?" if close else "see `tuisim programs` for examples"

@@ -1,0 +1,133 @@
+"""What the pen has drawn on the mat, for worlds in which sensors see it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import islice
+
+from tuisim.core.css_colors import css_rgb
+from tuisim.core.field import Field
+from tuisim.core.geometry import Pose, world_point
+from tuisim.core.spec import FIELD_HEIGHT_MM, RunSpec
+from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.core.weights import disc_weights
+
+_BLOCK_PX = 32
+"""Side of the squares in which it is noted whether anything is drawn at all."""
+
+Marks = dict[tuple[int, int], tuple[int, int, int]]
+"""By image column and row, the colour drawn there."""
+
+
+@dataclass(frozen=True, slots=True)
+class MarkedField(Field):
+    """A mat with marks on it; reads like any other.
+
+    `marks` and `blocks` are filled by `PenMarks`, which is the only one to change them.
+    """
+
+    marks: Marks
+    blocks: set[tuple[int, int]]
+
+    def _touched(self, diameter: int, col: int, row: int) -> bool:
+        rows = range(row // _BLOCK_PX, (row + diameter) // _BLOCK_PX + 1)
+        cols = range(col // _BLOCK_PX, (col + diameter) // _BLOCK_PX + 1)
+        return any((block_col, block_row) in self.blocks for block_row in rows for block_col in cols)
+
+    def disc_sums(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
+        """As `Field.disc_sums`, marks included."""
+        # Field.disc_sums by name: a slotted dataclass is made anew, which `super()` without arguments cannot follow.
+        red, green, blue = Field.disc_sums(self, diameter, col, row)
+        if not self._touched(diameter, col, row):
+            return red, green, blue
+        for number, inside in enumerate(disc_weights(diameter, "mean")):
+            place = (col + number % diameter, row + number // diameter)
+            drawn = self.marks.get(place) if inside else None
+            if drawn is not None:
+                at = 3 * (place[1] * self.width_px + place[0])
+                red += drawn[0] - self.pixels[at]
+                green += drawn[1] - self.pixels[at + 1]
+                blue += drawn[2] - self.pixels[at + 2]
+        return red, green, blue
+
+    def box(self, diameter: int, col: int, row: int) -> bytes:
+        """As `Field.box`, marks included."""
+        pixels = Field.box(self, diameter, col, row)
+        if not self._touched(diameter, col, row):
+            return pixels
+        drawn_on = bytearray(pixels)
+        for down in range(diameter):
+            for right in range(diameter):
+                drawn = self.marks.get((col + right, row + down))
+                if drawn is not None:
+                    at = 3 * (down * diameter + right)
+                    drawn_on[at : at + 3] = bytes(drawn)
+        return bytes(drawn_on)
+
+
+@dataclass(frozen=True, slots=True)
+class _PenPoint:
+    tick: int
+    x_mm: float
+    y_mm: float
+    actions: int
+
+
+class PenMarks:
+    """Draws what the pen drew, tick record by tick record.
+
+    Args:
+        field: The mat.
+        spec: The run; its robot's pen counts.
+    """
+
+    def __init__(self, field: Field, spec: RunSpec) -> None:
+        self._pen = spec.robot.pen
+        self._rgb = css_rgb(self._pen.color) or (0, 0, 0)
+        self.field = MarkedField(field.width_px, field.height_px, field.pixels, field.sums, {}, set())
+        """The mat with what has been drawn so far."""
+        self.records = 0
+        """How many tick records have been taken in."""
+        self._last: _PenPoint | None = None
+
+    def field_of_first(self, count: int) -> MarkedField:
+        """Return the mat with the first `count` marks only, as it was when there were no more."""
+        field = self.field
+        marks = dict(islice(field.marks.items(), count))
+        blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
+        return MarkedField(field.width_px, field.height_px, field.pixels, field.sums, marks, blocks)
+
+    def take_in(self, records: Iterable[tuple[float, ...]]) -> None:
+        """Draw on.
+
+        Args:
+            records: The next tick records, with the fields of `state.TICK_RECORD`.
+        """
+        for tick, _, x_mm, y_mm, heading_deg, *_, flags, actions in records:
+            self.records += 1
+            if not int(flags) & FLAG_PEN_DOWN:
+                self._last = None
+                continue
+            pen_x, pen_y = world_point(Pose(x_mm, y_mm, heading_deg), self._pen.x_mm, self._pen.y_mm)
+            point = _PenPoint(int(tick), pen_x, pen_y, int(actions))
+            # A robot that was lifted to another place draws no line on its way.
+            last = self._last if self._last is not None and self._last.actions == point.actions else point
+            if last is point or (last.x_mm, last.y_mm) != (pen_x, pen_y):
+                self._stroke(last, point)
+            self._last = point
+
+    def _stroke(self, start: _PenPoint, end: _PenPoint) -> None:
+        radius = self._pen.width_mm / 2
+        x0, y0, x1, y1 = start.x_mm, FIELD_HEIGHT_MM - start.y_mm, end.x_mm, FIELD_HEIGHT_MM - end.y_mm
+        dx, dy = x1 - x0, y1 - y0
+        squared = dx * dx + dy * dy
+        field = self.field
+        for row in range(max(0, int(min(y0, y1) - radius)), min(field.height_px, int(max(y0, y1) + radius) + 1)):
+            for col in range(max(0, int(min(x0, x1) - radius)), min(field.width_px, int(max(x0, x1) + radius) + 1)):
+                # A pixel is drawn when its middle is no further from the line than half the pen's width.
+                px, py = col + 0.5 - x0, row + 0.5 - y0
+                along = max(0.0, min(1.0, (px * dx + py * dy) / squared)) if squared else 0.0
+                if (px - along * dx) ** 2 + (py - along * dy) ** 2 <= radius * radius:
+                    field.marks[col, row] = self._rgb
+                    field.blocks.add((col // _BLOCK_PX, row // _BLOCK_PX))

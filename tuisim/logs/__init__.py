@@ -1,0 +1,1 @@
+"""Logs: readers, columns, bands, signals, expressions, exports. Without Textual."""

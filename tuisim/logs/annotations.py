@@ -1,0 +1,87 @@
+"""Notes on samples and spans of a log, kept with the run, or for a file in the user's data folder."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from tuisim.atomic import make_private_folder, replacing
+from tuisim.config.home import home_folder
+from tuisim.errors import LogError
+
+NOTES_FILE = "notes.jsonl"
+_HASHED_BYTES = 1 << 16
+"""Of a file's beginning: enough to tell it from another one that takes its place, and it may still grow."""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Something written about a sample or a span."""
+
+    text: str
+    start_s: float
+    """Time of the sample, or where the span begins."""
+    stop_s: float
+    """Where the span ends; the same as `start_s` for a sample."""
+    variable: str = ""
+    """Variable it is about, empty for none in particular."""
+
+
+def notes_of_run(folder: Path) -> Path:
+    """Return where the notes of a run are, by its folder."""
+    return folder / NOTES_FILE
+
+
+def notes_of_file(path: Path) -> Path:
+    """Return where the notes of a log file are: they follow its place and its beginning.
+
+    Raises:
+        LogError: the file cannot be read.
+    """
+    try:
+        with path.open("rb") as handle:
+            beginning = handle.read(_HASHED_BYTES).partition(b"\n")[0]
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
+    key = hashlib.sha256(bytes(path.resolve()) + b"\0" + beginning).hexdigest()[:32]
+    return home_folder() / "notes" / f"{key}.jsonl"
+
+
+def read_notes(place: Path) -> tuple[Note, ...]:
+    """Return the notes in a file, none if there is no such file.
+
+    Raises:
+        LogError: it cannot be read, or a row is no note.
+    """
+    try:
+        lines = [line for line in place.read_bytes().split(b"\n") if line]
+    except FileNotFoundError:
+        return ()
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(place)) from error
+    found = []
+    for row, line in enumerate(lines, 1):
+        try:
+            fields = json.loads(line)
+            start_s, stop_s = float(fields["start_s"]), float(fields["stop_s"])
+            found.append(Note(str(fields["text"]), start_s, stop_s, str(fields.get("variable", ""))))
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            raise LogError("not a note", file=str(place), row=row) from error
+    return tuple(found)
+
+
+def write_notes(place: Path, notes: Sequence[Note]) -> None:
+    """Write notes in the place of those that were there.
+
+    Raises:
+        LogError: they cannot be written; those that were there stay.
+    """
+    try:
+        make_private_folder(place.parent)
+        with replacing(place, owner_only=True) as handle:
+            handle.writelines(json.dumps(asdict(note), ensure_ascii=False).encode() + b"\n" for note in notes)
+    except OSError as error:
+        raise LogError(f"cannot write: {error.strerror or error}", file=str(place)) from error

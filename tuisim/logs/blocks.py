@@ -1,0 +1,287 @@
+"""Text input, plain or compressed, cut into blocks of whole lines in UTF-8."""
+
+from __future__ import annotations
+
+import bz2
+import codecs
+import lzma
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import pyarrow as pa
+
+from tuisim.errors import LogError
+from tuisim.logs.warnings import Notes
+
+BLOCK_BYTES = 4 << 20
+"""About how much is read and parsed at once."""
+
+MAX_LINE_BYTES = 1 << 20
+"""A longer line is no row of a log."""
+
+_BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Some whole lines."""
+
+    first_row: int
+    """Row of the first line in the file, from 1."""
+    text: bytes
+    """UTF-8, each line with its newline."""
+    newline: str = "\n"
+    """What ends the lines in the file, where it is one character: all else is read as this in `text`."""
+
+    def lines(self) -> Iterator[tuple[int, str]]:
+        """Yield each line that is not blank, with its row."""
+        for row, line in enumerate(self.text.decode("utf-8").split("\n"), self.first_row):
+            if line and not line.isspace():
+                yield row, line.rstrip("\r")
+
+
+class LineCutter:
+    """Cuts bytes into blocks of whole lines.
+
+    Args:
+        notes: Where it says what was wrong.
+    """
+
+    def __init__(self, notes: Notes) -> None:
+        self._notes = notes
+        self._rest = b""
+        self._row = 1
+        self._decoder: codecs.IncrementalDecoder | None = None
+        self._started = False
+        self._newline = "\n"
+        self._dropping = False
+        """Whether the line at hand is too long, so that its rest is passed over."""
+
+    def feed(self, data: bytes) -> Block | None:
+        """Take more bytes; return the lines that are whole now, if any."""
+        if not self._started and data:
+            self._started = True
+            data = self._begin(data)
+            self._newline = "\r" if b"\r" in data and b"\n" not in data else "\n"
+        if self._decoder is not None:
+            data = self._decoder.decode(data).encode()
+        if b"\0" in data:
+            self._notes.say("null bytes were left out")
+            data = data.replace(b"\0", b"")
+        if b"\r" in data:
+            # Also a carriage return alone ends a line; one at the very end may have its newline still to come.
+            held = data.endswith(b"\r")
+            data = data.replace(b"\r\n", b"\n")
+            data = data[:-1].replace(b"\r", b"\n") + b"\r" if held and data else data.replace(b"\r", b"\n")
+        if self._rest.endswith(b"\r") and data:
+            self._rest = self._rest[:-1] + (b"" if data.startswith(b"\n") else b"\n")
+        end = data.rfind(b"\n") + 1
+        if not end:
+            self._keep(data)
+            return None
+        # Blocks are large: each is copied only once.
+        text, self._rest, rest = b"".join((self._rest, memoryview(data)[:end])), b"", data[end:]
+        if self._dropping:
+            text = text.partition(b"\n")[2]
+            self._dropping = False
+            self._row += 1
+        self._keep(rest)
+        return self._block(text) if text else None
+
+    def finish(self) -> Block | None:
+        """Return the last line, if it has no newline."""
+        text, self._rest = self._rest.rstrip(b"\r"), b""
+        if self._dropping or not text:
+            return None
+        return self._block(text + b"\n")
+
+    def _begin(self, data: bytes) -> bytes:
+        for mark, encoding in _BOMS:
+            if data.startswith(mark):
+                if encoding != "utf-8":
+                    self._decoder = codecs.getincrementaldecoder(encoding)("replace")
+                return data[len(mark) :]
+        head = data[:2000]
+        for odd, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+            # Text in two bytes a character without a mark: every second one is null.
+            if (
+                len(head) > 3
+                and head[odd::2].count(0) > 0.4 * len(head[odd::2]) > 0
+                and not head[1 - odd :: 2].count(0)
+            ):
+                self._notes.say(f"read as {encoding.upper()}")
+                self._decoder = codecs.getincrementaldecoder(encoding)("replace")
+        return data
+
+    def _keep(self, rest: bytes) -> None:
+        if self._dropping:
+            return
+        self._rest += rest
+        if len(self._rest) > MAX_LINE_BYTES:
+            self._notes.add(f"lines longer than {MAX_LINE_BYTES >> 20} MiB were left out", [self._row])
+            self._rest, self._dropping = b"", True
+
+    def _block(self, text: bytes) -> Block:
+        first = self._row
+        self._row += text.count(b"\n")
+        try:
+            if not text.isascii():
+                text.decode("utf-8")
+        except UnicodeDecodeError:
+            self._notes.say("not UTF-8: read as Windows-1252")
+            text = text.decode("cp1252", "replace").encode()
+        return Block(first, text, self._newline)
+
+
+class Readable(Protocol):
+    """Bytes that come one after the other."""
+
+    def read(self, count: int, /) -> bytes | None:
+        """Return at most so many more bytes, none at the end."""
+
+
+class _Decompressor(Protocol):
+    """What `bz2` and `lzma` have in common."""
+
+    @property
+    def eof(self) -> bool: ...
+    @property
+    def needs_input(self) -> bool: ...
+    @property
+    def unused_data(self) -> bytes: ...
+    def decompress(self, data: bytes, max_length: int = -1) -> bytes: ...
+
+
+class _Gzip:
+    """`zlib`'s decompressor with the names of the other two."""
+
+    _BITS = 31
+    """A gzip header and trailer, and the largest window."""
+
+    def __init__(self) -> None:
+        self._inner = zlib.decompressobj(self._BITS)
+
+    @property
+    def eof(self) -> bool:
+        return self._inner.eof
+
+    @property
+    def needs_input(self) -> bool:
+        return not self._inner.unconsumed_tail
+
+    @property
+    def unused_data(self) -> bytes:
+        return self._inner.unused_data
+
+    def decompress(self, data: bytes, max_length: int = -1) -> bytes:
+        return self._inner.decompress(self._inner.unconsumed_tail + data, max(max_length, 0))
+
+
+_ERRORS = (zlib.error, OSError, EOFError, lzma.LZMAError, pa.ArrowException)
+
+_FORMATS: Mapping[bytes, Callable[[], _Decompressor]] = {
+    b"\x1f\x8b": _Gzip,
+    b"BZh": bz2.BZ2Decompressor,
+    b"\xfd7zXZ\0": lzma.LZMADecompressor,
+}
+_ARROW_CODECS = {b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4"}
+_REFUSED = {
+    b"PK\x03\x04": "a ZIP archive, as a spreadsheet is, too",
+    b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",
+    b"\xd0\xcf\x11\xe0": "an old Excel workbook",
+    b"\x89HDF": "an HDF5 file",
+    b"SQLite format 3": "an SQLite database",
+    b"\x1f\x9d": "a file of the old compress",
+}
+"""By their first bytes: files that hold no text and that nothing here reads."""
+
+MAGICS = (*_FORMATS, *_ARROW_CODECS, *_REFUSED)
+"""First bytes of everything that is known here."""
+MAGIC_BYTES = max(map(len, MAGICS))
+
+
+def unpacked(title: str, head: bytes, handle: Any, notes: Notes) -> Readable | None:
+    """Return the text in a compressed file, None if it is not compressed.
+
+    Args:
+        title: Name of the file.
+        head: Its first `MAGIC_BYTES` bytes.
+        handle: The file, open at its beginning.
+        notes: What was wrong.
+
+    Raises:
+        LogError: it holds no text, or text in a form that is not read.
+    """
+    refused = next((what for magic, what in _REFUSED.items() if head.startswith(magic)), "")
+    if refused:
+        raise LogError(f"is {refused}, which cannot be read", "a log is CSV, Parquet, JSONL, Arrow or text", file=title)
+    make = next((make for magic, make in _FORMATS.items() if head.startswith(magic)), None)
+    if make is not None:
+        return _Unpacked(handle, make, notes)
+    codec = next((codec for magic, codec in _ARROW_CODECS.items() if head.startswith(magic)), "")
+    return _ArrowUnpacked(handle, codec, notes) if codec else None
+
+
+class _Unpacked:
+    """A compressed file, read as far as it goes; parts that were compressed apart may stand one behind the other.
+
+    Args:
+        handle: The compressed bytes.
+        make: Makes a decompressor.
+        notes: What was wrong.
+    """
+
+    def __init__(self, handle: Readable, make: Callable[[], _Decompressor], notes: Notes) -> None:
+        self._handle, self._make, self._notes = handle, make, notes
+        self._inner = make()
+
+    def read(self, count: int, /) -> bytes:
+        """Return some more bytes, none at the end."""
+        while True:
+            packed = b""
+            if self._inner.eof:
+                packed = self._inner.unused_data or self._handle.read(BLOCK_BYTES) or b""
+                self._inner = self._make()
+                if not packed.strip(b"\0"):
+                    return b""
+            elif self._inner.needs_input:
+                packed = self._handle.read(BLOCK_BYTES) or b""
+                if not packed:
+                    return self._cut_off()
+            try:
+                data = self._inner.decompress(packed, count)
+            except _ERRORS:
+                return self._cut_off()
+            if data:
+                return data
+
+    def _cut_off(self) -> bytes:
+        self._notes.say(_CUT_OFF)
+        return b""
+
+
+class _ArrowUnpacked:
+    """A file in one of the forms that only Arrow unpacks, read as far as it goes.
+
+    Args:
+        handle: The compressed bytes.
+        codec: Name of the form.
+        notes: What was wrong.
+    """
+
+    def __init__(self, handle: Any, codec: str, notes: Notes) -> None:
+        self._stream = pa.CompressedInputStream(pa.PythonFile(handle, "r"), codec)
+        self._notes = notes
+
+    def read(self, count: int, /) -> bytes:
+        """Return some more bytes, none at the end."""
+        try:
+            return bytes(self._stream.read(count))
+        except _ERRORS:
+            self._notes.say(_CUT_OFF)
+            return b""
+
+
+_CUT_OFF = "the compressed file was cut off or is damaged: read as far as it goes"

@@ -1,0 +1,397 @@
+"""Tables as text: comments, heading, separators and cells, as numbers or texts."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice, pairwise, takewhile
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pa_csv
+
+from tuisim.logs.arrow import texts_array, unique_names
+from tuisim.logs.blocks import Block
+from tuisim.logs.warnings import Notes
+
+CODED = pa.dictionary(pa.int32(), pa.string())
+"""Each text is kept once, each row holds its number."""
+
+_LEAST_REPEATED = 4
+"""Texts are coded that come so many times, on average."""
+_FEWEST_CELLS = 100
+"""Fewer do not tell."""
+
+
+def text_kind(cells: pa.Array) -> pa.DataType:
+    """Return how a column is kept, by its first cells."""
+    often = len(cells) > _FEWEST_CELLS and _LEAST_REPEATED * pc.count_distinct(cells).as_py() <= len(cells)
+    return CODED if often else pa.string()
+
+
+_NUMBER = r"^[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?$|^[+-]?(?i:inf|infinity|nan)$"
+EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
+"""Cells that say that there is no value."""
+
+
+def parsed_numbers(cells: pa.Array, decimal_comma: bool) -> tuple[pa.Array, pa.Array]:
+    """Return cells as float64, with nulls for those that hold no number, and which cells were wrong.
+
+    Args:
+        cells: Texts.
+        decimal_comma: Whether `1,5` is one and a half.
+
+    Returns:
+        Numbers, and a mask of the cells that are neither a number nor empty.
+    """
+    texts: Any = pc.utf8_trim_whitespace(cells)
+    if decimal_comma:
+        texts = pc.replace_substring(texts, ",", ".")
+    nothing = pa.nulls(len(texts), pa.string())
+    empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=texts_array(EMPTY_CELLS)))
+    texts = pc.if_else(empty, nothing, texts)
+    try:
+        return pc.cast(texts, pa.float64()), pc.is_valid(nothing)
+    except pa.ArrowInvalid:
+        # Of what is empty the first is false and the second is nothing, which makes false.
+        good = pc.and_kleene(pc.is_valid(texts), pc.match_substring_regex(texts, _NUMBER))
+        wrong = pc.and_(pc.invert(good), pc.invert(empty))
+        return pc.cast(pc.if_else(good, texts, nothing), pa.float64()), wrong
+
+
+def parsed_booleans(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
+    """Return cells as booleans, with nulls for those that hold none, and which cells were wrong.
+
+    Args:
+        cells: Texts such as `true` or `False`.
+    """
+    texts: Any = pc.utf8_lower(pc.utf8_trim_whitespace(cells))
+    known = pc.is_in(texts, value_set=texts_array(("true", "false")))
+    empty = pc.or_(pc.is_null(cells), pc.is_in(pc.utf8_trim_whitespace(cells), value_set=texts_array(EMPTY_CELLS)))
+    values = pc.if_else(known, pc.equal(texts, "true"), pa.nulls(len(texts), pa.bool_()))
+    return values, pc.invert(pc.or_(known, empty))
+
+
+def are_booleans(cells: pa.Array) -> bool:
+    """Return whether cells hold nothing but true and false, at least one of them."""
+    values, wrong = parsed_booleans(cells)
+    return values.null_count < len(values) and not pc.any(wrong).as_py()
+
+
+def are_numbers(cells: pa.Array, decimal_comma: bool) -> bool | None:
+    """Return whether most of the cells are numbers, None if all are empty."""
+    numbers, wrong = parsed_numbers(cells, decimal_comma)
+    good, bad = len(numbers) - numbers.null_count, pc.sum(wrong).as_py() or 0
+    if not good and not bad:
+        return None
+    return bool(good > bad)
+
+
+SEPARATORS = (",", ";", "\t", "|")
+BLANKS = " "
+"""Instead of a separator: any blanks are one."""
+COMMENT = "#"
+_YEARS = range(1900, 2101)
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """What the first lines say about a table."""
+
+    names: tuple[str, ...] = ()
+    """Of the columns; none if there was nothing but comments."""
+    separator: str = ","
+    """One of `SEPARATORS`, or `BLANKS`."""
+    decimal_comma: bool = False
+    has_comments: bool = False
+    """Whether lines that begin with `COMMENT` are no rows."""
+    rows_follow: int = 1
+    """Row of the file that the first row of the table may stand in."""
+
+
+def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
+    """Return the heading of a table.
+
+    Args:
+        lines: The first lines that are not blank, each with its row in the file.
+        notes: Where it says what was guessed.
+    """
+    comments = [text for _, text in takewhile(lambda line: line[1].startswith(COMMENT), lines)]
+    body = lines[len(comments) :]
+    if not body:
+        return Heading(has_comments=bool(comments))
+    texts = [text for _, text in body]
+    fields = next((text for text in reversed(comments) if text.startswith("#fields")), "")
+    separator = _zeek_separator(comments) if fields else sniff_separator(texts)
+    decimal_comma = separator == ";" and _has_decimal_comma(texts[1:])
+    rows = [cells_of(text, separator) for text in texts]
+    above = _heading_above(comments, rows, separator, fields)
+    if above:
+        names, follow = above, body[0][0]
+    elif _is_heading(rows, decimal_comma):
+        names, follow = [name.strip() for name in rows[0]], body[0][0] + 1
+    else:
+        notes.say("no heading: the columns are numbered")
+        names, follow = [f"column {at}" for at in range(1, len(rows[0]) + 1)], body[0][0]
+    return Heading(tuple(unique_names(names, notes)), separator, decimal_comma, bool(comments), follow)
+
+
+def cells_of(line: str, separator: str) -> list[str]:
+    """Return the cells of a line; a quote that is never closed is but a character."""
+    if separator == BLANKS:
+        return line.split()
+    try:
+        return next(csv.reader([line], delimiter=separator, strict=True))
+    except (csv.Error, StopIteration):
+        return line.split(separator)
+
+
+def sniff_separator(lines: Sequence[str]) -> str:
+    """Return what separates the cells: what most lines have as often as the first, then what most have equally often.
+
+    Blanks separate only where nothing else does, and only if all lines have equally many cells.
+    """
+
+    def evenness(separator: str) -> tuple[int, int, int]:
+        counts = Counter(line.count(separator) for line in lines)
+        as_first = counts[wanted] if (wanted := lines[0].count(separator)) else 0
+        counts.pop(0, None)
+        if not counts:
+            return 0, 0, 0
+        number, times = counts.most_common(1)[0]
+        return as_first, times, number
+
+    best = max(SEPARATORS, key=evenness)
+    if evenness(best) > (0, 0, 0):
+        return best
+    widths = {len(line.split()) for line in lines}
+    return BLANKS if len(widths) == 1 and min(widths) > 1 and len(lines) > 1 else ","
+
+
+def _zeek_separator(comments: Sequence[str]) -> str:
+    """What a log of Zeek names as its separator, such as `#separator \\x09`."""
+    named = next((text.split(maxsplit=1)[-1] for text in comments if text.startswith("#separator")), r"\x09")
+    found = re.fullmatch(r"\\x([0-9a-fA-F]{2})", named)
+    separator = chr(int(found[1], 16)) if found else named
+    return separator if separator in SEPARATORS else "\t"
+
+
+def _heading_above(comments: Sequence[str], rows: Sequence[list[str]], separator: str, fields: str) -> list[str]:
+    """Names in the last comment, none if it is no heading: as many as there are cells, and all rows are alike."""
+    if fields:
+        return [name.strip() for name in fields.split(separator)[1:]]
+    if not comments:
+        return []
+    text = comments[-1].lstrip(COMMENT).strip()
+    names = [name.strip() for name in cells_of(text, separator)]
+    if len(names) != len(rows[0]):
+        names = text.split()
+    alike = len(rows) < 2 or _are_numeric(rows[0]) == _are_numeric(rows[1])
+    return names if len(names) == len(rows[0]) and alike and not all(_are_numeric(names)) else []
+
+
+def _are_numeric(cells: Sequence[str], decimal_comma: bool = False) -> list[bool | None]:
+    """Whether each cell is a number, None where it is empty."""
+    return [are_numbers(texts_array([cell]), decimal_comma) for cell in cells]
+
+
+def _is_heading(rows: Sequence[list[str]], decimal_comma: bool) -> bool:
+    """Whether the first row names the columns: few of its cells are numbers, or these count something up."""
+    first = _are_numeric(rows[0], decimal_comma)
+    numbers = [int(cell) for cell in rows[0][1:] if re.fullmatch(r"\s*\d+\s*", cell)]
+    if first[0] is False and len(numbers) == len(first) - 1 > 0 and all(a < b for a, b in pairwise(numbers)):
+        below = {_are_numeric(row[:1], decimal_comma)[0] for row in rows[1:]}
+        if (True in below and False not in below) or all(number in _YEARS for number in numbers):
+            return True
+    return not are_numbers(texts_array(rows[0]), decimal_comma)
+
+
+def _has_decimal_comma(lines: Sequence[str]) -> bool:
+    cells = [cell.strip() for line in lines for cell in line.split(";")]
+    with_comma = sum(cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdigit() for cell in cells)
+    return with_comma > 0 and not any(cell.count(".") == 1 and cell.replace(".", "").isdigit() for cell in cells)
+
+
+_SNIFFED_LINES = 30
+_COMMENTS = re.compile(rb"(?m)^#.*$")
+_BLANKS = re.compile(rb"[ \t]+")
+_MARGINS = re.compile(rb"(?m)^[ \t]+|[ \t]+$")
+_MOST_LINES, _MOST_JOINS = 100, 100
+"""Lines that a row may have, and how often one of several lines may turn out to be none."""
+
+
+class CsvReader:
+    """Reads blocks of one file; names and types of the columns are fixed by the first.
+
+    Args:
+        notes: Where it says what was wrong.
+    """
+
+    def __init__(self, notes: Notes) -> None:
+        self._notes = notes
+        self._heading = Heading()
+        self._joins_left = _MOST_JOINS
+        self._kinds: dict[str, pa.DataType] = {}
+        """By column; missing while all its cells were empty."""
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        return self._heading.names
+
+    @property
+    def _separator(self) -> str:
+        return "\t" if self._heading.separator == BLANKS else self._heading.separator
+
+    @property
+    def _decimal_comma(self) -> bool:
+        return self._heading.decimal_comma
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the rows of a block; None if it holds but the heading."""
+        if not self._heading.names:
+            block = self._begin(block)
+            if not self._heading.names:
+                return None
+        block = self._plain(block)
+        rows = None
+        # Most blocks hold what they should; cells are only looked at as texts where one of them does not.
+        columns = self._parsed(block, self._kinds) or self._parsed(block, {})
+        if columns is None:
+            columns, rows = self._careful(block)
+        if not len(columns[0]):
+            return None
+        return pa.Table.from_arrays(
+            [self._typed(n, c, block, rows) for n, c in zip(self._names, columns, strict=True)], list(self._names)
+        )
+
+    # The heading
+
+    def _begin(self, block: Block) -> Block:
+        # Comments above a table may be many: as many lines are looked at as there are, and some of the table's.
+        lines = list(takewhile(lambda line: line[1].startswith(COMMENT), block.lines()))
+        lines += islice((line for line in block.lines() if not line[1].startswith(COMMENT)), _SNIFFED_LINES)
+        if not lines:
+            return block
+        self._heading = heading = find_heading(lines, self._notes)
+        skipped = block.text.split(b"\n", heading.rows_follow - block.first_row)
+        return Block(heading.rows_follow, skipped[-1], block.newline)
+
+    def _plain(self, block: Block) -> Block:
+        """The same rows without comments, and with separators where blanks separate the cells."""
+        text = block.text
+        if self._heading.has_comments and (text.startswith(b"#") or b"\n#" in text):
+            text = _COMMENTS.sub(b"", text)
+        if self._heading.separator == BLANKS:
+            text = _BLANKS.sub(b"\t", _MARGINS.sub(b"", text))
+        return Block(block.first_row, text, block.newline)
+
+    # Cells
+
+    def _parsed(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
+        """All cells by the library's parser, None if a row is not like the others or a cell not of its kind."""
+        if block.text.isspace() or not block.text:
+            return [pa.nulls(0, pa.string()) for _ in self._names]
+        try:
+            table = pa_csv.read_csv(
+                pa.BufferReader(block.text),
+                pa_csv.ReadOptions(column_names=list(self._names), use_threads=False, block_size=len(block.text) + 1),
+                pa_csv.ParseOptions(delimiter=self._separator, newlines_in_values=False),
+                pa_csv.ConvertOptions(
+                    column_types={name: kinds.get(name, pa.string()) for name in self._names},
+                    strings_can_be_null=False,
+                    null_values=EMPTY_CELLS,
+                    decimal_point="," if self._decimal_comma else ".",
+                ),
+            )
+        except pa.ArrowInvalid:
+            return None
+        if b'"' in block.text and table.num_rows != sum(1 for line in block.text.split(b"\n") if line.strip()):
+            return None
+        return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
+
+    def _careful(self, block: Block) -> tuple[list[pa.Array], list[int]]:
+        """Cells line by line; short rows are filled up, long ones cut, both are noted."""
+        width = len(self._names)
+        rows, numbers, short, long = [], [], [], []
+        for row, cells in self._records(block):
+            if len(cells) < width:
+                short.append(row)
+                cells += [""] * (width - len(cells))
+            elif len(cells) > width and any(cell.strip() for cell in cells[width:]):
+                long.append(row)
+            rows.append(cells[:width])
+            numbers.append(row)
+        if short:
+            self._notes.add("rows have too few cells: the rest is empty", short)
+        if long:
+            self._notes.add("rows have too many cells: the rest is left out", long)
+        return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
+
+    def _records(self, block: Block) -> Iterator[tuple[int, list[str]]]:
+        """Yield each row that is not blank with its cells; one in quotes may go on in the next lines."""
+        lines = block.text.decode("utf-8").split("\n")
+        after = 0
+        for at, line in enumerate(lines):
+            if at < after or not line or line.isspace():
+                continue
+            cells, after = self._joined(lines, at, block.newline) if '"' in line else (None, at + 1)
+            yield block.first_row + at, cells_of(line.rstrip("\r"), self._separator) if cells is None else cells
+
+    def _joined(self, lines: Sequence[str], at: int, newline: str) -> tuple[list[str] | None, int]:
+        """The cells of a row of several lines and where the next row is; None if it is but one line."""
+        ahead = [line + newline for line in lines[at : at + _MOST_LINES]]
+        reader = csv.reader(ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True)
+        try:
+            cells = next(reader)
+        except csv.Error:
+            cells = []
+        further = lines[at + 1 : at + reader.line_num]
+        if further and len(cells) == len(self._names) and not any(map(self._is_row, further)):
+            return cells, at + reader.line_num
+        if further:
+            # A quote that is never closed is but a character; looking for its end in each line would take too long.
+            self._joins_left -= 1
+        return None, at + 1
+
+    def _is_row(self, line: str) -> bool:
+        """Whether a line seems to be a row by itself rather than text between quotes."""
+        cells = line.split(self._separator)
+        if len(cells) != len(self._names):
+            return False
+        return '"' not in line or bool(are_numbers(texts_array(cells[:1]), self._decimal_comma))
+
+    def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
+        if name not in self._kinds:
+            numeric = are_numbers(cells, self._decimal_comma)
+            if numeric is None:
+                return pa.nulls(len(cells), pa.float64())
+            truths = not numeric and are_booleans(cells)
+            self._kinds[name] = pa.float64() if numeric else pa.bool_() if truths else text_kind(cells)
+        kind = self._kinds[name]
+        if cells.type == kind:
+            return cells
+        if kind == CODED:
+            return cells.dictionary_encode()
+        truths = kind == pa.bool_()
+        numbers, wrong = parsed_booleans(cells) if truths else parsed_numbers(cells, self._decimal_comma)
+        if (count := _count(wrong)) > 0:
+            at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
+            where = [rows[index] for index in at] if rows else _rows_at(block, at)
+            self._notes.add(
+                f"cells of {name!r} hold {'neither true nor false' if truths else 'no number'}", where, count
+            )
+        return numbers
+
+
+def _count(mask: Any) -> int:
+    return int(mask.true_count)
+
+
+def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
+    # A line of nothing but blanks is a row to the library's parser.
+    rows = [row for row, line in enumerate(block.text.split(b"\n"), block.first_row) if line]
+    return [rows[at] for at in positions]

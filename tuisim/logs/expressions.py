@@ -1,0 +1,214 @@
+"""A small language over columns: arithmetic, comparisons and a few functions, such as `(left + right) / 2`.
+
+An expression is parsed by Python's own parser and then carried out node by node: what is
+not in the tables below does not exist, so that an expression can reach nothing but its columns.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from tuisim.errors import LogError, listed
+from tuisim.runs.arrays import FloatArray
+
+MAX_CHARS = 1000
+ALLOWED = "numbers, columns, + - * / // % ** < <= > >= == != and or not, a if b else c, and functions"
+
+_BINARY: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: np.divide,
+    ast.FloorDiv: np.floor_divide,
+    ast.Mod: np.mod,
+    ast.Pow: np.float_power,
+}
+_UNARY: Mapping[type[ast.AST], Callable[[Any], Any]] = {
+    ast.USub: operator.neg,
+    ast.UAdd: operator.pos,
+    ast.Not: np.logical_not,
+}
+_COMPARE: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+}
+
+
+def _shifted(values: FloatArray) -> FloatArray:
+    return np.concatenate(([np.nan], values[:-1])) if np.ndim(values) else values
+
+
+def _difference(values: FloatArray) -> FloatArray:
+    return values - _shifted(values)
+
+
+Functions = Mapping[str, tuple[int, Callable[..., Any], str]]
+"""By name: how many arguments, what it does, in words."""
+
+FUNCTIONS: Functions = {
+    "abs": (1, np.abs, "without its sign"),
+    "sqrt": (1, np.sqrt, "square root"),
+    "exp": (1, np.exp, "e to this power"),
+    "log": (1, np.log, "natural logarithm"),
+    "sin": (1, lambda x: np.sin(np.radians(x)), "sine of degrees"),
+    "cos": (1, lambda x: np.cos(np.radians(x)), "cosine of degrees"),
+    "atan2": (2, lambda y, x: np.degrees(np.arctan2(y, x)), "angle in degrees"),
+    "hypot": (2, np.hypot, "length of a right triangle's long side"),
+    "round": (1, np.round, "to the next whole number"),
+    "floor": (1, np.floor, "whole number below"),
+    "sign": (1, np.sign, "-1, 0 or 1"),
+    "min": (2, np.minimum, "the smaller of two"),
+    "max": (2, np.maximum, "the larger of two"),
+    "clip": (3, np.clip, "kept between two bounds"),
+    "where": (3, np.where, "the second where the first is true, else the third"),
+    "shift": (1, _shifted, "the row before"),
+    "diff": (1, _difference, "the change since the row before"),
+}
+"""What every expression may call."""
+
+CONSTANTS: Mapping[str, float] = {"pi": np.pi}
+
+
+def evaluate(text: str, columns: Mapping[str, FloatArray], functions: Functions = FUNCTIONS) -> FloatArray:
+    """Return the value of an expression in each row.
+
+    Args:
+        text: The expression; a column whose name is no Python name is written in backticks.
+        columns: Arrays of one length by name.
+        functions: What it may call.
+
+    Returns:
+        Shape (n,); conditions are 1 where they hold and 0 elsewhere.
+
+    Raises:
+        LogError: what is wrong with the expression, and what there is instead.
+    """
+    parsed, names = _read(text)
+    length = len(next(iter(columns.values()))) if columns else 0
+    # A division by zero is a value like any other here: inf or not a number.
+    with np.errstate(all="ignore"):
+        value = _Evaluation(columns, names, text, functions).value(parsed.body)
+    return np.broadcast_to(np.asarray(value, np.float64), (length,)).copy()
+
+
+def names_in(text: str) -> list[str]:
+    """Return the columns that an expression names, in the order in which they first stand there.
+
+    Raises:
+        LogError: it cannot be read.
+    """
+    parsed, names = _read(text)
+    called = {id(node.func) for node in ast.walk(parsed) if isinstance(node, ast.Call)}
+    found = [node for node in ast.walk(parsed) if isinstance(node, ast.Name) and id(node) not in called]
+    found.sort(key=lambda node: (node.lineno, node.col_offset))
+    named = dict.fromkeys(names.get(node.id, node.id) for node in found)
+    return [name for name in named if name not in CONSTANTS]
+
+
+def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
+    """Return an expression, and the names in backticks by what stands for them in it."""
+    if len(text) > MAX_CHARS:
+        raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
+    names: dict[str, str] = {}
+    return _parse(_without_backticks(text, names), text), names
+
+
+def _without_backticks(text: str, names: dict[str, str]) -> str:
+    parts = text.split("`")
+    if len(parts) % 2 == 0:
+        raise LogError(f"a backtick is not closed in {text!r}")
+    for at in range(1, len(parts), 2):
+        stand_in = f"column_{at}_"
+        names[stand_in] = parts[at]
+        parts[at] = stand_in
+    return "".join(parts)
+
+
+def _parse(source: str, text: str) -> ast.Expression:
+    try:
+        return ast.parse(source.strip(), mode="eval")
+    except SyntaxError as error:
+        where = f" at character {error.offset}" if error.offset else ""
+        raise LogError(f"cannot read the expression {text!r}{where}: {error.msg}") from error
+    # ValueError: a null character; the others: nested too deeply for the parser.
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise LogError(f"cannot read the expression {text[:60]!r}") from error
+
+
+class _Evaluation:
+    """One expression being carried out.
+
+    Args:
+        columns: Arrays by name.
+        names: Names in backticks by what stands for them.
+        text: The whole expression, for messages.
+        functions: What it may call.
+    """
+
+    def __init__(
+        self, columns: Mapping[str, FloatArray], names: Mapping[str, str], text: str, functions: Functions
+    ) -> None:
+        self._columns, self._names, self._text, self._functions = columns, names, text, functions
+
+    def value(self, node: ast.expr) -> Any:
+        """Return the value of a node: an array or a number.
+
+        Raises:
+            LogError: it is something that expressions do not have.
+        """
+        match node:
+            case ast.Constant(value=bool() | int() | float() as number):
+                # A whole number may have more digits than the largest float.
+                return float(number) if number <= sys.float_info.max else math.inf
+            case ast.Name(id=name):
+                return self._named(self._names.get(name, name))
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
+                return _BINARY[type(op)](self.value(left), self.value(right))
+            case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
+                return _UNARY[type(op)](self.value(operand))
+            case ast.BoolOp(op=op, values=parts):
+                join = np.logical_and if isinstance(op, ast.And) else np.logical_or
+                value = self.value(parts[0])
+                for part in parts[1:]:
+                    value = join(value, self.value(part))
+                return value
+            case ast.Compare(left=left, ops=ops, comparators=others) if all(type(op) in _COMPARE for op in ops):
+                return self._compared([left, *others], ops)
+            case ast.IfExp(test=test, body=body, orelse=other):
+                return np.where(self.value(test), self.value(body), self.value(other))
+            case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
+                return self._called(name, arguments)
+        raise LogError(f"{ast.unparse(node)!r} is not allowed in {self._text!r}", f"allowed are {ALLOWED}")
+
+    def _compared(self, parts: list[ast.expr], ops: list[ast.cmpop]) -> Any:
+        values = [self.value(part) for part in parts]
+        held: Any = True
+        for at, op in enumerate(ops):
+            held = np.logical_and(held, _COMPARE[type(op)](values[at], values[at + 1]))
+        return held
+
+    def _named(self, name: str) -> Any:
+        if name in self._columns:
+            return np.asarray(self._columns[name], np.float64)
+        if name in CONSTANTS:
+            return CONSTANTS[name]
+        raise LogError(f"no column {name!r}", f"there are {listed(self._columns)}")
+
+    def _called(self, name: str, arguments: list[ast.expr]) -> Any:
+        if name not in self._functions:
+            raise LogError(f"no function {name!r}", f"there are {', '.join(self._functions)}")
+        count, function, _ = self._functions[name]
+        if len(arguments) != count:
+            raise LogError(f"{name} takes {count} {'value' if count == 1 else 'values'}, got {len(arguments)}")
+        return function(*(self.value(argument) for argument in arguments))

@@ -1,0 +1,230 @@
+"""Reading a log piece by piece, so that its beginning can be seen while the rest is still coming."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+from typing import Any, Protocol, cast
+
+import pyarrow as pa
+
+from tuisim.errors import LogError
+from tuisim.logs.arrow_files import (
+    ARROW_MAGIC,
+    ARROW_STREAM_MAGIC,
+    PARQUET_MAGIC,
+    arrow_parts,
+    arrow_stream_parts,
+    metadata_in,
+    parquet_parts,
+)
+from tuisim.logs.blocks import BLOCK_BYTES, MAGIC_BYTES, MAGICS, Block, LineCutter, Readable, unpacked
+from tuisim.logs.columns import UNIT_NAMES, choose_columns, unread_time
+from tuisim.logs.csv_table import CsvReader
+from tuisim.logs.export import companion_of
+from tuisim.logs.log import Log
+from tuisim.logs.text_lines import JsonReader, PrintedReader, looks_printed
+from tuisim.logs.warnings import Notes
+
+STDIN = "-"
+FIRST_BYTES = 1 << 18
+"""Read and shown first."""
+_SHOW_EVERY_S = 1.0
+_SHOW_SELDOM = 5.0
+"""Times as long as showing took, reading goes on before the next time."""
+_TABLES = (".csv", ".tsv")
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """How far the reading has come."""
+
+    part: float
+    """Of the file that has been read, 0 to 1; not a number where the size is not known."""
+    log: Log | None
+    """The log so far, now and then; always with the last one."""
+    done: bool = False
+
+
+class BlockReader(Protocol):
+    """What turns lines into rows."""
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the rows of a block, None if it holds none."""
+
+
+def open_log(source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = "") -> Log:
+    """Return the whole log in a file.
+
+    Args:
+        source: Path of a CSV, Parquet, JSONL, Arrow or text file; `-` is the standard input.
+        time: Column with the time; empty to count the rows; None to guess.
+        values: Columns with values; none to guess.
+        unit: Of times that are numbers, one of `SECONDS`; empty to guess.
+
+    Raises:
+        LogError: it cannot be read, holds no row, or there is no such column.
+    """
+    last = None
+    for loaded in read_pieces(source, time, values, unit):
+        last = loaded.log or last
+    assert last is not None
+    return last
+
+
+def read_pieces(
+    source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = ""
+) -> Iterator[Loaded]:
+    """Read a log; yield the log so far, soon after the start and then now and then.
+
+    Args:
+        source, time, values, unit: As for `open_log`.
+
+    Raises:
+        LogError: as for `open_log`.
+    """
+    title = "standard input" if str(source) == STDIN else str(source)
+    notes = Notes()
+    parts: list[pa.Table] = []
+    show_at = 0.0
+    for part, table in _parts(source, notes):
+        if table is not None:
+            parts.append(table)
+        now = monotonic()
+        if not parts or now < show_at:
+            yield Loaded(part, None)
+            continue
+        yield Loaded(part, _log(title, parts, notes, (time, values, unit)))
+        # Looking at what there is so far may take no more than a fraction of the whole time.
+        took = monotonic() - now
+        show_at = now + took + max(_SHOW_EVERY_S, _SHOW_SELDOM * took)
+    if not sum(part.num_rows for part in parts):
+        said = "; ".join(notes.texts())
+        raise LogError("no rows" + (f": {said}" if said else ""), "a log has a heading and a row a sample", file=title)
+    log = _log(title, parts, notes, (time, values, unit))
+    yield Loaded(1.0, log, done=True)
+
+
+def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str | None, Sequence[str], str]) -> Log:
+    table = joined(parts)
+    try:
+        layout = choose_columns(table, *named)
+    except LogError as error:
+        raise LogError(str(error), file=title) from error
+    if layout.since_first:
+        unit = UNIT_NAMES[layout.unit_s]
+        notes.say(f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on")
+    if named[0] is None and (unread := unread_time(table, layout)):
+        notes.say(f"the times in {unread!r} cannot be read: the rows are counted")
+    metadata = metadata_in(parts[0].schema) or _metadata_beside(Path(title))
+    return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
+
+
+def _metadata_beside(path: Path) -> Mapping[str, Any]:
+    """What our own export of a text file says in the file beside it; empty if there is none."""
+    try:
+        found = json.loads(companion_of(path).read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def joined(parts: Sequence[pa.Table]) -> pa.Table:
+    """Return tables one below the other; a column that one does not have is empty there."""
+    try:
+        table = pa.concat_tables(parts, promote_options="permissive")
+    except (pa.ArrowTypeError, pa.ArrowInvalid):
+        # What was taken for numbers as long as it was empty may have turned out to be text.
+        kinds = pa.unify_schemas([_filled(part).schema for part in parts], promote_options="permissive")
+        table = pa.concat_tables([_with_kinds(part, kinds) for part in parts], promote_options="permissive")
+    return table.unify_dictionaries()
+
+
+def _is_empty(column: pa.ChunkedArray) -> bool:
+    return bool(column.null_count == len(column))
+
+
+def _filled(part: pa.Table) -> pa.Table:
+    """The columns that hold something."""
+    return part.select([name for name in part.column_names if not _is_empty(part.column(name))])
+
+
+def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
+    """The same table, its empty columns of the kinds that others have."""
+    for at, name in enumerate(part.column_names):
+        if _is_empty(part.column(at)) and name in kinds.names:
+            part = part.set_column(at, name, pa.nulls(part.num_rows, kinds.field(name).type))
+    return part
+
+
+def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+    if str(source) == STDIN:
+        # A shell may close it, whatever its type says.
+        if cast("Any", sys.stdin) is None:
+            raise LogError("is closed", "name a file instead of -", file="standard input")
+        yield from text_parts(sys.stdin.buffer, 0, "", notes)
+        return
+    path = Path(source)
+    try:
+        if path.is_dir():
+            raise LogError("is a folder, not a log", file=str(path))
+        regular = path.is_file()
+        with path.open("rb", buffering=0 if not regular else -1) as handle:
+            head = handle.read(MAGIC_BYTES) if regular else b""
+            if head.startswith(PARQUET_MAGIC):
+                yield from parquet_parts(path, notes)
+            elif head.startswith(ARROW_MAGIC):
+                yield from arrow_parts(path, notes)
+            elif head.startswith(ARROW_STREAM_MAGIC):
+                yield from arrow_stream_parts(path, notes)
+            else:
+                if regular:
+                    handle.seek(0)
+                inner = unpacked(str(path), head, handle, notes)
+                if inner is not None:
+                    yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes)
+                    return
+                yield from text_parts(handle, path.stat().st_size if regular else 0, path.suffix.lower(), notes)
+    except FileNotFoundError as error:
+        raise LogError("no such file", file=str(path)) from error
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
+
+
+def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+    """Yield the rows of a text, with the part of it that has been read.
+
+    Args:
+        handle: The bytes.
+        size: How many there are, 0 if that is not known.
+        suffix: Of the file's name, lower case, such as `.csv`.
+        notes: What was wrong.
+    """
+    cutter, reader = LineCutter(notes), None
+    read = 0
+    while True:
+        data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
+        if not read and data.startswith((PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC, *MAGICS)):
+            raise LogError("only text can be read from a pipe or inside a compressed file", "name the file itself")
+        read += len(data)
+        block = cutter.feed(data) if data else cutter.finish()
+        if block is not None:
+            reader = reader or _reader_for(block, suffix, notes)
+            yield (min(1.0, read / size) if size else float("nan")), reader.read(block)
+        elif data:
+            yield (min(1.0, read / size) if size else float("nan")), None
+        if not data:
+            return
+
+
+def _reader_for(block: Block, suffix: str, notes: Notes) -> BlockReader:
+    lines = [line for _, (_, line) in zip(range(30), block.lines(), strict=False)]
+    if suffix in (".jsonl", ".ndjson", ".json") or (suffix not in _TABLES and lines and lines[0].startswith("{")):
+        return JsonReader(notes)
+    if suffix not in _TABLES and looks_printed(lines):
+        return PrintedReader(notes)
+    return CsvReader(notes)

@@ -1,0 +1,258 @@
+"""The run of one cell: its lines, its pictures, the responder's answers, and the kernel's interrupt."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from itertools import groupby, islice
+from typing import Any
+
+from tuisim.charts.world_image import PenTrace, pen_trace
+from tuisim.config.mat_cache import FieldFiles
+from tuisim.core.spec import RunSpec
+from tuisim.errors import ConfigError
+from tuisim.notebook.display import Scene, Stage, start_record
+from tuisim.notebook.interrupt import Interruption
+from tuisim.protocol import Answer, Reply
+from tuisim.runs.handle import Program, RunHandle, RunOptions, start_run
+from tuisim.runs.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.samples import Sample, samples_of
+from tuisim.runs.store import RunStore
+
+POLL_S = 0.02
+"""How long a printed line may wait before it is in the cell."""
+
+STOP_WAIT_S = 1.0
+ROWS_AT_ONCE = 2000
+"""So many lines are shown before the next look at the interrupt."""
+
+ROWS_AFTER_INTERRUPT = 1000
+"""So many lines of an interrupted run are still shown; its log has them all."""
+
+ROWS_A_DRAWING = 10_000
+"""So many lines are searched for samples between two looks at the interrupt."""
+
+BYTES_IN_A_HURRY = 1 << 20
+"""So much output is counted at once."""
+
+FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
+"""What the lines begin with that are meant for the responder."""
+
+Responder = Callable[[str], object]
+_SHOWN = {STDOUT, STDERR, SPEECH}
+
+
+@dataclass(frozen=True, slots=True)
+class CellRun:
+    """What a cell wants to be run."""
+
+    program: Program
+    spec: RunSpec
+    files: FieldFiles
+    speed: float
+    """As in `RunOptions`."""
+    refresh_s: float
+    traces: tuple[PenTrace, ...]
+    """What former runs have drawn on the mat."""
+    responder: Responder | None
+    """Who answers the program, in collaborative mode."""
+    quiet: bool
+    """Whether what is spoken is not even shown."""
+
+
+def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) -> StoredRun:
+    """Run a program to its end, or until the kernel is interrupted, and show it.
+
+    Args:
+        wanted: The run.
+        stage: Where it is shown.
+        begun: Called with the run as soon as its recording is there.
+
+    Raises:
+        ConfigError: the responder has returned what a program cannot get; the run has been stopped.
+    """
+    store = RunStore()
+    paced = wanted.speed > 0
+    options = RunOptions(
+        live=paced, speed=wanted.speed, asks_user=True, time_waits=not paced, replies=wanted.responder is not None
+    )
+    with Interruption() as interruption, closing(start_run(wanted.program, wanted.spec, options, store)) as handle:
+        run = store.load_run(handle.run_id)
+        begun(run)
+        screen = _Screen(wanted, stage, run)
+        try:
+            _Follower(wanted, handle, screen, interruption).to_the_end()
+        except BaseException:  # whatever a responder raises: its program must not outlive the cell
+            handle.stop()
+            handle.wait(STOP_WAIT_S)
+            raise
+        finally:
+            handle.close()
+            done = handle.stored()
+            begun(done)
+            # The user who has interrupted a flood of lines does not wait for all of them to be read.
+            hurry = interruption.count > 0
+            screen.draw(told_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
+    return done
+
+
+def told_end(run: StoredRun, *, hurry: bool = False) -> str:
+    """Return one line on a run that is over: how it ended, simulated time, samples.
+
+    Args:
+        run: The run.
+        hurry: Leave out the samples, if they would take long to count.
+    """
+    what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
+    told = f"{run.state}{what} · {run.time_s:.3f} s"
+    if hurry and run.output.length > BYTES_IN_A_HURRY:
+        return told
+    samples = sum(1 for _ in samples_of(run.output.rows()))
+    return f"{told} · {samples} sample{'s' * (samples != 1)}"
+
+
+class _Follower:
+    """Follows one run.
+
+    Args:
+        wanted: What it is.
+        handle: Its process.
+        screen: Draws it.
+        interruption: Tells when it is to be stopped.
+    """
+
+    def __init__(self, wanted: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
+        self._wanted, self._handle, self._screen, self._interruption = wanted, handle, screen, interruption
+        self._said: list[Any] = []
+        """What the responder has said, and the program has not got yet."""
+        self._stopping = False
+
+    def to_the_end(self) -> None:
+        """Wait until the run is over, and pass everything on meanwhile."""
+        handle, interruption = self._handle, self._interruption
+        # Before anything is printed: what a cell shows stands in the same order however fast the program is.
+        self._screen.draw_now_and_then()
+        more = False
+        while handle.ended is None:
+            if interruption.count > 1:
+                handle.kill()
+            elif interruption.count and not self._stopping:
+                self._stopping = True
+                handle.stop()
+            handle.wait_for_event(0.0 if more else POLL_S)
+            handle.pump()
+            more = self._pass_on()
+            # An answer is one to all that was printed before the question.
+            if not more and not interruption.count:
+                self._reply()
+            if not interruption.count:
+                self._screen.draw_now_and_then()
+        self._finish()
+
+    def _pass_on(self) -> bool:
+        """Show what was printed, let the responder hear what is meant for it, and return whether there is more."""
+        rows = self._handle.output.new_rows(ROWS_AT_ONCE)
+        show_rows(rows, quiet=self._wanted.quiet)
+        if self._wanted.responder is not None:
+            for row in rows:
+                if row.stream == STDOUT and row.text.startswith(FOR_THE_NOTEBOOK):
+                    heard = row.text.removeprefix(FOR_THE_NOTEBOOK[0])
+                    answer = self._interruption.call(partial(self._wanted.responder, heard))
+                    self._said += [] if answer is None else [_message(answer)]
+        return len(rows) == ROWS_AT_ONCE
+
+    def _reply(self) -> None:
+        handle = self._handle
+        if handle.waiting_for_reply:
+            said, self._said = self._said, []
+            handle.send(Reply(tuple(said)))
+        prompt = handle.waiting_for_input
+        if prompt is not None:
+            answer = self._interruption.call(partial(_ask, prompt))
+            if not self._interruption.count:
+                handle.send(Answer(answer, at_once=self._wanted.speed == 0))
+
+    def _finish(self) -> None:
+        shown = 0
+        while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._pass_on():
+            shown += ROWS_AT_ONCE
+        if self._handle.output.new_rows(1):
+            print("… and more lines, which are in the log", file=sys.stderr)
+        ended = self._handle.ended
+        if ended and ended.error and not any(row.stream == STDERR for row in self._handle.output.rows()):
+            print(ended.error.rstrip("\n"), file=sys.stderr)
+
+
+class _Screen:
+    """Draws a run while it goes on."""
+
+    def __init__(self, wanted: CellRun, stage: Stage, run: StoredRun) -> None:
+        self._wanted, self._stage, self._run = wanted, stage, run
+        self._due = 0.0
+        self._samples: list[Sample] = []
+        self._position = 0
+        """Up to where the output has been searched for samples."""
+
+    def draw_now_and_then(self) -> None:
+        """Draw if there is no drawing yet, or the last one is old; where drawings would pile up, never."""
+        if not self._stage.redraws or time.monotonic() < self._due:
+            return
+        self.draw(f"running · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
+        # Counted from the end of the drawing: what is slow to draw must not be all that is done.
+        self._due = time.monotonic() + self._wanted.refresh_s
+
+    def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
+        """Draw the run as it is now.
+
+        Args:
+            status: One line about it.
+            most_rows: So many of its lines are searched for further samples, None for all.
+        """
+        wanted, run = self._wanted, self._run
+        if self._stage.shows("chart"):
+            for row, after in islice(run.output.rows_from(self._position), most_rows):
+                self._samples += samples_of((row,))
+                self._position = after
+        last = run.telemetry.last() or start_record(wanted.spec)
+        traces = (*wanted.traces, pen_trace(wanted.spec, run.telemetry.array()))
+        self._stage.show(Scene(wanted.spec, wanted.files, wanted.program.text, last, traces, self._samples), status)
+
+
+def show_rows(rows: Sequence[OutputRow], *, quiet: bool = False) -> None:
+    """Print rows in the order in which they came, many of one stream at once."""
+    shown = _SHOWN - {SPEECH} if quiet else _SHOWN
+    for is_error, group in groupby((row for row in rows if row.stream in shown), key=lambda row: row.stream == STDERR):
+        print("\n".join(line_of(row) for row in group), file=sys.stderr if is_error else sys.stdout)
+
+
+def _plain(value: Any) -> Any:
+    """Return numbers and arrays of other libraries as Python's own."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__}")
+
+
+def _message(answer: object) -> Any:
+    try:
+        return json.loads(json.dumps(answer, default=_plain))
+    except (TypeError, ValueError, RecursionError) as error:
+        hint = "text, numbers, True, None, lists and dicts; None is no answer"
+        raise ConfigError(f"the program cannot get {error}", hint, key="roboSim.responder") from None
+
+
+def _ask(prompt: str) -> str | None:
+    """Ask the person at the notebook; None where nobody can answer."""
+    from IPython.core.error import StdinNotImplementedError
+
+    try:
+        return input(prompt)
+    # A kernel says the first, a shell at its end the second, one without any stdin the third.
+    except (StdinNotImplementedError, EOFError, OSError):
+        print("tuisim: the program waits in input(), but nobody can be asked here", file=sys.stderr)
+        return None

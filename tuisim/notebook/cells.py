@@ -1,0 +1,183 @@
+"""The programs in a notebook file, each with the world that the cells before it have set."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tuisim.config.options import nearest
+from tuisim.config.program_file import PRELUDES, ProgramSource, beside
+from tuisim.errors import ConfigError
+from tuisim.notebook.magic_line import lasting_after, parse_line
+from tuisim.source import source_lines
+
+MAX_NOTEBOOK_BYTES = 64 << 20
+SUFFIX = ".ipynb"
+
+_MAGIC = re.compile(r"%(?P<cell>%)?(?P<name>sim_magic\w*)(?P<words>.*)")
+_VARIABLE = re.compile(r"(?<!\$)\$[A-Za-z_][\w.]*|\{[^{}]+\}")
+"""What IPython replaces in a magic line by the value that it has in the notebook."""
+
+_NUMBERS = re.compile(r"([0-9]+)|([^0-9]+)")
+_HEADING = re.compile(r"#+\s+(.*\S)")
+
+
+@dataclass(frozen=True, slots=True)
+class NotebookProgram:
+    """One program cell."""
+
+    number: int
+    """From 1, among the program cells."""
+    title: str
+    """The nearest heading above it, empty if there is none."""
+    source: ProgramSource
+    unknown: str = ""
+    """What its magic line takes from the notebook, such as `$x`: the program runs there only. Empty for nothing."""
+    notes: tuple[str, ...] = ()
+    """What had to be left out of the cells between the program before and this one."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Words:
+    """A magic line, as far as it can be understood outside the notebook."""
+
+    magic: re.Match[str]
+    settings: Mapping[str, Any]
+    unknown: str
+
+
+def is_notebook(word: str) -> bool:
+    """Return whether a word of the command line means a notebook, or a cell of one as `FILE#number`."""
+    return word.partition("#")[0].endswith(SUFFIX)
+
+
+def notebooks_in(folder: Path) -> list[Path]:
+    """Return the notebooks of a folder and the folders in it, in the order of their names: 2 comes before 10.
+
+    Hidden folders are left out: Jupyter keeps former versions in them.
+    """
+    found: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        found += [Path(place, name) for name in files if name.endswith(SUFFIX) and not name.startswith(".")]
+    return sorted(found, key=lambda path: [_natural(part) for part in path.parts])
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """What sorts names by the numbers in them."""
+    return [(int(digits), "") if digits else (-1, text.lower()) for digits, text in _NUMBERS.findall(name)]
+
+
+def _cells(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield (cell type, text)."""
+    shown = str(path)
+    try:
+        if not path.is_file():
+            raise ConfigError("there is no such notebook", file=shown)
+        with path.open("rb") as file:
+            data = file.read(MAX_NOTEBOOK_BYTES + 1)
+    except OSError as error:
+        raise ConfigError(f"cannot be read: {error.strerror or error}", file=shown) from None
+    if len(data) > MAX_NOTEBOOK_BYTES:
+        raise ConfigError(f"is larger than {MAX_NOTEBOOK_BYTES >> 20} MiB", file=shown)
+    try:
+        for cell in json.loads(data)["cells"]:
+            source = cell["source"]
+            yield str(cell["cell_type"]), source if isinstance(source, str) else "".join(source)
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise ConfigError(
+            "is no notebook that can be read", "one of format 4, as Jupyter saves it", file=shown
+        ) from None
+
+
+def notebook_programs(path: Path) -> list[NotebookProgram]:
+    """Return the programs in a notebook, from the top; what only the notebook knows is left out of their world.
+
+    Raises:
+        ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
+    """
+    found: list[NotebookProgram] = []
+    title, lasting, notes = "", dict[str, Any](), list[str]()
+    folder = os.path.dirname(os.path.abspath(path))
+    for place, (kind, text) in enumerate(_cells(path), 1):
+        if kind == "markdown":
+            headings = [match[1] for line in source_lines(text) if (match := _HEADING.match(line))]
+            title = headings[-1] if headings else title
+        if kind != "code":
+            continue
+        where = f"{path}, cell {place}"
+        for words in _magics(text, where):
+            said = beside(path.parent, words.settings)
+            lasting = lasting_after(lasting, said)
+            if words.magic["cell"]:
+                number = len(found) + 1
+                # The magic's line stays, empty, so that lines count as in the cell.
+                at = text.index("%%")
+                body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
+                prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
+                switches = {**lasting, **said}
+                source = ProgramSource(f"{path.name}#{number}", "", body, prelude, switches, folder)
+                found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
+                notes.clear()
+            elif words.unknown:
+                notes.append(f"{where}: only the notebook knows {words.unknown}, which is left out")
+    return found
+
+
+def _magics(text: str, where: str) -> Iterator[_Words]:
+    """Yield each magic that sets the world, with what it says; a cell's own magic is its first line."""
+    stripped = text.lstrip()
+    lines = source_lines(stripped)
+    if stripped.startswith("%%"):
+        lines = lines[:1]
+    for line in lines:
+        match = _MAGIC.fullmatch(line.strip())
+        if match is None:
+            continue
+        if match["name"] not in PRELUDES:
+            known = nearest(match["name"], PRELUDES)
+            raise ConfigError(f"no such magic %{match['cell'] or ''}{match['name']}", known, file=where)
+        line_words, unknown = _without_variables(match["words"])
+        try:
+            yield _Words(match, parse_line(line_words, match["name"]).settings, unknown)
+        except ConfigError as error:
+            raise ConfigError(error.message, error.hint, file=where) from None
+
+
+def _without_variables(words: str) -> tuple[str, str]:
+    """Return the words of a magic line without those that need a variable and their switches, and what they need."""
+    unknown = ", ".join(_VARIABLE.findall(words))
+    kept: list[str] = []
+    # A word that holds a variable, also if blanks are in its braces.
+    for word in re.findall(rf"(?:{_VARIABLE.pattern}|\S)+", words) if unknown else ():
+        if not _VARIABLE.search(word):
+            kept.append(word)
+        elif not word.startswith("-") and kept and kept[-1].startswith("-"):
+            kept.pop()
+    return (" ".join(kept) if unknown else words), unknown
+
+
+def chosen_programs(word: str) -> list[NotebookProgram]:
+    """Return the programs that `FILE` or `FILE#number` means.
+
+    Raises:
+        ConfigError: there is no such notebook or program.
+    """
+    name, sharp, cell = word.partition("#")
+    programs = notebook_programs(Path(name))
+    if not programs:
+        raise ConfigError("has no program cells", "they begin with %%sim_magic", file=name)
+    if not sharp:
+        return programs
+    if not cell.isdecimal() or not 1 <= int(cell) <= len(programs):
+        raise ConfigError(f"no program {cell!r}", f"a number from 1 to {len(programs)}", file=name)
+    chosen = programs[int(cell) - 1]
+    if chosen.unknown:
+        hint = "run the cell there, or write a value in its place"
+        raise ConfigError(f"only the notebook knows {chosen.unknown}", hint, file=word)
+    return [chosen]

@@ -1,0 +1,194 @@
+"""What a cell shows: pictures and tables that change while the program runs, and stay when it is over."""
+
+from __future__ import annotations
+
+import html
+import io
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from IPython.core.getipython import get_ipython
+from IPython.display import DisplayHandle, display
+
+from tuisim.charts.world_image import PenTrace, arrays_picture, chart_picture, world_picture
+from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
+from tuisim.config.options import Settings
+from tuisim.core.geometry import shown_heading_deg
+from tuisim.core.sensors import mounted
+from tuisim.core.sensors.color import ColorReading
+from tuisim.core.spec import RunSpec
+from tuisim.notebook.eds import arrays_at
+from tuisim.runs.samples import Sample
+from tuisim.runs.views import TickRecord, instant_of
+from tuisim.source import source_lines
+
+_LEFT_RIGHT = ("left", "right")
+
+_UNITS = (("_mm", " ", "mm"), ("_dps", " ", "°/s"), ("_deg", "", "°"))
+"""By the end of a column's name, what stands between number and unit, and the unit."""
+
+Row = tuple[str, str]
+
+
+def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
+    """Return a Pillow image as what a cell shows."""
+    png = io.BytesIO()
+    picture.save(png, "PNG")
+    return {"image/png": png.getvalue(), "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>"}
+
+
+def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
+    """Return rows of name and value as what a cell shows.
+
+    Args:
+        title: What the table is about.
+        rows: Name and value.
+        keep_blanks: Whether blanks mean something in the values, as in a program: a browser folds them.
+    """
+    begin, end = ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
+    wide = max((len(name) for name, _ in rows), default=0)
+    plain = "\n".join([title, *(f"  {name:<{wide}}  {value}" for name, value in rows)])
+    cells = "".join(f"<tr><th>{html.escape(name)}</th>{begin}{html.escape(value)}{end}</tr>" for name, value in rows)
+    return {"text/plain": plain, "text/html": f"<table><caption>{html.escape(title)}</caption>{cells}</table>"}
+
+
+def _reading(name: str, values: dict[str, float]) -> str:
+    if f"{name}_red" in values:
+        seen = ColorReading(*(values[f"{name}_{channel}"] for channel in ("red", "green", "blue")))
+        return f"red {seen.red_percent:.1f} %, mean {seen.mean_percent:.1f} %, rgb {seen.rgb}, {seen.name}"
+    return ", ".join(f"{value:g}{_unit(column)}" for column, value in values.items() if column.startswith(name))
+
+
+def _unit(column: str) -> str:
+    return next((f"{space}{unit}" for end, space, unit in _UNITS if column.endswith(end)), "")
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What there is to show."""
+
+    spec: RunSpec
+    files: FieldFiles
+    text: str
+    """The program."""
+    last: TickRecord
+    """The moment that is shown."""
+    traces: Sequence[PenTrace] = ()
+    """What pens have drawn on the mat by then."""
+    samples: Sequence[Sample] = ()
+    printed: Sequence[str] | None = None
+    """The lines of the last run, where they are not in the cell already."""
+
+
+def start_record(spec: RunSpec) -> TickRecord:
+    """Return the moment before anything has run."""
+    start = spec.world.start
+    return TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, *[0] * 7)
+
+
+def instrumentation(scene: Scene) -> list[Row]:
+    """Return motors, sensors and pose at the scene's moment."""
+    spec, record, field = scene.spec, scene.last, open_field(scene.files)
+    instant = instant_of(record, spec, spec.world.noise)
+    rows = [
+        ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
+        ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
+    ]
+    for kind, sensor in mounted(spec.robot):
+        values = dict(zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True))
+        name = getattr(sensor, "name", "gyro")
+        shown = f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})" if name in _LEFT_RIGHT else name.capitalize()
+        rows.append((shown, _reading(name, values)))
+    return [*rows, ("Clock", f"{record.tick / spec.profile.tick_hz:.2f} s")]
+
+
+def _positioning(scene: Scene) -> list[Row]:
+    pose = scene.last.pose
+    return [
+        ("x", f"{pose.x_mm:.1f} mm"),
+        ("y", f"{pose.y_mm:.1f} mm"),
+        ("heading", f"{shown_heading_deg(pose.heading_deg):.1f}°"),
+    ]
+
+
+def _noise(scene: Scene) -> list[Row]:
+    noise = scene.spec.world.noise
+    return [("light", str(noise.light)), ("motor", str(noise.motor))]
+
+
+def _settings(scene: Scene) -> list[Row]:
+    spec = scene.spec
+    world, names = spec.world, (spec.robot.name, spec.profile.name)
+    what = ("robot", "profile", "mat", "obstacles", "seed")
+    return list(zip(what, (*names, world.background, str(len(world.obstacles)), str(spec.seed)), strict=True))
+
+
+def _code(scene: Scene) -> list[Row]:
+    return [(str(number), line) for number, line in enumerate(source_lines(scene.text), 1)]
+
+
+_TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
+    "instrumentation": instrumentation,
+    "positioning": _positioning,
+    "noise": _noise,
+    "settings": _settings,
+    "code": _code,
+}
+"""By panel, what its table shows."""
+
+
+class Stage:
+    """The panels of one cell, each a display that is drawn anew in its place.
+
+    Args:
+        settings: Which panels are on and off.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self.redraws = hasattr(get_ipython(), "kernel")
+        """Whether what is shown can be drawn anew in its place; a terminal would repeat it below."""
+        self._handles: dict[str, DisplayHandle] = {}
+
+    def _put(self, panel: str, bundle: dict[str, Any]) -> None:
+        if panel in self._handles:
+            self._handles[panel].update(bundle, raw=True)
+        else:
+            handle = display(bundle, raw=True, display_id=True)
+            # A display that swallows what it is given returns none.
+            if handle is not None:
+                self._handles[panel] = handle
+
+    def shows(self, panel: str) -> bool:
+        """Return whether the cell has put a panel on."""
+        return panel in self._settings.panels_on
+
+    def show(self, scene: Scene, status: str) -> None:
+        """Draw all panels.
+
+        Args:
+            scene: What there is to show.
+            status: One line about the run.
+        """
+        # A kernel sends what is printed now and then, but displays at once.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        on, off, spec = self._settings.panels_on, self._settings.panels_off, scene.spec
+        if "world" not in off:
+            mat, pose = mat_pixels(scene.files), scene.last.pose
+            picture = world_picture(spec, mat, pose, scene.traces, rays=self._settings.rays)
+            self._put("world", picture_bundle(picture, "world"))
+        if "arrays" in on:
+            arrays = arrays_at(spec, scene.last, spec.world.noise, open_field(scene.files))
+            self._put("arrays", picture_bundle(arrays_picture(arrays), "sensor arrays"))
+        if "chart" in on:
+            self._put("chart", picture_bundle(chart_picture(scene.samples), "chart"))
+        if "output" in on and scene.printed is not None:
+            self._put("output", {"text/plain": "\n".join(scene.printed) or "nothing was printed"})
+        for panel, rows in _TABLES.items():
+            if panel in on:
+                self._put(panel, table_bundle(panel.capitalize(), rows(scene), keep_blanks=panel == "code"))
+        if "controls" not in off:
+            self._put("controls", {"text/plain": status})

@@ -1,0 +1,1 @@
+"""Reports: a run or a log on one page."""

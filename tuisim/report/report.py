@@ -1,0 +1,303 @@
+"""The report of a run, of several runs, or of a log file: one page."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.charts.figure import Chart, Span, View, chart_of
+from tuisim.charts.files import FACET_PX, write_whole
+from tuisim.charts.layout import laid_out
+from tuisim.charts.svg import clean, svg_of
+from tuisim.core.geometry import shown_heading_deg
+from tuisim.core.simulation import NS_PER_S
+from tuisim.errors import ExportError, LogError, listed
+from tuisim.logs.export import check_place
+from tuisim.logs.plateaus import Plateau, plateaus
+from tuisim.logs.statistics import QUANTILES
+from tuisim.report.html import code, facts, page, paragraph, section, table
+from tuisim.report.world import as_source, way_picture
+from tuisim.runs.arrays import FloatArray
+from tuisim.source import source_lines
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
+    from tuisim.analysis.source import OpenedLog
+    from tuisim.logs.log import Log
+    from tuisim.runs.run_folder import StoredRun
+
+Search = Callable[[FloatArray], list[Plateau]]
+SUFFIXES = (".html", ".htm")
+MOST_BANDS = 300
+"""Rows of the table of bands; what has more of them has none that a reader could use."""
+_WIDTH_PX = 960
+
+
+def default_name(subject: OpenedLog) -> str:
+    """Return what the file of a report is called if nobody says."""
+    name = subject.runs[0].program.name if subject.runs else subject.wanted.file
+    return f"{Path(name).stem.strip('-.') or 'log'}-report.html"
+
+
+def check_report(path: Path) -> None:
+    """Make sure that a report can be written there.
+
+    Raises:
+        ExportError: it cannot, or the suffix is another one.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", "a report ends in .html")
+    check_place(path)
+
+
+def write_report(subject: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = plateaus) -> None:
+    """Write the report of a log; a file that is there is replaced.
+
+    Args:
+        subject: The log, and its runs if they are in the store.
+        path: Where to.
+        names: Variables of chart and bands, none for those that the analyser shows first.
+        search: Finds the bands; `analysis.aside` has one that leaves the other threads their time.
+
+    Raises:
+        ExportError: the file cannot be written; what was there is as it was.
+        LogError: a recording is damaged, or there is nothing to report on.
+    """
+    check_report(path)
+    # A program may hold any characters, also halves of pairs, which `clean` has replaced.
+    write_whole(path, report_of(subject, names, search).encode())
+
+
+def report_of(subject: OpenedLog, names: Sequence[str] = (), search: Search = plateaus) -> str:
+    """Return the page.
+
+    Args:
+        subject, names, search: As for `write_report`.
+
+    Raises:
+        LogError: as `write_report`.
+    """
+    from tuisim.analysis.model import Model
+
+    subject, remark = _with_rows(subject)
+    model = Model(subject)
+    for trace in model.traces:
+        trace.on = trace.name in names if names else trace.on
+    model.find_bands(model.unsearched(), search)
+    log = subject.log
+    runs = subject.runs
+    body = [
+        f"<header>\n<h1>{clean(log.title)}</h1>",
+        paragraph(remark, soft=True) if remark else "",
+        "</header>",
+        section("Facts", facts(run_facts(runs) if runs else log_facts(log)), *map(_error, runs)),
+        section("World", *(_world(run, many=len(runs) > 1) for run in runs)),
+        section("Chart", *_chart(model)),
+        section("Bands", *_bands(model)),
+        section("Statistics", _statistics(model)),
+        section("Notes", _notes(model), *(paragraph(f"Reading: {note}", soft=True) for note in log.notes)),
+        *_programs(runs),
+    ]
+    return page(f"{log.title}: report", [part for part in body if part])
+
+
+def _with_rows(subject: OpenedLog) -> tuple[OpenedLog, str]:
+    """The log to report on, and what is to be said about it."""
+    from tuisim.analysis.source import LogRequest, opening
+
+    if subject.log.rows:
+        return subject, ""
+    if not subject.runs:
+        raise LogError("no rows", "a report needs a log or a run", file=subject.log.title)
+    *_, found = opening(LogRequest(runs=(subject.runs[0].id,), telemetry=True))
+    return found, "The program printed no samples: chart, bands and statistics are of what every tick recorded."
+
+
+def _error(run: StoredRun) -> str:
+    return f"<pre>{clean(run.end.error.rstrip())}</pre>" if run.end and run.end.error else ""
+
+
+def _world(run: StoredRun, *, many: bool) -> str:
+    try:
+        picture = way_picture(run)
+    except LogError as error:
+        return paragraph(f"No picture: {error}", soft=True)
+    mat = run.spec.world.background
+    said = f"run {run.number}: " if many else ""
+    text = clean(f"{said}the mat {mat} and the robot where it stood at the end; its way in orange, from the ring")
+    size = f'width="{picture.width}" height="{picture.height}"'
+    return f'<figure><img src="{as_source(picture)}" {size} alt="{text}"><figcaption>{text}</figcaption></figure>'
+
+
+def _chart(model: Model) -> list[str]:
+    lines = len(model.traces.ticked())
+    height = 2 * FACET_PX if lines < 2 else 80 + FACET_PX * lines
+    chart = chart_of(model, View(facets=True), _WIDTH_PX, height)
+    spans = tuple(
+        Span(band.start_s, band.stop_s, f"{band.true_level:.4g}", band.variable)
+        for report in model.reports()
+        for band in report.bands[:MOST_BANDS]
+    )
+    chart = Chart(chart.title, chart.lines, chart.x_limits, chart.x_label, chart.facets, spans=spans)
+    hidden = [trace.name for trace in model.traces if not trace.on]
+    return [
+        f"<figure>{svg_of(laid_out(chart, _WIDTH_PX, height, titled=False), inside=True)}</figure>",
+        paragraph("The bands are shaded, with their levels.", soft=True) if spans else "",
+        paragraph(f"Not drawn: {listed(hidden)}", soft=True) if hidden else "",
+    ]
+
+
+def _number(value: float, how: str) -> str:
+    return "" if math.isnan(value) else format(value, how)
+
+
+def _bands(model: Model) -> list[str]:
+    heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
+    told = zip(model.reports(), model.bands_in_words(), strict=True)
+    parts = [paragraph(words) for report, words in told if report.bands]
+    bands = model.bands()
+    rows = [
+        [
+            *(band.variable, band.grey, str(band.number), f"{band.start_s:.2f}", f"{band.stop_s:.2f}"),
+            *(str(band.samples), f"{band.level:.2f}", f"{band.spread:.2f}", _number(band.width_mm, ".0f")),
+        ]
+        for band in bands[:MOST_BANDS]
+    ]
+    if any(band.true_level != band.level for band in bands[:MOST_BANDS]):
+        heads.append("without noise")
+        for row, band in zip(rows, bands[:MOST_BANDS], strict=True):
+            row.append(f"{band.true_level:.2f}")
+    more = len(bands) - len(rows)
+    return [*parts, table(heads, rows, numbers=2), paragraph(f"and {more:,} more", soft=True) if more else ""]
+
+
+def _statistics(model: Model) -> str:
+    heads = ["variable", "count", "min", "mean", "max", "std", *(f"{100 * part:g} %" for part in QUANTILES)]
+    rows = []
+    for trace in model.traces:
+        found = model.summary(trace.name)
+        figures = (found.min, found.mean, found.max, found.std, *found.quantiles)
+        rows.append((trace.name, f"{found.count:,}", *(_number(figure, ".5g") for figure in figures)))
+    return table(heads, rows, numbers=1)
+
+
+def _notes(model: Model) -> str:
+    rows = []
+    for run, note in model.notes:
+        span = f"{note.start_s:.2f}" + (f" to {note.stop_s:.2f}" if note.stop_s > note.start_s else "")
+        rows.append((str(run + 1), span, note.variable, note.text))
+    many = len(model.subject.runs) > 1
+    heads = ("run", "s", "variable", "note")
+    return table(heads[not many :], [row[not many :] for row in rows], numbers=len(heads))
+
+
+def _programs(runs: Sequence[StoredRun]) -> list[str]:
+    """Each program once."""
+    programs = {run.program.sha256: run.program for run in runs}
+    return [section(f"Program {program.name}", code(source_lines(program.text))) for program in programs.values()]
+
+
+Fact = tuple[str, ...]
+"""What it is, and what it is for each run."""
+
+
+def run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
+    """Return the facts of stored runs; what is nowhere the case is left out."""
+    rows = [(name, *(tell(run) for run in runs)) for name, tell in _FACTS.items()]
+    return [row for row in rows if any(row[1:])]
+
+
+def log_facts(log: Log) -> list[Fact]:
+    """Return the facts of a log file, and what it says of its runs if it is an export."""
+    rows: list[Fact] = [
+        ("file", log.title),
+        ("rows", f"{log.rows:,}" + (f", and {log.left_out:,} that could not be read" if log.left_out else "")),
+        ("columns", ", ".join(log.table.column_names)),
+        ("variables", ", ".join(log.names)),
+    ]
+    entries = log.metadata.get("runs")
+    runs = [entry for entry in entries if isinstance(entry, Mapping)] if isinstance(entries, list) else []
+    for name, path in _TRAVELLED.items():
+        found = [_at(run, path) for run in runs]
+        if any(found):
+            rows.append((name, ", ".join(dict.fromkeys(found))))
+    return rows
+
+
+_TRAVELLED: Mapping[str, tuple[str, ...]] = {
+    "program": ("program", "name"),
+    "SHA-256": ("program", "sha256"),
+    "mat": ("world", "background"),
+    "robot": ("robot", "name"),
+    "profile": ("profile", "name"),
+    "seed": ("seed",),
+    "light noise": ("world", "noise", "light"),
+    "motor noise": ("world", "noise", "motor"),
+}
+"""Where an export says it of a run."""
+
+
+def _at(entry: Mapping[str, Any], path: Sequence[str]) -> str:
+    """What stands at a place, as text; empty if there is no such place."""
+    found: Any = entry
+    for key in path:
+        found = found.get(key, "") if isinstance(found, Mapping) else ""
+    return str(found)
+
+
+def _end(run: StoredRun) -> str:
+    state = run.state.replace("_", " ")
+    return f"{state}: {run.end.summary}" if run.end and run.end.summary else state
+
+
+def _time_s(run: StoredRun) -> str:
+    last = run.telemetry.last()
+    if run.end:
+        return f"{run.end.time_ns / NS_PER_S:.3f} s, tick {run.end.tick}"
+    return f"{last.tick / run.spec.profile.tick_hz:.3f} s, tick {last.tick}" if last else ""
+
+
+def _pose(x_mm: float, y_mm: float, heading_deg: float) -> str:
+    return f"x {x_mm:.2f} mm, y {y_mm:.2f} mm, heading {shown_heading_deg(heading_deg):.2f}°"
+
+
+def _start_pose(run: StoredRun) -> str:
+    start = run.spec.world.start
+    return _pose(start.x_mm, start.y_mm, start.heading_deg)
+
+
+def _end_pose(run: StoredRun) -> str:
+    last = run.telemetry.last()
+    return _pose(last.x_mm, last.y_mm, last.heading_deg) if last else ""
+
+
+def _noise(run: StoredRun) -> str:
+    noise = run.spec.world.noise
+    changed = any(action.kind == "set_noise" for action in run.actions)
+    return f"light {noise.light}, motor {noise.motor}" + (", changed during the run" if changed else "")
+
+
+_FACTS: Mapping[str, Callable[[StoredRun], str]] = {
+    "run": lambda run: f"{run.number or ''} {run.id}".strip(),
+    "made": lambda run: run.created[:19].replace("T", " ") + " UTC",
+    "program": lambda run: run.program.name,
+    "arguments": lambda run: shlex.join(run.program.arguments),
+    "SHA-256": lambda run: run.program.sha256,
+    "prelude": lambda run: run.program.prelude,
+    "mat": lambda run: run.spec.world.background,
+    "obstacles": lambda run: f"{len(run.spec.world.obstacles)}" if run.spec.world.obstacles else "",
+    "profile": lambda run: run.spec.profile.name,
+    "robot": lambda run: run.spec.robot.name,
+    "seed": lambda run: str(run.spec.seed),
+    "noise": _noise,
+    "start": _start_pose,
+    "end": _end,
+    "end pose": _end_pose,
+    "simulated time": _time_s,
+    "user actions": lambda run: str(len(run.actions)) if run.actions else "",
+    "tags": lambda run: ", ".join(run.tags),
+}
+"""To add a fact: a line here."""

@@ -1,0 +1,1 @@
+"""A run from outside: process, recording, store, frames. Without Textual."""

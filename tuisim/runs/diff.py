@@ -1,0 +1,250 @@
+"""Where two runs differ: first in what they are made of, then tick by tick, row by row, and in the pose over time."""
+
+from __future__ import annotations
+
+import difflib
+import shlex
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from itertools import takewhile, zip_longest
+from typing import TYPE_CHECKING, Any
+
+from tuisim.core.spec import to_plain
+from tuisim.runs.records import CONSOLE, DISPLAY, LED, MOTORS, TEXT_STREAMS, OutputRow, line_of
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.samples import samples_of
+from tuisim.source import source_lines
+
+if TYPE_CHECKING:
+    import numpy as np
+
+_SEEN = {LED: "[lights]", DISPLAY: "[display]", CONSOLE: "[text screen]", MOTORS: "[motors]"}
+"""What stands for rows that are no lines for people, by stream."""
+
+DIFF_LINES = 20
+"""Lines of a unified diff of two programs that are kept."""
+EXCEEDED_MM = (1.0, 10.0, 100.0)
+TABLE_ROWS = 10
+
+
+@dataclass(frozen=True, slots=True)
+class TickDifference:
+    """The first tick at which two recordings are not the same to the last bit."""
+
+    tick: int
+    time_s: float
+    fields: tuple[str, ...]
+    """Fields of the record that differ; empty if one recording ends before this tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class RowDifference:
+    """The first place at which two runs' rows differ; None stands for a run that has no more."""
+
+    row: int
+    """Counted from 1, of those that people see: a row of a motor has the number of the line that comes next."""
+    first: str | None
+    second: str | None
+    times_s: tuple[float | None, float | None]
+    """Simulated time in each run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Divergence:
+    """How far apart the robots were, over the time that both runs have."""
+
+    max_mm: float
+    max_at_s: float
+    end_mm: float
+    end_s: float
+    exceeded: tuple[tuple[float, float | None], ...]
+    """Distances in mm, and when each was exceeded first, in s; None for never."""
+    table: tuple[tuple[float, float, float], ...]
+    """Time in s, distance in mm, difference of heading in degrees, evenly over the time."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunDiff:
+    """All that tells two runs apart."""
+
+    setup: tuple[tuple[str, str, str], ...]
+    """What differs in the set-up: its name, and its values in the first and the second run."""
+    program: tuple[str, ...]
+    """The start of a unified diff of the programs; empty if they are the same."""
+    by_time: bool
+    """Whether the tick rates differ, so that only times can be compared, and no record is the same."""
+    tick: TickDifference | None
+    line: TickDifference | None
+    """The first tick that another line of the program let pass."""
+    output: RowDifference | None
+    sample: RowDifference | None
+    divergence: Divergence | None
+    """None if one of the runs has no recording."""
+
+    @property
+    def same(self) -> bool:
+        """Whether recording and output are the same to the last bit."""
+        return not self.by_time and self.tick is None and self.output is None
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return it as data for JSON."""
+        return {"same": self.same, **asdict(self)}
+
+
+def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, until: int | None = None) -> RunDiff:
+    """Compare two runs.
+
+    Args:
+        first: One run.
+        second: The other.
+        prefix: The first run was cut off: what the second did after its last record does not count.
+        until: Last tick that counts, None for all.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    one, two = first.telemetry.array(), second.telemetry.array()
+    hz = (first.spec.profile.tick_hz, second.spec.profile.tick_hz)
+    by_time = hz[0] != hz[1]
+    if until is not None:
+        one, two = one[: until + 1], two[: until + 1]
+    if prefix:
+        two = two[: len(one)]
+    old, new = source_lines(first.program.text), source_lines(second.program.text)
+    unified = difflib.unified_diff(old, new, first.program.name, second.program.name, n=1, lineterm="")
+    return RunDiff(
+        setup=tuple(_setup(first, second)),
+        program=tuple(line for line, _ in zip(unified, range(DIFF_LINES), strict=False)),
+        by_time=by_time,
+        tick=None if by_time else first_tick(one, two, hz[0]),
+        line=None if by_time else _first_line(one, two, hz[0]),
+        output=_first_row(_rows(first, until), _rows(second, until), prefix),
+        sample=_first_row(_samples(first, until), _samples(second, until), prefix),
+        divergence=divergence(one, two, hz) if len(one) and len(two) else None,
+    )
+
+
+def first_tick(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int) -> TickDifference | None:
+    """Return the first tick at which two recordings of the same tick rate differ, None if they are the same.
+
+    Args:
+        one: Records of a run, as `TelemetryView.array` returns them.
+        two: Records of the other.
+        tick_hz: Ticks a second.
+    """
+    import numpy as np
+
+    count = min(len(one), len(two))
+    # Bytes, not numbers: NaN equals itself, and 0.0 is not -0.0.
+    size = one.dtype.itemsize
+    raw = [np.ascontiguousarray(records[:count]).view(np.uint8).reshape(count, size) for records in (one, two)]
+    differ = np.flatnonzero((raw[0] != raw[1]).any(axis=1))
+    if len(differ):
+        tick = int(differ[0])
+        names = one.dtype.names or ()
+        fields = tuple(name for name in names if one[name][tick].tobytes() != two[name][tick].tobytes())
+        return TickDifference(tick, tick / tick_hz, fields)
+    return None if len(one) == len(two) else TickDifference(count, count / tick_hz, ())
+
+
+def divergence(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]) -> Divergence:
+    """Return how far apart two robots were at the ticks of the first run that both runs cover.
+
+    Args:
+        one: Records of a run, at least one.
+        two: Records of the other, at least one; where the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks a second of each.
+    """
+    import numpy as np
+
+    end_s = min((len(one) - 1) / tick_hz[0], (len(two) - 1) / tick_hz[1])
+    times = np.arange(int(end_s * tick_hz[0] + 1e-9) + 1) / tick_hz[0]
+    theirs = np.arange(len(two)) / tick_hz[1]
+    apart = []
+    for name in ("x_mm", "y_mm", "heading_deg"):
+        other = two[name][: len(times)] if tick_hz[0] == tick_hz[1] else np.interp(times, theirs, two[name])
+        apart.append(other - one[name][: len(times)])
+    distance = np.hypot(apart[0], apart[1])
+    turned = (apart[2] + 180.0) % 360.0 - 180.0
+    top = int(distance.argmax())
+    exceeded = []
+    for limit in EXCEEDED_MM:
+        over = np.flatnonzero(distance > limit)
+        exceeded.append((limit, float(times[over[0]]) if len(over) else None))
+    rows = np.unique(np.linspace(0, len(times) - 1, TABLE_ROWS).round().astype(int))
+    table = tuple((float(times[row]), float(distance[row]), float(turned[row])) for row in rows)
+    return Divergence(
+        float(distance[top]), float(times[top]), float(distance[-1]), float(times[-1]), tuple(exceeded), table
+    )
+
+
+def _first_line(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int) -> TickDifference | None:
+    count = min(len(one), len(two))
+    differ = (one["line"][:count] != two["line"][:count]).nonzero()[0]
+    return TickDifference(int(differ[0]), int(differ[0]) / tick_hz, ("line",)) if len(differ) else None
+
+
+_Row = tuple[Any, str, float]
+"""What is compared, how it is shown, when it came in s."""
+
+
+def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
+    # What came at the last tick itself may have come after what ended there.
+    return takewhile(lambda row: until is None or row.tick < until, run.output.rows())
+
+
+def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for row in _written(run, until):
+        yield (
+            row,
+            line_of(row) if row.stream in TEXT_STREAMS else _SEEN.get(row.stream, f"[stream {row.stream}]"),
+            row.time_ns / 1e9,
+        )
+
+
+def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for sample in samples_of(_written(run, until)):
+        yield (sample.name, sample.value, sample.time_s), f"{sample.name}: {sample.value:g}", sample.time_ns / 1e9
+
+
+def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDifference | None:
+    number = 1
+    for left, right in zip_longest(one, two):
+        if left is None and prefix:
+            return None
+        if left is None or right is None or left[0] != right[0]:
+            _, was, was_s = left or (None, None, None)
+            _, now, now_s = right or (None, None, None)
+            return RowDifference(number, was, now, (was_s, now_s))
+        # Rows of motors, lights and pictures are compared too, but nobody has seen them to count.
+        number += not isinstance(left[0], OutputRow) or left[0].stream in TEXT_STREAMS
+    return None
+
+
+def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]]:
+    plain = to_plain(first.spec), to_plain(second.spec)
+    names = {**_flat(plain[0]), **_flat(plain[1])}
+    values = _flat(plain[0]), _flat(plain[1])
+    for name in names:
+        left, right = (str(one.get(name, "—")) for one in values)
+        if left != right:
+            yield name, left, right
+    for name in ("name", "prelude"):
+        left, right = getattr(first.program, name), getattr(second.program, name)
+        if left != right:
+            yield f"program {name}", left, right
+    if first.program.arguments != second.program.arguments:
+        yield "program arguments", shlex.join(first.program.arguments), shlex.join(second.program.arguments)
+    if first.actions != second.actions:
+        yield "user actions", str(len(first.actions)), str(len(second.actions))
+
+
+def _flat(plain: Any, name: str = "") -> dict[str, Any]:
+    """Nested data as one table, with names such as `world.noise.light`."""
+    if isinstance(plain, dict) and plain:
+        pairs = [(f"{name}.{key}" if name else str(key), value) for key, value in plain.items()]
+    elif isinstance(plain, list | tuple) and plain:
+        pairs = [(f"{name}.{number}", value) for number, value in enumerate(plain)]
+    else:
+        return {name: plain}
+    return {path: leaf for below, value in pairs for path, leaf in _flat(value, below).items()}

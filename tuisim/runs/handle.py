@@ -1,0 +1,428 @@
+"""Parent side of a run: starts the child, reads its events, sends commands, stops it.
+
+Nothing here blocks unless it is called `wait`, and nothing waits on the display: the
+child writes its recording by itself, and whoever wants to see it reads the run folder.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+import time
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.breakpoints import parse_breakpoints
+from tuisim.config import assets
+from tuisim.config.mat_cache import FieldFiles, prepare
+from tuisim.core.spec import RunSpec
+from tuisim.errors import HostError, LogError
+from tuisim.protocol import (
+    PROTOCOL_VERSION,
+    Answer,
+    Ended,
+    InputWanted,
+    Message,
+    Paused,
+    Reply,
+    ReplyWanted,
+    Resumed,
+    ScriptedAction,
+    Started,
+    Stop,
+)
+from tuisim.runs.own_modules import copy_modules
+from tuisim.runs.process import (
+    await_stack,
+    decode_event,
+    end_group,
+    end_left_over,
+    mark,
+    start_child,
+    stuck_line,
+    what_ended,
+    write_command,
+)
+from tuisim.runs.run_folder import RunEnd, StoredRun, end_document
+from tuisim.runs.store import RunStore
+from tuisim.runs.views import OutputView, TelemetryView
+
+STUCK_AFTER_S = 0.4
+"""A child that has not ended so long after a stop is killed."""
+ASK_AGAIN_S = 0.05
+ENDED_CHILD_S = 0.2
+"""How long a child may take to go after its last event."""
+STALL_FACTOR = 2.0
+"""A headless child without progress for so many stall limits of real time is stuck in C code."""
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What is run."""
+
+    name: str
+    """File name as shown to the user."""
+    text: str
+    prelude: str = "none"
+    """none, imports or preloaded."""
+    path: str = ""
+    """Where it came from; empty if it is in no file."""
+    arguments: tuple[str, ...] = ()
+    """What it finds in `sys.argv`, after its path."""
+    python_path: tuple[str, ...] = ()
+    """Folders besides its own in which it finds modules."""
+    working_directory: str = ""
+    """Where it starts, and where relative paths of it begin; empty is here, with the PYTHONPATH of this process."""
+    module_folder: str = ""
+    """Folder in which a program without a file has its modules, such as that of the notebook whose cell it is."""
+    modules_from: Path | None = None
+    """Folder of a run from which it takes the modules of its own that were imported there; None takes all as they are
+    now."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """How a run is carried out; nothing here changes what it logs, limits and answers apart."""
+
+    live: bool = False
+    """Paced against the wall clock, can be paused and takes user actions; otherwise as fast as possible."""
+    speed: float = 1.0
+    """1.0 is real time, 0 as fast as possible."""
+    start_paused: bool = False
+    time_limit_s: float = 600.0
+    """Simulated time after which the run is ended; 0 is no limit."""
+    stall_limit_s: float = 60.0
+    """CPU seconds in one instant of simulated time after which the run is ended; 0 is no limit."""
+    answers: tuple[str, ...] = ()
+    """Scripted answers to input()."""
+    asks_user: bool = False
+    """Whether input() asks the user when there are no scripted answers left; otherwise that is the end of the input."""
+    time_waits: bool = False
+    """Whether simulated time stands still while input() waits for the user; otherwise the world goes on."""
+    replies: bool = False
+    """Whether the host replies to `pyState()`, while simulated time stands still; otherwise there are no messages."""
+    actions: tuple[ScriptedAction, ...] = ()
+    """User actions that are known already, in the order of their ticks."""
+    breaks: tuple[str, ...] = ()
+    """Where the run is to hold from the start, in the language of `tuisim.breakpoints`."""
+    trace_from_tick: int | None = None
+    """Count lines from here on, so that `LineHistory` knows them; until the run first stands still."""
+    hold_at: tuple[int, int] | None = None
+    """Run at full speed to this instant and hold: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the options as they are stored with a run."""
+        return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
+
+
+def program_again(run: StoredRun | RunHandle) -> Program:
+    """Return the program of a run as it was, to be run again: with its arguments, its folder and its own modules."""
+    was = run.program
+    return Program(
+        was.name, was.text, was.prelude, was.path, was.arguments, was.python_path, was.working_directory,
+        was.module_folder, run.folder,
+    )  # fmt: skip
+
+
+class RunHandle:
+    """One run: its child process, pipes and recording. Made by `start_run`."""
+
+    def __init__(
+        self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunStore
+    ) -> None:
+        self.program, self.spec, self.field = program, spec, field
+        self._options, self._store = options, store
+        run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
+        self.run_id, self.number, self.folder = run.id, run.number, run.folder
+        if program.modules_from is not None:
+            copy_modules(program.modules_from, run.folder)
+        self.ended: Ended | None = None
+        self.started = False
+        """Whether the child has come to the program's first line."""
+        self.paused = False
+        self.waiting_for_input: str | None = None
+        self.waiting_for_reply = False
+        self.telemetry, self.output = TelemetryView(self.folder), OutputView(self.folder)
+        self._rest = b""
+        self._held: list[Message] = []
+        """Commands given before the child listens: the signal that announces one would kill it."""
+        self._end_of_events = False
+        self._stop_at: float | None = None
+        self._asked_at = 0.0
+        self._progress = (0, time.monotonic())
+        self._stack_asked = False
+        self._announced: Ended | None = None
+        self._announced_at = 0.0
+        self.unstored = ""
+        """Why the end of the run is not on record, empty if it is."""
+        try:
+            self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
+                run.folder, program.working_directory
+            )
+        except OSError as error:
+            self._store.forget(run.id)
+            what = error.strerror or str(error)
+            raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
+        self._mark = mark(self._process.pid)
+
+    # Events
+
+    def fileno(self) -> int:
+        """Return the event pipe, for `select` or an event loop's reader."""
+        return self._event_fd
+
+    def pump(self) -> list[Message]:
+        """Return the events that have come in, without waiting; `Ended` comes once, as the last.
+
+        Must be called now and then while the run is on: it also kills a child that does not stop.
+
+        Raises:
+            HostError: the child sent rubbish; it has been killed.
+        """
+        if self.ended is not None:
+            return []
+        # Asked before reading: whatever a child that is gone had to say is in the pipe then.
+        gone = self._process.poll() is not None
+        events = self._read_events()
+        for event in events:
+            match event:
+                case Started(protocol=number) if number != PROTOCOL_VERSION:
+                    self.kill()
+                    raise HostError(f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}")
+                case Started():
+                    self.started = True
+                    held, self._held = self._held, []
+                    for command in held:
+                        self.send(command)
+                case Paused():
+                    self.paused = True
+                case Resumed():
+                    self.paused = False
+                case InputWanted(prompt=prompt):
+                    self.waiting_for_input = prompt
+                case ReplyWanted():
+                    self.waiting_for_reply = True
+                case Ended():
+                    self._announced, self._announced_at = event, time.monotonic()
+        self._press_on()
+        final = self._final_event(gone)
+        kept = [event for event in events if not isinstance(event, Ended)]
+        if final is None:
+            return kept
+        self._finish(final)
+        return [*kept, final]
+
+    def _read_events(self) -> list[Message]:
+        chunks = []
+        while not self._end_of_events:
+            try:
+                chunk = os.read(self._event_fd, 65536)
+            except BlockingIOError:
+                break
+            self._end_of_events = not chunk
+            chunks.append(chunk)
+        *lines, self._rest = (self._rest + b"".join(chunks)).split(b"\n")
+        try:
+            return [decode_event(line) for line in lines]
+        except HostError:
+            self.kill()
+            raise
+
+    def _final_event(self, gone: bool) -> Ended | None:
+        if self._announced is not None:
+            if not gone and time.monotonic() - self._announced_at > ENDED_CHILD_S:
+                end_group(self._process.pid)
+            return self._announced if gone else None
+        if not gone:
+            return None
+        last = self.telemetry.last()
+        tick = last.tick if last else 0
+        time_ns = -(-tick * 1_000_000_000 // self.spec.profile.tick_hz)
+        line = stuck_line(self.folder, self.program.path or self.program.name)
+        if self._stop_at is not None:
+            where = f" in line {line}, where it was stuck" if line else ""
+            return Ended("stopped", tick, time_ns, summary=f"stopped{where}", error_line=line)
+        if self._stack_asked:
+            summary = f"stuck in line {line}: no simulated time passed" if line else "stuck: no simulated time passed"
+            return Ended("stalled", tick, time_ns, 1, summary, error_line=line)
+        return Ended(
+            "crashed", tick, time_ns, 1, what_ended(self._process.returncode, self.folder, line), error_line=line
+        )
+
+    def _finish(self, final: Ended) -> None:
+        self.ended = final
+        self.paused, self.waiting_for_input, self.waiting_for_reply = False, None, False
+        for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
+            os.close(fd)
+        end_left_over(self._process.pid, self._mark)
+        for name in ("child.log", "stack.txt"):
+            path = self.folder / name
+            # Somebody may be deleting the folder.
+            with suppress(OSError):
+                if not path.stat().st_size:
+                    path.unlink()
+        try:
+            self._store.finish(self.run_id, final)
+        except LogError as error:
+            self.unstored = str(error) if self.folder.is_dir() else "its folder was deleted while it ran"
+            summary = f"{final.summary}; its end" if final.summary else "its end"
+            self.ended = replace(final, summary=f"{summary} cannot be stored: {self.unstored}")
+
+    def stored(self) -> StoredRun:
+        """Return the run as it is in the store; with its end, also where that could not be written.
+
+        Raises:
+            LogError: it is not there any more, or damaged.
+        """
+        run = self._store.load_run(self.folder)
+        if run.end is None and self.ended is not None:
+            return replace(run, end=RunEnd(**end_document(self.ended)))
+        return run
+
+    def wait(self, timeout_s: float | None = None) -> Ended | None:
+        """Wait until the run is over.
+
+        Returns:
+            How it ended, None if it is still going on after `timeout_s`.
+        """
+        until = None if timeout_s is None else time.monotonic() + timeout_s
+        while self.ended is None:
+            now = time.monotonic()
+            rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - now)
+            if rest <= 0:
+                break
+            if self._stop_at is not None and now < self._stop_at + STUCK_AFTER_S:
+                # A child that is stuck is killed on the dot.
+                rest = min(rest, self._stop_at + STUCK_AFTER_S - now)
+            self.wait_for_event(rest)
+            self.pump()
+        return self.ended
+
+    def wait_for_event(self, timeout_s: float) -> None:
+        """Wait until the child has said something or is gone, at most so long."""
+        if self._end_of_events:
+            try:
+                self._process.wait(timeout_s)
+            except subprocess.TimeoutExpired:
+                return
+        else:
+            select.select([self._event_fd], [], [], timeout_s)
+
+    # Commands
+
+    def send(self, command: Message) -> None:
+        """Send a command; after the end of the run there is nobody to hear it."""
+        if self.ended is not None or self._announced is not None:
+            return
+        if not self.started:
+            self._held.append(command)
+            return
+        match command:
+            case Answer():
+                self.waiting_for_input = None
+            case Reply():
+                self.waiting_for_reply = False
+        # If not all of it can be written, the child is gone or stuck: pump() finds out.
+        if write_command(self._command_fd, command.encode()):
+            self._signal(signal.SIGUSR1)
+
+    def stop(self) -> None:
+        """Ask the program to stop; `pump` or `wait` kill it if it does not."""
+        if self._stop_at is None:
+            self._stop_at = time.monotonic()
+        self._asked_at = time.monotonic()
+        self.send(Stop())
+
+    def kill(self) -> None:
+        """End the child at once; what it has written stays."""
+        if self._stop_at is None:
+            self._stop_at = time.monotonic()
+        end_group(self._process.pid)
+
+    def close(self) -> None:
+        """Make sure that the child is gone and the run is recorded as ended."""
+        if self.ended is None:
+            self.kill()
+            self._process.wait()
+            while self.ended is None:
+                self.pump()
+
+    def _press_on(self) -> None:
+        """Repeat a stop that has not been heard, and kill what is stuck."""
+        now = time.monotonic()
+        if self._announced is not None:
+            return
+        if self._stop_at is None and not self.folder.is_dir():
+            # Deleted while it runs: whatever it does now nobody will ever see.
+            self.stop()
+        if self._stop_at is not None:
+            if now - self._stop_at > STUCK_AFTER_S:
+                self._read_stack_and_kill()
+            elif self.started and now - self._asked_at > ASK_AGAIN_S:
+                self._asked_at = now
+                self._signal(signal.SIGUSR1)
+        elif self._options.stall_limit_s and not self.paused:
+            tick = self.telemetry.count
+            if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
+                self._progress = (tick, now)
+            elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
+                self._read_stack_and_kill()
+
+    def _read_stack_and_kill(self) -> None:
+        if not self._stack_asked:
+            # faulthandler writes the stack even from inside a C call, within this one signal.
+            self._stack_asked = self._stop_at is None
+            self._signal(signal.SIGUSR2)
+            await_stack(self.folder)
+        end_group(self._process.pid)
+
+    def _signal(self, number: int) -> None:
+        if self._process.poll() is None:
+            self._process.send_signal(number)
+
+
+def field_files(spec: RunSpec) -> FieldFiles:
+    """Prepare the mat of a run for its robot's sensors, or find it prepared.
+
+    Raises:
+        BackgroundError: there is no such mat, or its image cannot be read.
+    """
+    image = assets.background(spec.world.background).image
+    return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
+
+
+def _here() -> str:
+    try:
+        return os.getcwd()
+    except FileNotFoundError:
+        # Somebody has removed it.
+        return ""
+
+
+def _python_path() -> tuple[str, ...]:
+    """The folders of the user's PYTHONPATH; an empty one is here, as for Python."""
+    said = os.environ.get("PYTHONPATH")
+    return tuple(os.path.abspath(folder) for folder in said.split(os.pathsep)) if said else ()
+
+
+def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:
+    """Start a program.
+
+    Args:
+        program: What to run.
+        spec: Robot, world, profile and seed.
+        options: Live or headless, limits, answers.
+        store: Where the run is kept, by default the user's own.
+
+    Raises:
+        BackgroundError: there is no such mat.
+        LogError: the run cannot be stored.
+    """
+    parse_breakpoints(options.breaks, spec.robot)
+    if not program.working_directory:
+        program = replace(program, python_path=_python_path(), working_directory=_here())
+    return RunHandle(program, spec, field_files(spec), options, store or RunStore())

@@ -1,0 +1,1 @@
+"""Runs that are over, packed: lossless, in a few bytes a tick."""

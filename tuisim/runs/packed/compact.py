@@ -1,0 +1,179 @@
+"""A finished run's two recordings in packed form, which the views read like the form that was written.
+
+A packed file takes the place of the growing one: it is whole before that one goes, so that
+a run can be read at any moment, whoever dies. Its header says what the recording was: its
+length, its last record, and a checksum of its bytes.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import astuple, dataclass
+from pathlib import Path
+from struct import Struct
+from struct import error as StructError
+
+from tuisim.atomic import replacing, sweep
+from tuisim.core.spec import RunSpec
+from tuisim.core.state import TICK_RECORD
+from tuisim.errors import LogError
+from tuisim.runs.packed import output_codec, telemetry_codec
+from tuisim.runs.packed.telemetry_codec import RobotGeometry
+from tuisim.runs.records import (
+    HEADER_BYTES,
+    OUTPUT_FILE,
+    OUTPUT_MAGIC,
+    TELEMETRY_FILE,
+    TELEMETRY_MAGIC,
+    TICK_FIELDS,
+    header,
+    published_length,
+)
+
+PACKED_SUFFIX = ".packed"
+PACKED_MAGIC = {TELEMETRY_FILE: b"TUISIMTP", OUTPUT_FILE: b"TUISIMOP"}
+"""By the name of the file that was written first."""
+PACKED_VERSION = 1
+_HEADER = Struct("<8sIIQQ4d64s")
+"""Magic, version, checksum of the recording, its length as its own header told it, packed bytes, gear, last record."""
+_CHECK = Struct("<I")
+"""Checksum of the header, right after it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """The header of a packed recording."""
+
+    path: Path
+    checksum: int
+    length: int
+    """Records of telemetry, bytes of output."""
+    packed_bytes: int
+    gear: RobotGeometry
+    last_record: bytes
+    """The last record of telemetry; zeros for output, and where there is none."""
+
+    def recording(self) -> bytes:
+        """Return the recording as it was written, with its header.
+
+        Raises:
+            LogError: the file is damaged.
+        """
+        try:
+            with open(self.path, "rb") as handle:
+                handle.seek(_HEADER.size + _CHECK.size)
+                data = handle.read()
+            if len(data) != self.packed_bytes:
+                raise ValueError(f"{len(data)} bytes instead of {self.packed_bytes}")
+            content = self._unfolded(data)
+        except (OSError, ValueError) as error:
+            raise LogError(f"the packed recording is damaged: {error}", file=str(self.path)) from error
+        if zlib.crc32(content) != self.checksum:
+            raise LogError("the packed recording is damaged: its checksum is wrong", file=str(self.path))
+        return header(*_form(self.path.name.removesuffix(PACKED_SUFFIX)), self.length) + content
+
+    def _unfolded(self, data: bytes) -> bytes:
+        import numpy as np
+
+        if self.path.name.startswith(OUTPUT_FILE):
+            return output_codec.unfold(data)
+        return telemetry_codec.unfold(data, self.length, self.gear, np.dtype(list(TICK_FIELDS))).tobytes()
+
+
+def find_packed(path: Path) -> Packed | None:
+    """Return the packed form of a recording, None if there is none.
+
+    Args:
+        path: The recording's first place; that of the packed form follows from it.
+
+    Raises:
+        LogError: it is damaged, of another version, or something else.
+    """
+    packed = path.with_name(path.name + PACKED_SUFFIX)
+    try:
+        with open(packed, "rb") as handle:
+            head = handle.read(_HEADER.size + _CHECK.size)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(packed)) from error
+    try:
+        magic, version, checksum, length, size, *numbers, last = _HEADER.unpack_from(head)
+        (check,) = _CHECK.unpack_from(head, _HEADER.size)
+    except StructError as error:
+        raise LogError("too short to be a packed recording", file=str(packed)) from error
+    if magic != PACKED_MAGIC[path.name]:
+        raise LogError("not a packed recording", file=str(packed))
+    if version != PACKED_VERSION:
+        raise LogError(f"format version {version}, this tuisim reads {PACKED_VERSION}", file=str(packed))
+    if check != zlib.crc32(head[: _HEADER.size]):
+        raise LogError("the packed recording is damaged: its header is not as it was written", file=str(packed))
+    return Packed(packed, checksum, length, size, RobotGeometry(*numbers), last)
+
+
+def compact(folder: Path, spec: RunSpec) -> None:
+    """Give the recordings of a finished run their packed form; those that have it stay.
+
+    Args:
+        folder: The run folder; nobody writes its recordings any more.
+        spec: What the run was made of.
+
+    Raises:
+        LogError: a recording is damaged, or the folder cannot be written; nothing is lost.
+    """
+    for name in PACKED_MAGIC:
+        path = folder / name
+        try:
+            _compact_file(path, RobotGeometry.of(spec))
+            sweep(folder, name + PACKED_SUFFIX)
+        except OSError as error:
+            raise LogError(f"cannot be packed: {error.strerror or error}", file=str(path)) from error
+
+
+def _compact_file(path: Path, gear: RobotGeometry) -> None:
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return
+    packed = _packed(path, data, gear)
+    if packed is None:
+        return
+    with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True) as handle:
+        handle.write(packed)
+    # Another process may have done the same work meanwhile.
+    path.unlink(missing_ok=True)
+
+
+def _packed(path: Path, data: bytes, gear: RobotGeometry) -> bytes | None:
+    """Return the bytes of the packed file; None for a recording that has to stay because its end is missing."""
+    import numpy as np
+
+    magic, record_bytes = _form(path.name)
+    length = published_length(data, magic, str(path))
+    end = HEADER_BYTES + length * max(1, record_bytes)
+    content = data[HEADER_BYTES:end]
+    if end > len(data):
+        return None
+    last = bytes(TICK_RECORD.size)
+    if path.name == TELEMETRY_FILE:
+        kind = np.dtype(list(TICK_FIELDS))
+        folded = telemetry_codec.fold(np.frombuffer(content, kind), gear)
+        back = telemetry_codec.unfold(folded, length, gear, kind).tobytes()
+        last = content[-TICK_RECORD.size :] or last
+    else:
+        try:
+            folded = output_codec.fold(content)
+        except ValueError as error:
+            raise LogError(str(error), file=str(path)) from error
+        back = output_codec.unfold(folded)
+    if back != content:
+        raise LogError("cannot be packed: it would not come back as it is", file=str(path))
+    head = _HEADER.pack(
+        PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), *astuple(gear), last
+    )
+    return head + _CHECK.pack(zlib.crc32(head)) + folded
+
+
+def _form(name: str) -> tuple[bytes, int]:
+    """Return magic and record size of a recording."""
+    return (TELEMETRY_MAGIC, TICK_RECORD.size) if name == TELEMETRY_FILE else (OUTPUT_MAGIC, 0)

@@ -1,0 +1,268 @@
+"""Tick records folded small, to the last bit: what the motion does not foretell is kept, the rest is done again.
+
+Each record is foretold from the one before by the steps of `core.motion`, in the same
+order. Unfolding does only sums, products and quotients of IEEE numbers, each rounded as
+the standard says: the same bytes come out on every machine. That is why sine and cosine
+are done here by hand; where they miss the bits of the recorded run, what is missing is kept.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tuisim.core.drive import mm_per_degree
+from tuisim.core.spec import RunSpec
+from tuisim.runs.packed.byte_planes import Source, changes, planes, summed
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Numbers = np.ndarray[Any, np.dtype[np.float64]]
+
+SUMS = ("left_position_deg", "right_position_deg", "heading_deg", "x_mm", "y_mm")
+"""Fields that grow by something in each tick, in the order in which they are foretold."""
+SPEEDS = ("left_speed_dps", "right_speed_dps")
+PLAIN = ("tick", "line", "gyro_zero_deg", "flags", "actions")
+"""Fields of which only the changes are kept."""
+
+LEVEL = 6
+"""Of zlib; more takes twice as long and gains a hundredth."""
+
+OFTEN = 3
+"""A speed that comes so often is worth a better number than the record's 32 bits hold."""
+
+_DEG_TO_RAD = 0.017453292519943295
+_RAD_TO_DEG = 57.29577951308232
+_QUARTERS = (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21)
+"""A quarter of a turn in three numbers, the first two short enough that their multiples are exact."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotGeometry:
+    """What the motion of a run depends on besides the speeds."""
+
+    tick_s: float
+    mm_per_deg: float
+    spacing_mm: float
+    early: float
+    """Which part of a tick's turn counts already for the way of that tick."""
+
+    @classmethod
+    def of(cls, spec: RunSpec) -> RobotGeometry:
+        """Return that of a run, with the numbers that `core.motion` uses."""
+        return cls(
+            1.0 / spec.profile.tick_hz,
+            mm_per_degree(spec.robot),
+            spec.robot.wheel_spacing_mm,
+            0.5 if spec.profile.halfway_heading else 0.0,
+        )
+
+
+def fold(records: np.ndarray[Any, Any], gear: RobotGeometry) -> bytes:
+    """Return records in few bytes.
+
+    Args:
+        records: Structured array of `records.TICK_FIELDS`, shape (count,).
+        gear: That of the run; any other gives more bytes, never other records.
+    """
+    import numpy as np
+
+    # A record that no motion made may hold any numbers.
+    with np.errstate(all="ignore"):
+        return zlib.compress(b"".join(_folded(records, gear)), LEVEL)
+
+
+def _folded(records: np.ndarray[Any, Any], gear: RobotGeometry) -> list[bytes]:
+    import numpy as np
+
+    parts = [changes(records[name]) for name in PLAIN]
+    turned = []
+    for speed, position in zip(SPEEDS, SUMS[:2], strict=True):
+        bits, codes = np.unique(records[speed].view(np.uint32), return_inverse=True)
+        steps = _steps(bits, codes, records[position], gear)
+        more = steps.view(np.int64) - _plain_steps(bits, gear).view(np.int64)
+        parts += [np.array([len(bits)], np.uint32), changes(bits), more, codes.astype(np.uint32)]
+        turned.append(steps[codes])
+    done: dict[str, Numbers] = {}
+    resets: list[bytes] = []
+    for name in SUMS:
+        growth = _growth(name, turned, done, gear)
+        rest, jumps = _rests(records[name], growth)
+        parts.append(rest)
+        resets += [_number(len(jumps)), jumps.astype("<u4").tobytes(), records[name][jumps].tobytes()]
+        done[name] = records[name]
+        if name in SUMS[:2]:
+            done[name + "+"] = _true_steps(growth, rest)
+    return [*resets, *map(planes, parts)]
+
+
+def unfold(data: bytes, count: int, gear: RobotGeometry, kind: np.dtype[Any]) -> np.ndarray[Any, Any]:
+    """Return the records that were folded.
+
+    Args:
+        data: What `fold` returned.
+        count: How many records they were.
+        gear: With which they were folded.
+        kind: Type of a record.
+
+    Raises:
+        ValueError: the bytes are damaged.
+    """
+    import numpy as np
+
+    try:
+        source = Source(zlib.decompress(data))
+        with np.errstate(all="ignore"):
+            return _unfolded(source, count, gear, kind)
+    except (zlib.error, IndexError) as error:
+        raise ValueError(str(error)) from error
+
+
+def _unfolded(source: Source, count: int, gear: RobotGeometry, kind: np.dtype[Any]) -> np.ndarray[Any, Any]:
+    import numpy as np
+
+    jumps = {}
+    for name in SUMS:
+        number = source.number()
+        jumps[name] = source.values(number, "<u4"), source.values(number, "<f8")
+    records = np.zeros(count, kind)
+    for name in PLAIN:
+        records[name] = summed(source.planes(count, f"<u{kind[name].itemsize}")).view(kind[name])
+    turned = []
+    for name in SPEEDS:
+        known = int(source.planes(1, "<u4")[0])
+        bits = summed(source.planes(known, "<u4"))
+        steps = (_plain_steps(bits, gear).view(np.int64) + source.planes(known, "<i8")).view(np.float64)
+        codes = source.planes(count, "<u4")
+        records[name] = bits[codes].view(np.float32)
+        turned.append(steps[codes])
+    done: dict[str, Numbers] = {}
+    for name in SUMS:
+        growth, rest = _growth(name, turned, done, gear), source.planes(count, "<f8")
+        records[name] = done[name] = _grown(growth, rest, *jumps[name])
+        if name in SUMS[:2]:
+            done[name + "+"] = _true_steps(growth, rest)
+    return records
+
+
+def _number(value: int) -> bytes:
+    return value.to_bytes(4, "little")
+
+
+def _plain_steps(bits: np.ndarray[Any, Any], gear: RobotGeometry) -> Numbers:
+    """Return the degrees that a wheel turns in a tick at recorded speeds, as far as 32 bits tell."""
+    import numpy as np
+
+    speeds = bits.view(np.float32).astype(np.float64)
+    return np.asarray(speeds * gear.tick_s)
+
+
+def _steps(bits: np.ndarray[Any, Any], codes: np.ndarray[Any, Any], positions: Numbers, gear: RobotGeometry) -> Numbers:
+    """Return the degrees a tick at each speed: those that fit the positions best, where a speed comes often.
+
+    A position before and after a tick leaves a narrow range for the step between them; that of many ticks with
+    the same speed is narrower still.
+    """
+    import numpy as np
+
+    steps = _plain_steps(bits, gear)
+    if len(codes) < OFTEN:
+        return steps
+    moved = positions[1:] - positions[:-1]
+    half = np.spacing(np.abs(positions[1:])) / 2
+    at = codes[1:]
+    # Ticks in which something else happened, such as a move that came to its end, tell nothing.
+    telling = np.abs(moved - steps[at]) <= 2e-7 * np.abs(steps[at]) + half
+    at, moved, half = at[telling], moved[telling], half[telling]
+    low, high = np.full(len(bits), -np.inf), np.full(len(bits), np.inf)
+    np.maximum.at(low, at, moved - half)
+    np.minimum.at(high, at, moved + half)
+    fits = (np.bincount(at, minlength=len(bits)) >= OFTEN) & ~((low <= steps) & (steps <= high)) & (low <= high)
+    steps[fits] = (low[fits] + high[fits]) / 2
+    return steps
+
+
+def _true_steps(growth: Numbers, rest: Numbers) -> Numbers:
+    """Return what the wheel turned in each tick: the step, set right by what the position tells."""
+    import numpy as np
+
+    # A jump of the position, or a count without a turn, is none of the wheel's turn.
+    small = np.abs(rest) <= 1e-6 * np.abs(growth) + 1e-9
+    return np.asarray(np.where(small, growth + rest, growth))
+
+
+def _growth(name: str, turned: list[Numbers], done: dict[str, Numbers], gear: RobotGeometry) -> Numbers:
+    """Return by how much a field is expected to grow in each tick, from the fields before it in `SUMS`."""
+    import numpy as np
+
+    if name in SUMS[:2]:
+        return turned[SUMS.index(name)]
+    left_mm, right_mm = done[SUMS[0] + "+"] * gear.mm_per_deg, done[SUMS[1] + "+"] * gear.mm_per_deg
+    turn_deg = (right_mm - left_mm) / gear.spacing_mm * _RAD_TO_DEG
+    if name == "heading_deg":
+        return turn_deg
+    key = "across" if name == "x_mm" else "up"
+    if key not in done:
+        before = np.concatenate((done["heading_deg"][:1], done["heading_deg"][:-1]))
+        forward = (left_mm + right_mm) / 2
+        cosine, sine = _cosine_and_sine((before + turn_deg * gear.early) * _DEG_TO_RAD)
+        done["across"], done["up"] = forward * cosine, forward * sine
+    return done[key]
+
+
+def _cosine_and_sine(angle: Numbers) -> tuple[Numbers, Numbers]:
+    """Return both of angles in radians, good to about the last bit."""
+    import numpy as np
+
+    quarter = np.rint(angle * 0.6366197723675814)
+    rest = angle
+    for part in _QUARTERS:
+        rest = rest - quarter * part
+    square = rest * rest
+    sine, cosine = np.zeros_like(rest), np.zeros_like(rest)
+    for factor in range(15, 1, -2):
+        sine = (1.0 - sine) * square / (factor * (factor - 1))
+        cosine = (1.0 - cosine) * square / ((factor + 1) * factor)
+    cosine = 1.0 - (1.0 - cosine) * square / 2
+    sine = rest - rest * sine
+    which = np.mod(quarter, 4.0)
+    swapped = (which == 1.0) | (which == 3.0)
+    return (
+        np.where(swapped, sine, cosine) * np.where((which == 1.0) | (which == 2.0), -1.0, 1.0),
+        np.where(swapped, cosine, sine) * np.where(which >= 2.0, -1.0, 1.0),
+    )
+
+
+def _rests(values: Numbers, growth: Numbers) -> tuple[Numbers, np.ndarray[Any, Any]]:
+    """Return what a sum of growths misses in each record, and the records at which it must start anew.
+
+    With `rest` one has `values[k] == (values[k - 1] + growth[k]) + rest[k]`, to the last bit.
+    """
+    import numpy as np
+
+    rest = np.zeros(len(values))
+    near = values[:-1] + growth[1:]
+    rest[1:] = values[1:] - near
+    exact = (near + rest[1:]).view(np.int64) == np.ascontiguousarray(values[1:]).view(np.int64)
+    # What becomes of the bits of something that is no number depends on the machine.
+    exact &= np.isfinite(near) & np.isfinite(rest[1:])
+    jumps = np.concatenate((np.zeros(min(1, len(values)), np.int64), np.flatnonzero(~exact) + 1))
+    rest[jumps] = 0.0
+    return rest, jumps
+
+
+def _grown(growth: Numbers, rest: Numbers, jumps: np.ndarray[Any, Any], starts: np.ndarray[Any, Any]) -> Numbers:
+    """Undo `_rests`: each value is the one before, plus the growth, plus the rest, rounded after each sum."""
+    import numpy as np
+
+    values = np.empty(len(growth))
+    ends = np.append(jumps, len(growth))[1:]
+    for begin, end, start in zip(jumps.tolist(), ends.tolist(), starts, strict=True):
+        terms = np.empty(2 * (end - begin) - 1)
+        terms[0] = start
+        terms[1::2] = growth[begin + 1 : end]
+        terms[2::2] = rest[begin + 1 : end]
+        values[begin:end] = np.add.accumulate(terms)[::2]
+    return values

@@ -1,0 +1,258 @@
+"""A run that can be shown: running, ended or stored. One interface for all of them, and its output by tick."""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_right
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.core.field import Field
+from tuisim.core.pen_marks import MarkedField, PenMarks
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.runs.handle import program_again
+from tuisim.runs.records import CONSOLE, DISPLAY, LED, MOTORS, SPEECH, STDERR, STDOUT, TEXT_STREAMS, OutputRow
+from tuisim.runs.run_folder import UserAction, noise_at, read_actions
+from tuisim.runs.samples import parse_sample
+
+if TYPE_CHECKING:
+    from tuisim.runs.handle import RunHandle
+    from tuisim.runs.run_folder import StoredRun
+    from tuisim.runs.views import OutputView, TelemetryView, TickRecord
+
+STALL_S = 0.1
+"""A running motor that has not turned for longer is stalled (EV3 motor driver)."""
+_STILL_DEG = 0.05
+"""Less in that time is no turning, but pushing."""
+
+
+class Recording:
+    """What a run has written so far.
+
+    Args:
+        source: The run at work, or one from the store.
+        answers: What a run at work was given to answer `input()` with; one from the store knows it.
+    """
+
+    def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = ()) -> None:
+        self.run_id: str
+        self.number: int = source.number
+        """Number in the catalogue, 0 if it is in none."""
+        self.spec: RunSpec = source.spec
+        self.folder: Path = source.folder
+        self.telemetry: TelemetryView = source.telemetry
+        self.rows = RowIndex(source.output)
+        self.program = program_again(source)
+        self._actions: tuple[UserAction, ...] = ()
+        self._marks: _TimedMarks | None = None
+        self.answers = answers
+        """Scripted answers to `input()`."""
+        self._take_source(source)
+
+    def _take_source(self, source: RunHandle | StoredRun) -> None:
+        from tuisim.runs.run_folder import StoredRun
+
+        if isinstance(source, StoredRun):
+            self.run_id, self._actions = source.id, source.actions
+            self.answers = tuple(source.options.get("answers", ()))
+        else:
+            self.run_id = source.run_id
+
+    @property
+    def name(self) -> str:
+        """What the run is called: its number, or its id if it has none."""
+        return f"run {self.number}" if self.number else self.run_id
+
+    @property
+    def newest(self) -> int:
+        """Tick of the newest record, -1 before the first."""
+        return self.telemetry.count - 1
+
+    def actions(self) -> tuple[UserAction, ...]:
+        """Return the user's actions so far.
+
+        Raises:
+            LogError: their file is damaged.
+        """
+        last = self.telemetry.last()
+        # The record counts the actions modulo 65536, and may be a little ahead of their file.
+        if last is not None and 0 < (last.actions - len(self._actions)) & 0xFFFF < 0x8000:
+            self._actions = read_actions(self.folder)[0]
+        return self._actions
+
+    def noise_at(self, record: TickRecord) -> NoiseSpec:
+        """Return the noise at the tick of a record."""
+        return noise_at(self.spec, self.actions(), record)
+
+    def pressed_at(self, tick: int) -> frozenset[str]:
+        """Return the brick's buttons that were held down when a tick was done."""
+        for action in reversed(self.actions()):
+            if action.kind == "set_buttons" and action.tick < tick:
+                return frozenset(action.fields["pressed"])
+        return frozenset()
+
+    def field_at(self, tick: int, mat: Field) -> Field:
+        """Return the mat as the sensors saw it at a tick: with what the pen had drawn, if they see that."""
+        if not self.spec.world.pen_marks:
+            return mat
+        if self._marks is None:
+            self._marks = _TimedMarks(mat, self)
+        return self._marks.at(tick)
+
+    def stalled(self, record: TickRecord) -> tuple[bool, bool]:
+        """Return whether the left and the right motor were told to run but did not turn."""
+        ticks = int(STALL_S * self.spec.profile.tick_hz) + 1
+        if record.tick < ticks:
+            return False, False
+        before = self.telemetry.record(record.tick - ticks)
+        running = record.flags & before.flags
+        turned = (
+            abs(record.left_position_deg - before.left_position_deg),
+            abs(record.right_position_deg - before.right_position_deg),
+        )
+        return (
+            bool(running & FLAG_LEFT_RUNNING) and turned[0] < _STILL_DEG,
+            bool(running & FLAG_RIGHT_RUNNING) and turned[1] < _STILL_DEG,
+        )
+
+
+class _TimedMarks:
+    """The marks of the pen at any tick: they only grow, and are kept in the order in which they were drawn."""
+
+    def __init__(self, mat: Field, run: Recording) -> None:
+        self._run = run
+        self._drawn = PenMarks(mat, run.spec)
+        self._counts = array("Q")
+        """How many marks there were after each record."""
+        self._cut: tuple[int, MarkedField] | None = None
+        """The last field that was asked for, with its number of marks."""
+
+    def at(self, tick: int) -> Field:
+        marks = self._drawn.field.marks
+        if tick >= len(self._counts):
+            for record in self._run.telemetry.array()[len(self._counts) :].tolist():
+                self._drawn.take_in([record])
+                self._counts.append(len(marks))
+        count = self._counts[min(tick, len(self._counts) - 1)] if self._counts else 0
+        if count == len(marks):
+            return self._drawn.field
+        if self._cut is None or self._cut[0] != count:
+            self._cut = count, self._drawn.field_of_first(count)
+        return self._cut[1]
+
+
+SAMPLE, ERROR = "sample", "error"
+"""What is marked of the output: a sample that reached another level, an error text."""
+
+_FACE_STREAMS = (LED, DISPLAY, CONSOLE, MOTORS, SPEECH)
+_LEVEL_SHARE = 0.15
+"""A sample that has gone so much of its variable's range is on another level."""
+
+_FINEST = 500
+"""Changes closer than this share of the time so far are one mark, so that marks stay few."""
+
+
+class _Level:
+    """The level of one variable, to tell when it reaches another."""
+
+    def __init__(self, value: float) -> None:
+        self._low = self._high = self._level = value
+
+    def changes(self, value: float) -> bool:
+        """Take in a value; whether it is on another level than the last one that was."""
+        self._low, self._high = min(self._low, value), max(self._high, value)
+        if abs(value - self._level) <= _LEVEL_SHARE * (self._high - self._low):
+            return False
+        self._level = value
+        return True
+
+
+class RowIndex:
+    """Tick and place of each row that has been read.
+
+    Args:
+        output: Where the rows are; it may still grow.
+    """
+
+    def __init__(self, output: OutputView) -> None:
+        self._output = output
+        self._end = 0
+        self._ticks, self._lines, self._starts = array("I"), array("I"), array("Q")
+        self._texts: array[int] = array("I")
+        """Numbers of the rows that are lines for people."""
+        self._faces: dict[int, array[int]] = {stream: array("I") for stream in _FACE_STREAMS}
+        self._levels: dict[str, _Level] = {}
+        self._last_change = -1
+        """Tick of the last changed sample that was marked."""
+        self.marks: list[tuple[int, str]] = []
+        """Ticks of changed samples and of errors, in order."""
+
+    def __len__(self) -> int:
+        return len(self._ticks)
+
+    def take(self, limit: int) -> list[OutputRow]:
+        """Read on, at most `limit` rows, and return them.
+
+        Raises:
+            LogError: the recording is damaged.
+        """
+        rows = []
+        for row, after in islice(self._output.rows_from(self._end), limit):
+            self._note(row)
+            self._end = after
+            rows.append(row)
+        return rows
+
+    def _note(self, row: OutputRow) -> None:
+        number = len(self._ticks)
+        self._ticks.append(row.tick)
+        self._lines.append(row.line)
+        self._starts.append(self._end)
+        if row.stream in TEXT_STREAMS:
+            self._texts.append(number)
+        if row.stream in self._faces:
+            self._faces[row.stream].append(number)
+        if row.stream == STDERR:
+            if not self.marks or self.marks[-1] != (row.tick, ERROR):
+                self.marks.append((row.tick, ERROR))
+        elif row.stream == STDOUT and (sample := parse_sample(row.text)):
+            level = self._levels.get(sample[0])
+            if level is None:
+                self._levels[sample[0]] = _Level(sample[1])
+            elif level.changes(sample[1]) and row.tick - self._last_change > row.tick // _FINEST:
+                self._last_change = row.tick
+                self.marks.append((row.tick, SAMPLE))
+
+    def until(self, tick: int) -> int:
+        """Return how many rows there were when a tick was done."""
+        return bisect_right(self._ticks, tick)
+
+    def texts_until(self, tick: int, most: int) -> tuple[list[OutputRow], int]:
+        """Return the last lines for people that there were when a tick was done, and how many there were before."""
+        end = bisect_right(self._texts, self.until(tick) - 1)
+        first = max(0, end - most)
+        return [self.row(number) for number in self._texts[first:end]], first
+
+    def face_numbers(self, tick: int) -> list[int]:
+        """Return the numbers of the rows that say all of what the brick showed when a tick was done, in order."""
+        count = self.until(tick)
+        return sorted(numbers[at - 1] for numbers in self._faces.values() if (at := bisect_right(numbers, count - 1)))
+
+    def row(self, number: int) -> OutputRow:
+        """Return one row by its number, from 0."""
+        return next(self._output.rows_from(self._starts[number]))[0]
+
+    def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
+        """Yield the rows from a number on, or those up to it, backwards, with a step of -1."""
+        if step < 0:
+            yield from (self.row(number) for number in range(first, -1, -1))
+        elif first < len(self):
+            rows = self._output.rows_from(self._starts[first])
+            yield from (row for row, _ in islice(rows, len(self) - first))
+
+    def ticks_of_line(self, line: int) -> list[int]:
+        """Return the ticks at which a line of the program printed."""
+        return [tick for tick, number in zip(self._ticks, self._lines, strict=True) if number == line]

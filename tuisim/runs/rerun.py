@@ -1,0 +1,93 @@
+"""A stored run once more: the same program, world, seed and user actions, headless, with the same bits.
+
+What a run folder does not hold is taken from where it was: the image of the mat, files that the program opens, and
+modules that are installed or compiled.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from tuisim.errors import LogError
+from tuisim.protocol import ScriptedAction, Stop
+from tuisim.runs.diff import RunDiff, diff_runs
+from tuisim.runs.handle import RunHandle, RunOptions, program_again, start_run
+from tuisim.runs.records import STOP_FILE
+
+if TYPE_CHECKING:
+    from tuisim.runs.run_folder import StoredRun
+    from tuisim.runs.store import RunStore
+
+CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled", "disk_full"})
+"""Ends that did not come out of the program and its limits: such a run is a piece of the one that is run again."""
+
+
+def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
+    """Start a stored run again, as fast as possible.
+
+    Args:
+        run: The run.
+        store: Where the new run is kept; not the user's own, who did not ask for another run.
+        options: Fields of `RunOptions` that are to be otherwise, such as where to hold.
+
+    Raises:
+        BackgroundError: the mat is no longer there.
+        LogError: the run has no recording, or options that cannot be read.
+    """
+    return start_run(program_again(run), run.spec, replace(_options(run), **options), store)
+
+
+def same(run: StoredRun, again: StoredRun) -> RunDiff:
+    """Compare a run with its re-run; `same` of the result tells whether all bits are equal.
+
+    Args:
+        run: The run; one that was cut off is compared up to its last record, unless it is known where.
+        again: Its re-run.
+    """
+    if not _stopped_by_itself(run):
+        return diff_runs(run, again, prefix=run.state in CUT_OFF)
+    whole = diff_runs(run, again)
+    # How far threads get in the time that they have for cleaning up is a matter of the real clock.
+    return whole if whole.same else diff_runs(run, again, prefix=True, until=_stop_tick(run))
+
+
+def _stopped_by_itself(run: StoredRun) -> bool:
+    """Whether the program followed a stop that can be given again at the same place."""
+    # One that had to be killed says more than that.
+    return run.end is not None and run.end.summary == "stopped" and _stop_tick(run) is not None
+
+
+def _stop_tick(run: StoredRun) -> int | None:
+    try:
+        return int(json.loads((run.folder / STOP_FILE).read_text("utf-8"))["tick"])
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(run.folder / STOP_FILE)) from error
+
+
+def _options(run: StoredRun) -> RunOptions:
+    last = run.telemetry.last()
+    if last is None:
+        raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
+    # A run that was stopped might never end by itself; any other ends before the tick after its last.
+    enough_s = (last.tick + 1) / run.spec.profile.tick_hz
+    stored, stop_tick = run.options, _stop_tick(run)
+    stop = () if stop_tick is None else (ScriptedAction(stop_tick, Stop()),)
+    try:
+        limit_s = float(stored.get("time_limit_s", 0.0))
+        return RunOptions(
+            time_limit_s=min(limit_s, enough_s) if limit_s else enough_s,
+            stall_limit_s=float(stored.get("stall_limit_s", 0.0)),
+            answers=tuple(stored.get("answers", ())),
+            asks_user=bool(stored.get("asks_user", False)),
+            actions=tuple(
+                ScriptedAction.from_plain({"tick": action.tick, "kind": action.kind, **action.fields})
+                for action in run.actions
+            )
+            + stop,
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise LogError(f"cannot be run again: {error}", file=str(run.folder)) from error

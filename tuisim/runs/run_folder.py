@@ -1,0 +1,358 @@
+"""A run folder as data: what `run.json` and `actions.jsonl` say, and the run that they describe."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from tuisim.atomic import replacing
+from tuisim.core.profile import MotorLaw, law_of_earlier
+from tuisim.core.simulation import NS_PER_S
+from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
+from tuisim.errors import LogError, TuisimError
+from tuisim.runs.lock import is_held
+from tuisim.runs.records import ACTIONS_FILE
+from tuisim.runs.views import OutputView, TelemetryView, TickRecord
+
+RUN_FILE = "run.json"
+RUN_FORMAT = 1
+
+_SET_NOISE = "set_noise"
+
+RUNNING, INTERRUPTED = "running", "interrupted"
+"""States of a run without an end: its process lives, or is gone without a word."""
+
+_START_GRACE_S = 10.0
+"""How long after its folder was made a run may be without a process."""
+
+_ACTION_COUNTS = 1 << 16
+"""The telemetry counts user actions in 16 bits."""
+
+
+_Kind = TypeVar("_Kind")
+
+
+class ProgramLike(Protocol):
+    """A program as `RunStore.new_run` takes it."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def path(self) -> str: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def prelude(self) -> str: ...
+    @property
+    def arguments(self) -> tuple[str, ...]: ...
+    @property
+    def python_path(self) -> tuple[str, ...]: ...
+    @property
+    def working_directory(self) -> str: ...
+    @property
+    def module_folder(self) -> str: ...
+
+
+class EndLike(Protocol):
+    """How a run ended, as `RunStore.finish` takes it."""
+
+    @property
+    def end(self) -> str: ...
+    @property
+    def tick(self) -> int: ...
+    @property
+    def time_ns(self) -> int: ...
+    @property
+    def exit_code(self) -> int: ...
+    @property
+    def summary(self) -> str: ...
+    @property
+    def error(self) -> str: ...
+    @property
+    def error_line(self) -> int: ...
+    @property
+    def deterministic(self) -> bool: ...
+
+
+@dataclass(frozen=True, slots=True)
+class StoredProgram:
+    """The program of a stored run."""
+
+    name: str
+    path: str
+    """Where it came from, empty if from nowhere."""
+    text: str
+    prelude: str
+    arguments: tuple[str, ...] = ()
+    """What it was given in `sys.argv`, after its path."""
+    python_path: tuple[str, ...] = ()
+    """Folders besides its own in which it found modules: the user's PYTHONPATH."""
+    working_directory: str = ""
+    """Where the user was; empty if that is not known."""
+    module_folder: str = ""
+    """Folder of the notebook that it is a cell of, in which its modules are; empty for a program of its own."""
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the text in UTF-8, hexadecimal."""
+        return hashlib.sha256(self.text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class RunEnd:
+    """How a run ended."""
+
+    end: str
+    """finished, raised, stopped, time_limit, stalled, deadlock, output_limit, disk_full, killed or crashed."""
+    tick: int
+    time_ns: int
+    exit_code: int = 0
+    summary: str = ""
+    """The one line that says what happened."""
+    error: str = ""
+    """The program's own traceback."""
+    error_line: int = 0
+    deterministic: bool = True
+
+
+_ANY_END = RunEnd("", 0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class UserAction:
+    """Something the user did during a run."""
+
+    tick: int
+    """It was applied before this tick."""
+    kind: str
+    """As the command is called in the protocol, such as `set_noise`."""
+    fields: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRun:
+    """A run as it is in the store; the views also follow a run that is still going on."""
+
+    folder: Path
+    id: str
+    number: int
+    """Number in the catalogue, 0 if the run was read from a folder that is in none."""
+    created: str
+    """ISO 8601, UTC."""
+    live: bool
+    program: StoredProgram
+    spec: RunSpec
+    field: Mapping[str, Any] | None
+    """Files of the prepared mat, as written by the host."""
+    options: Mapping[str, Any]
+    tags: tuple[str, ...]
+    end: RunEnd | None
+    """None while it runs, and if it was interrupted."""
+    actions: tuple[UserAction, ...]
+    notes: tuple[str, ...]
+    """What was found torn and dropped, one sentence each."""
+    telemetry: TelemetryView
+    output: OutputView
+
+    @property
+    def state(self) -> str:
+        """How it ended, or `running`, or `interrupted`."""
+        if self.end is not None:
+            return self.end.end
+        return state_without_end(self.folder)
+
+    @property
+    def time_s(self) -> float:
+        """Simulated seconds: to its end, or while there is none to the newest tick."""
+        if self.end is not None:
+            return self.end.time_ns / NS_PER_S
+        last = self.telemetry.last()
+        return -(-last.tick * NS_PER_S // self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
+
+    def noise_at(self, record: TickRecord) -> NoiseSpec:
+        """Return the noise at the tick of a telemetry record."""
+        return noise_at(self.spec, self.actions, record)
+
+
+def state_without_end(folder: Path) -> str:
+    """Return RUNNING or INTERRUPTED for the folder of a run that has no end on record."""
+    held = is_held(folder)
+    if held is None:
+        # Nobody has taken the lock: the process is just starting, or never came that far.
+        try:
+            held = time.time() - folder.stat().st_mtime < _START_GRACE_S
+        except FileNotFoundError:
+            held = False
+    return RUNNING if held else INTERRUPTED
+
+
+def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
+    """Return the noise at a tick: that of the spec, changed by the user's actions until then.
+
+    Args:
+        spec: What the run was made of.
+        actions: The user's actions, in order.
+        record: The telemetry record of the tick.
+    """
+    # The record counts the actions modulo 65536; their ticks tell how often that went round.
+    due = bisect_right(actions, record.tick, key=lambda action: action.tick)
+    offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2
+    for action in reversed(actions[: max(0, due + offset)]):
+        if action.kind == _SET_NOISE:
+            return _noise_of(action)
+    return spec.world.noise
+
+
+def _noise_of(action: UserAction) -> NoiseSpec:
+    return NoiseSpec(int(action.fields["light"]), int(action.fields["motor"]))
+
+
+def run_document(data: Mapping[str, Any]) -> bytes:
+    """Return the bytes of a `run.json`."""
+    return json.dumps(data, indent=1, ensure_ascii=True).encode() + b"\n"
+
+
+def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
+    """Write or replace `run.json`.
+
+    Raises:
+        LogError: it cannot be written.
+    """
+    try:
+        with replacing(folder / RUN_FILE, owner_only=True) as handle:
+            handle.write(run_document(data))
+    except OSError as error:
+        raise LogError(f"cannot write: {error.strerror or error}", file=str(folder / RUN_FILE)) from error
+
+
+def read_run_file(folder: Path) -> dict[str, Any]:
+    """Return the content of `run.json`.
+
+    Raises:
+        LogError: there is none, or it is damaged or of another version.
+    """
+    path = folder / RUN_FILE
+    try:
+        data = json.loads(path.read_bytes())
+    except FileNotFoundError as error:
+        raise LogError(f"no run here: {RUN_FILE} is missing", file=str(folder)) from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(path)) from error
+    if not isinstance(data, dict) or "format" not in data:
+        raise LogError("not a run", file=str(path))
+    if data["format"] != RUN_FORMAT:
+        raise LogError(f"format version {data['format']}, this tuisim reads {RUN_FORMAT}", file=str(path))
+    return data
+
+
+def end_document(end: EndLike) -> dict[str, Any]:
+    """Return an end as it stands in `run.json`."""
+    return asdict(
+        RunEnd(
+            end.end,
+            end.tick,
+            end.time_ns,
+            end.exit_code,
+            end.summary,
+            end.error,
+            end.error_line,
+            end.deterministic,
+        )
+    )
+
+
+def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
+    """Return the user's actions, and a note if the last one was torn, else an empty text.
+
+    Raises:
+        LogError: a line that is not the last is no action.
+    """
+    path = folder / ACTIONS_FILE
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return (), ""
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
+    *lines, rest = data.split(b"\n")
+    actions = []
+    for row, line in enumerate(lines, 1):
+        try:
+            found = json.loads(line)
+            action = UserAction(int(found.pop("tick")), str(found.pop("kind")), found)
+            if action.kind == _SET_NOISE:
+                _noise_of(action)
+            actions.append(action)
+        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError, TuisimError) as error:
+            raise LogError("not a user action", file=str(path), row=row) from error
+    return tuple(actions), f"{ACTIONS_FILE}: the last line was torn and is left out" if rest else ""
+
+
+def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} is {value!r}")
+    return value
+
+
+def _end_of(data: Mapping[str, Any]) -> RunEnd:
+    kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(RunEnd)}
+    return RunEnd(**{name: _typed(value, kinds.get(name, object), name) for name, value in data.items()})
+
+
+def read_run(folder: Path) -> StoredRun:
+    """Return the run in a folder.
+
+    Raises:
+        LogError: the folder holds no run, or one that is damaged.
+    """
+    data = read_run_file(folder)
+    # What is left of a damaged run is readable: its program, its world, and the other recording.
+    telemetry, output = TelemetryView(folder, may_be_damaged=True), OutputView(folder, may_be_damaged=True)
+    actions, torn = read_actions(folder)
+    try:
+        program: dict[str, Any] = {
+            key: _typed(data["program"][key], str, key) for key in ("name", "path", "text", "prelude")
+        }
+        # Runs that were stored before say nothing of these.
+        program |= {key: tuple(data["program"].get(key, ())) for key in ("arguments", "python_path")}
+        program |= {key: data["program"].get(key, "") for key in ("working_directory", "module_folder")}
+        spec = from_plain(data["spec"])
+        if spec.profile.tick_hz < 1:
+            raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
+        return StoredRun(
+            folder=folder,
+            id=_typed(data["id"], str, "id"),
+            number=int(data.get("number", 0)),
+            created=_typed(data["created"], str, "created"),
+            live=bool(data["live"]),
+            program=StoredProgram(**program),
+            spec=spec,
+            field=data["field"],
+            options=_typed(data["options"], dict, "options"),
+            tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
+            end=None if data["end"] is None else _end_of(data["end"]),
+            actions=actions,
+            notes=tuple(filter(None, (telemetry.note, output.note, torn, _model_note(data["spec"]["profile"])))),
+            telemetry=telemetry,
+            output=output,
+        )
+    except LogError:
+        raise
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
+        what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
+        raise LogError(f"damaged: {what}", file=str(folder / RUN_FILE)) from error
+
+
+def _model_note(profile: Mapping[str, Any]) -> str:
+    """What to know of a run whose motors moved otherwise than they do now; empty for any other."""
+    if "motor_law" in profile or law_of_earlier(profile) != MotorLaw.NBEV3DEVSIM:
+        return ""
+    return (
+        f"recorded with an earlier motor model of the profile {profile['name']}: run again, it may come out otherwise"
+    )

@@ -1,0 +1,85 @@
+"""Samples: printed lines of the form `NAME: number [time]`. Pure Python, no numpy.
+
+NAME is any identifier. A time in seconds may follow the number, and `^log ` may stand in
+front. Any other line is text and no sample.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tuisim.runs.records import STDOUT, OutputRow
+
+if TYPE_CHECKING:
+    from tuisim.runs.views import OutputView
+
+_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({_NUMBER})(?:[ \t]+({_NUMBER}))?\s*")
+_PLAIN_SAMPLE = re.compile(rb"(?:\^log[ \t]+)?[A-Za-z_]\w*:[ \t]*[+-]?[0-9]{1,18}(?:\.[0-9]{0,18})?[ \t]*")
+"""Matches most samples as they stand in the recording; what it does not match may be one all the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One logged value and where it came from."""
+
+    name: str
+    value: float
+    time_s: float
+    """Simulated time of the print, or the time that the line carries."""
+    time_ns: int
+    """Simulated time of the print."""
+    tick: int
+    line: int
+    """Source line that printed it, 0 for none."""
+
+
+def parse_sample(text: str) -> tuple[str, float, float | None] | None:
+    """Return name, value and printed time (None if there is none) of a line, or None if it is no sample."""
+    if ":" not in text:
+        return None
+    found = _SAMPLE.fullmatch(text)
+    if found is None:
+        return None
+    name, value, time = found[1], float(found[2]), None if found[3] is None else float(found[3])
+    # Digits without end read as infinity, which no program prints as digits.
+    if not name.isidentifier() or not math.isfinite(value) or (time is not None and not math.isfinite(time)):
+        return None
+    return name, value, time
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How much a program printed."""
+
+    lines: int
+    samples: int
+
+
+def counts_of(output: OutputView) -> Counts:
+    """Count printed lines and samples, without making rows of them: there may be a million."""
+    lines = samples = 0
+    for stream, text in output.raw_rows():
+        if stream == STDOUT:
+            lines += 1
+            if b":" in text and (
+                _PLAIN_SAMPLE.fullmatch(text) or parse_sample(str(text, "utf-8", "replace")) is not None
+            ):
+                samples += 1
+    return Counts(lines, samples)
+
+
+def samples_of(rows: Iterable[OutputRow]) -> Iterator[Sample]:
+    """Yield the samples among the rows that a program printed, in order."""
+    for row in rows:
+        if row.stream != STDOUT:
+            continue
+        parsed = parse_sample(row.text)
+        if parsed is not None:
+            name, value, time_s = parsed
+            printed_s = row.time_ns / 1e9 if time_s is None else time_s
+            yield Sample(name, value, printed_s, row.time_ns, row.tick, row.line)

@@ -1,0 +1,476 @@
+"""The run store: one folder a run, and the catalogue that lists them."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from tuisim.atomic import make_private_folder
+from tuisim.config.home import home_folder
+from tuisim.core.simulation import NS_PER_S
+from tuisim.core.spec import RunSpec, to_plain
+from tuisim.errors import LogError
+from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
+from tuisim.runs.lock import is_held
+from tuisim.runs.packed.compact import compact
+from tuisim.runs.packed.packer import pack_later
+from tuisim.runs.run_folder import (
+    INTERRUPTED,
+    RUN_FILE,
+    RUN_FORMAT,
+    RUNNING,
+    EndLike,
+    ProgramLike,
+    StoredProgram,
+    StoredRun,
+    end_document,
+    read_run,
+    read_run_file,
+    state_without_end,
+    write_run_file,
+)
+from tuisim.runs.samples import counts_of
+from tuisim.runs.views import OutputView, TelemetryView
+
+RUNS_FOLDER = "runs"
+LAST = "last"
+_COUNT_AT_ONCE_BYTES = 1 << 20
+"""Longer outputs are counted later, so that the end of a run is not held up."""
+
+_COUNT_A_LISTING_BYTES = 8 << 20
+"""Samples are counted in so many bytes of output each time the runs are listed: the others can wait for the next."""
+
+DAMAGED = "damaged"
+"""Stands for the end of a run whose `run.json` cannot be read."""
+
+COMPACT_TICKS = 6000
+"""A run of so many ticks or more is compacted as soon as it is over, by a process of its own; of shorter ones that
+gains little."""
+
+
+@dataclass(frozen=True, slots=True)
+class NewRun:
+    """A run that has been given its place."""
+
+    id: str
+    number: int
+    folder: Path
+
+
+class RunStore:
+    """All runs in one home folder; any number of processes may use it at once.
+
+    Args:
+        home: The folder, by default `home_folder()`. It is made when the first run is.
+            Runs that are kept elsewhere are for a while only, and stay as they were written.
+    """
+
+    def __init__(self, home: Path | None = None) -> None:
+        self._lasting = home is None
+        self.home = (home_folder() if home is None else home).absolute()
+        self._runs = self.home / RUNS_FOLDER
+        self._catalogue = Catalogue(self.home, self._scan)
+
+    def folder(self, run_id: str) -> Path:
+        """Return the folder of a run."""
+        return self._runs / run_id
+
+    # Writing
+
+    def new_run(
+        self,
+        program: ProgramLike,
+        spec: RunSpec,
+        field: Mapping[str, Any] | None = None,
+        options: Mapping[str, Any] | None = None,
+        live: bool = False,
+    ) -> NewRun:
+        """Make the folder of a run that is about to start, with its `run.json`, and list it.
+
+        Args:
+            program: What is run.
+            spec: What the run is made of.
+            field: The files of the prepared mat as plain data, None if there are none.
+            options: How it is run, as plain data.
+            live: Whether it is paced against the wall clock.
+
+        Raises:
+            LogError: the home folder cannot be written.
+        """
+        now = datetime.now(UTC)
+        created = now.isoformat(timespec="milliseconds")
+        run_id, folder = self._new_folder(now)
+        stored = StoredProgram(
+            program.name,
+            program.path,
+            program.text,
+            program.prelude,
+            program.arguments,
+            program.python_path,
+            program.working_directory,
+            program.module_folder,
+        )
+        info = _info_of(run_id, created, stored, spec)
+        try:
+            number = self._catalogue.add(info)
+            write_run_file(
+                folder,
+                {
+                    "format": RUN_FORMAT,
+                    "id": run_id,
+                    "number": number,
+                    "created": created,
+                    "live": live,
+                    "program": {
+                        "name": stored.name,
+                        "path": stored.path,
+                        "text": stored.text,
+                        "sha256": stored.sha256,
+                        "prelude": stored.prelude,
+                        "arguments": list(stored.arguments),
+                        "python_path": list(stored.python_path),
+                        "working_directory": stored.working_directory,
+                        "module_folder": stored.module_folder,
+                    },
+                    "spec": to_plain(spec),
+                    "field": None if field is None else dict(field),
+                    "options": dict(options or {}),
+                    "tags": [],
+                    "end": None,
+                },
+            )
+        except LogError:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        return NewRun(run_id, number, folder)
+
+    def finish(self, run_id: str, end: EndLike) -> None:
+        """Record how a run ended.
+
+        Raises:
+            LogError: there is no such run, or it cannot be written.
+        """
+        self._edit(run_id, end=end_document(end))
+        output = OutputView(self.folder(run_id))
+        samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
+        # Where the list cannot be written now, it will notice by itself.
+        with suppress(LogError):
+            self._catalogue.update(
+                run_id,
+                end=end.end,
+                ticks=end.tick,
+                time_s=end.time_ns / NS_PER_S,
+                samples=samples,
+                summary=end.summary,
+            )
+        if self._lasting and (end.tick >= COMPACT_TICKS or samples is None):
+            pack_later(self.folder(run_id))
+
+    def count_samples(self, run_id: str) -> None:
+        """Count the samples of a run that is over, and remember how many there are.
+
+        Raises:
+            LogError: the run is damaged, or the catalogue cannot be written.
+        """
+        self._catalogue.update(run_id, samples=counts_of(OutputView(self.folder(run_id))).samples)
+
+    def forget(self, run_id: str) -> None:
+        """Take back a run that could not be started."""
+        shutil.rmtree(self.folder(run_id), ignore_errors=True)
+        with suppress(LogError):
+            self._catalogue.remove([run_id])
+
+    def tag(self, run_id: str, tags: Iterable[str]) -> None:
+        """Replace the tags of a run.
+
+        Raises:
+            LogError: there is no such run, a tag is no single word, or the run cannot be written.
+        """
+        words = list(tags)
+        for word in words:
+            if word.split() != [word]:
+                raise LogError(f"{word!r} is no tag", "a tag is one word without blanks")
+        self._edit(run_id, tags=words)
+        self._catalogue.update(run_id, tags=" ".join(words))
+
+    def remove(self, run_id: str) -> None:
+        """Delete a run with everything that it recorded.
+
+        Raises:
+            LogError: there is no such run, it is still going on, or it cannot be deleted.
+        """
+        folder = self.folder(run_id)
+        if not folder.is_dir():
+            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        if not _has_end(folder) and state_without_end(folder) == RUNNING:
+            raise LogError(f"run {run_id} is still running", "stop it first")
+        try:
+            _delete(folder)
+        except OSError as error:
+            raise LogError(f"cannot be removed: {error.strerror or error}", file=str(folder)) from error
+        # The run is gone. Where the list cannot be written now, it will notice by itself.
+        with suppress(LogError):
+            self._catalogue.remove([run_id])
+
+    # Reading
+
+    def runs(self) -> list[RunInfo]:
+        """Return every run, the oldest first; `end` is never empty.
+
+        Raises:
+            LogError: the home folder cannot be used.
+        """
+        rows, left = [], _COUNT_A_LISTING_BYTES
+        changes: list[tuple[str, dict[str, Any]]] = []
+        for row in self._rows():
+            known, change, counted = self._completed(row, left)
+            rows.append(known)
+            left -= counted
+            if change:
+                changes.append((row.id, change))
+        if changes:
+            # Where it cannot be remembered, it is looked at again the next time.
+            with suppress(LogError):
+                self._catalogue.update_all(changes)
+        return rows
+
+    def _rows(self) -> list[RunInfo]:
+        """Return every run as far as the catalogue knows it."""
+        try:
+            there = {entry.name for entry in os.scandir(self._runs) if entry.is_dir()}
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            raise LogError(f"cannot be read: {error.strerror or error}", HOME_HINT, file=str(self._runs)) from error
+        rows = self._catalogue.rows()
+        listed = {row.id for row in rows}
+        gone = {row.id for row in rows if row.id not in there and not self.folder(row.id).is_dir()}
+        strangers = [self._info_in(self.folder(name)) for name in sorted(there - listed) if not name.startswith(".")]
+        found = [info for info in strangers if info is not None]
+        if gone or found:
+            try:
+                self._catalogue.remove(gone)
+                for info in found:
+                    self._catalogue.add(info)
+                rows = self._catalogue.rows()
+            except LogError:
+                # Where nothing can be written, the folders are right all the same.
+                rows = [row for row in rows if row.id not in gone] + found
+        return rows
+
+    def find(self, text: str) -> RunInfo:
+        """Return the run that a user means: by full id, number, the start of an id, or `last`.
+
+        Raises:
+            LogError: there is none, or more than one.
+        """
+        rows = self._rows()
+        if not rows:
+            raise LogError(f"no run {text!r}: there are none yet", file=str(self.home))
+        return self._completed(_meant(text, rows), _COUNT_A_LISTING_BYTES)[0]
+
+    def load_run(self, run: str | Path) -> StoredRun:
+        """Return a run by its folder (a path, or a text with a slash in it) or by anything that `find` knows.
+
+        Raises:
+            LogError: there is no such run, or it is damaged.
+        """
+        if isinstance(run, Path) or os.sep in run:
+            return read_run(Path(run))
+        if run.strip(".") and self.folder(run).is_dir():
+            return read_run(self.folder(run))
+        info = self.find(run)
+        return replace(read_run(self.folder(info.id)), number=info.number)
+
+    # Inside
+
+    def _new_folder(self, now: datetime) -> tuple[str, Path]:
+        while True:
+            run_id = f"{now:%Y%m%dT%H%M%S}-{secrets.token_hex(3)}"
+            folder = self.folder(run_id)
+            try:
+                make_private_folder(self._runs)
+                folder.mkdir(0o700)
+            except FileExistsError:
+                continue
+            except OSError as error:
+                what = error.strerror or str(error)
+                raise LogError(f"runs cannot be kept here: {what}", HOME_HINT, file=str(self.home)) from error
+            return run_id, folder
+
+    def _edit(self, run_id: str, **changes: Any) -> None:
+        folder = self.folder(run_id)
+        if not folder.is_dir():
+            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        with locked(self.home):
+            write_run_file(folder, {**read_run_file(folder), **changes})
+
+    def _scan(self) -> Iterator[RunInfo]:
+        for folder in sorted(self._runs.glob("[!.]*")):
+            info = self._info_in(folder)
+            if info is not None:
+                yield info
+
+    def _info_in(self, folder: Path) -> RunInfo | None:
+        """Return the catalogue line of a folder; None if it holds no run (yet)."""
+        # The folder's name counts: a copied run is another run.
+        run_id = folder.name
+        if not (folder / RUN_FILE).exists():
+            return None
+        try:
+            data = read_run_file(folder)
+            return _info_from(run_id, data)
+        except LogError as error:
+            return RunInfo(0, run_id, "", "", "", "", 0, DAMAGED, summary=error.message)
+        except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
+            return RunInfo(0, run_id, "", "", "", "", 0, DAMAGED, summary=f"{RUN_FILE} is damaged: {error!r}")
+
+    def _completed(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
+        """Fill in what the catalogue does not know yet.
+
+        Args:
+            info: What it knows.
+            most_bytes: Of output that may be read for it.
+
+        Returns:
+            The run, what of it is to be remembered because it can no longer change, and how many bytes were read.
+        """
+        if info.end not in ("", INTERRUPTED) and info.samples is not None:
+            return info, {}, 0
+        folder = self.folder(info.id)
+        known = info
+        if info.end in ("", INTERRUPTED):
+            # The run file is written first: it knows of an end that did not get as far as the catalogue.
+            stored = self._info_in(folder)
+            state = state_without_end(folder)
+            if stored is not None and stored.end == DAMAGED:
+                known = replace(info, end=DAMAGED, summary=stored.summary)
+            elif stored is not None and stored.end:
+                known = replace(stored, number=info.number)
+            elif info.end and state == INTERRUPTED:
+                return info, {}, 0
+            else:
+                known = replace(info, end=state)
+        counted = 0
+        try:
+            output = OutputView(folder)
+            if output.length <= most_bytes:
+                known, counted = replace(known, samples=counts_of(output).samples), output.length
+            if known.end in (RUNNING, INTERRUPTED):
+                known = _with_last_record(known, folder)
+        except LogError as error:
+            return replace(known, summary=known.summary or str(error)), {}, counted
+        # Without a lock the process may still be on its way.
+        if known.end in (RUNNING, DAMAGED) or (known.end == INTERRUPTED and is_held(folder) is not False):
+            return known, {}, counted
+        names = ("end", "ticks", "time_s", "samples", "summary")
+        return known, {name: getattr(known, name) for name in names}, counted
+
+
+def load_run(run: str | Path) -> StoredRun:
+    """Return a stored run by its folder (a path), its number, its id or the start of it, or `last`.
+
+    Raises:
+        LogError: there is no such run, or it is damaged.
+    """
+    return RunStore().load_run(run)
+
+
+def compact_run(run: StoredRun) -> tuple[int, int]:
+    """Give a run's recordings their packed form, if they have it not yet.
+
+    Returns:
+        Bytes of all files of the run before and after.
+
+    Raises:
+        LogError: the run is still going on, damaged, or cannot be written; nothing is lost.
+    """
+    if run.end is None and state_without_end(run.folder) == RUNNING:
+        raise LogError(f"run {run.id} is still running", "stop it first")
+    before = bytes_in(run.folder)
+    compact(run.folder, run.spec)
+    return before, bytes_in(run.folder)
+
+
+def bytes_in(folder: Path) -> int:
+    """Return the bytes of all files of a run; of one that is being deleted, of those that are still there."""
+    found = 0
+    with suppress(FileNotFoundError), os.scandir(folder) as entries:
+        for entry in entries:
+            with suppress(FileNotFoundError):
+                found += entry.stat().st_size
+    return found
+
+
+def _meant(text: str, rows: Sequence[RunInfo]) -> RunInfo:
+    """Return the run among some that a text means; see `RunStore.find`."""
+    if text == LAST:
+        return rows[-1]
+    tests = (lambda row: row.id == text, lambda row: str(row.number) == text, lambda row: row.id.startswith(text))
+    for matches in tests:
+        found = [row for row in rows if text and matches(row)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            some = ", ".join(row.id for row in found[:3])
+            raise LogError(f"{text!r} is the start of {len(found)} runs: {some}{' …' if len(found) > 3 else ''}")
+    raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
+
+
+def _info_of(run_id: str, created: str, program: StoredProgram, spec: RunSpec) -> RunInfo:
+    return RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
+
+
+def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
+    """Return the catalogue line of a run file; a shape that no run file has is a KeyError, TypeError or ValueError."""
+    spec, end = data["spec"], data["end"]
+    info = RunInfo(
+        int(data.get("number", 0)),
+        run_id,
+        str(data["created"]),
+        str(data["program"]["name"]),
+        str(spec["world"]["background"]),
+        str(spec["profile"]["name"]),
+        int(spec["seed"]),
+        tags=" ".join(data.get("tags", ())),
+    )
+    if end is None:
+        return info
+    time_s = int(end["time_ns"]) / NS_PER_S
+    return replace(info, end=str(end["end"]), ticks=int(end["tick"]), time_s=time_s, summary=str(end["summary"]))
+
+
+def _delete(folder: Path) -> None:
+    """Delete a run folder; of a link only the link."""
+    # Renamed first: a run that is half deleted must not look like a run.
+    grave = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}.removed")
+    os.replace(folder, grave)
+    if grave.is_symlink():
+        grave.unlink()
+    else:
+        shutil.rmtree(grave)
+
+
+def _has_end(folder: Path) -> bool:
+    try:
+        return read_run_file(folder)["end"] is not None
+    except LogError:
+        return False
+
+
+def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
+    last = TelemetryView(folder).last()
+    if last is None:
+        return replace(info, ticks=0, time_s=0.0)
+    try:
+        tick_hz = int(read_run_file(folder)["spec"]["profile"]["tick_hz"])
+    except (LogError, KeyError, TypeError):
+        return replace(info, ticks=last.tick)
+    return replace(info, ticks=last.tick, time_s=-(-last.tick * NS_PER_S // tick_hz) / NS_PER_S)

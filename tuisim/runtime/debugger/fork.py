@@ -1,0 +1,140 @@
+"""Carries something out in a copy of the process, so that nothing of it stays.
+
+What a program's own `__repr__`, property or comparison does, whether it loops, prints,
+changes itself or eats memory, happens to the copy, which is thrown away.
+"""
+
+from __future__ import annotations
+
+import builtins
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NoReturn
+
+from tuisim.runtime import wallclock
+from tuisim.runtime.channel import Channel
+from tuisim.runtime.loader import LOOP_HOOK
+from tuisim.runtime.scheduler import Scheduler
+from tuisim.runtime.session import Session
+
+MOST_BYTES = 4 << 20
+"""A longer answer is not taken."""
+BLOCKED_LIMIT_S = 2.0
+"""Real seconds after which a copy is ended that uses no processor time, for instance one that waits for a lock."""
+
+
+class TooLong(BaseException):
+    """A value takes too long to be looked at. No `Exception`, so that the program's handlers let it pass."""
+
+
+def apart(
+    session: Session, baton: Scheduler, work: Callable[[], bytes], limit_s: float, go_on: Callable[[], bool]
+) -> bytes | None:
+    """Return what `work` gives in a copy of this process.
+
+    Args:
+        session: The run, which is frozen in the copy.
+        baton: Its threads.
+        work: What to do there.
+        limit_s: Seconds of processor time after which the copy is ended: a busy machine changes no answer.
+        go_on: Called when a command has come; False gives up.
+
+    Returns:
+        Its answer, None if there is none in time.
+    """
+    try:
+        answer_fd, answer_write = os.pipe()
+    except OSError:
+        # The program has used up its files.
+        return None
+    try:
+        pid = wallclock.fork()
+    except OSError:
+        # It has used up the machine.
+        os.close(answer_fd)
+        os.close(answer_write)
+        return None
+    if not pid:
+        _be_the_copy(session, baton, work, answer_write, limit_s)
+    os.close(answer_write)
+    try:
+        return _answer(session.channel, answer_fd, wallclock.monotonic() + BLOCKED_LIMIT_S, go_on)
+    finally:
+        os.close(answer_fd)
+        os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+
+
+def _answer(channel: Channel, fd: int, until_s: float, go_on: Callable[[], bool]) -> bytes | None:
+    data = b""
+    while (rest_s := until_s - wallclock.monotonic()) > 0:
+        ready = wallclock.select_files([fd, channel.command_fd], [], [], rest_s)[0]
+        if channel.command_fd in ready and not go_on():
+            return None
+        if fd in ready:
+            chunk = os.read(fd, 1 << 16)
+            if not chunk:
+                return data or None
+            data += chunk
+            if len(data) > MOST_BYTES:
+                return None
+    return None
+
+
+def _be_the_copy(
+    session: Session, baton: Scheduler, work: Callable[[], bytes], answer_fd: int, limit_s: float
+) -> NoReturn:
+    try:
+        # Whatever goes wrong here, also inside a long C call, ends without help from outside.
+        for number, timer, seconds in (
+            (signal.SIGPROF, signal.ITIMER_PROF, limit_s),
+            (signal.SIGALRM, signal.ITIMER_REAL, 2 * BLOCKED_LIMIT_S),
+        ):
+            signal.signal(number, signal.SIG_DFL)
+            signal.setitimer(timer, seconds)
+        wallclock.settrace(None)
+        _freeze(session, baton)
+        data = work()
+        while data:
+            data = data[os.write(answer_fd, data) :]
+    except BaseException:  # an answer that does not come is told by the parent
+        pass
+    finally:
+        wallclock.exit_process(0)
+
+
+def _freeze(session: Session, baton: Scheduler) -> None:
+    """Let nothing move or be written in the copy; what is read of the devices costs nothing there."""
+    frozen: Any = session
+    threads: Any = baton
+    session.free = 1
+    for name in ("spend", "advance", "command", "wait_for_motor", "speak", "show", "_pass"):
+        setattr(frozen, name, _refuse)
+    for name in ("wait", "give_way", "spawn"):
+        setattr(threads, name, _refuse)
+    setattr(builtins, LOOP_HOOK, lambda: None)
+    silent: Any = session.output
+    silent.row, silent.after_write = lambda *_: None, lambda: None
+    for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGVTALRM):
+        signal.signal(number, signal.SIG_IGN)
+
+
+def _refuse(*_args: object, **_kwargs: object) -> NoReturn:
+    raise RuntimeError("the program stands still: no time can pass and nothing can move while it is looked at")
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raise `TooLong` in the body after so many real seconds, again and again; only in a copy."""
+
+    def too_long(_number: int, _frame: object) -> None:
+        raise TooLong
+
+    signal.signal(signal.SIGVTALRM, too_long)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, seconds / 10)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)

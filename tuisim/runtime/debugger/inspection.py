@@ -1,0 +1,200 @@
+"""Answers a look at a program that stands still."""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+import types
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tuisim.protocol import FrameState, Inspect, Inspected, ThreadState, Variable, Watched
+from tuisim.runtime.debugger.fork import apart
+from tuisim.runtime.debugger.tracer import Tracer
+from tuisim.runtime.debugger.value_text import Renderer, cut, evaluate, kind_of
+from tuisim.runtime.debugger.wait_reason import waiting_note
+from tuisim.runtime.scheduler import ScheduledThread, Scheduler
+from tuisim.runtime.session import Session
+
+LOOK_LIMIT_S = 0.3
+"""Real seconds that the program's own code gets to show itself, all values together."""
+TOO_LONG = "values that are worked out by the program's own code take too long"
+MOST_NAMES = 200
+MOST_FRAMES = 200
+MOST_WATCHES = 50
+_UNSHOWN = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
+"""Kinds of global names that are left out: what the program has imported and defined, not what it works on."""
+
+Names = list[tuple[str, str, str]]
+"""Name, kind and text."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """What is looked at."""
+
+    task: ScheduledThread
+    top: types.FrameType | None
+    """Innermost frame of the thread, whosever it is."""
+    frames: list[types.FrameType]
+    """The program's own, innermost first."""
+    at: int
+
+    @property
+    def frame(self) -> types.FrameType | None:
+        return self.frames[self.at] if self.frames else None
+
+
+class Looker:
+    """Looks at a run that stands still.
+
+    Args:
+        session: The run.
+        baton: Its threads.
+        tracer: Knows which code is the program's own.
+        module: Gives the global names of the program.
+        prepared: By name, the identity of what was there before the program: it is not shown.
+    """
+
+    def __init__(
+        self, session: Session, baton: Scheduler, tracer: Tracer, module: Mapping[str, Any], prepared: Mapping[str, int]
+    ) -> None:
+        self._prepared = prepared
+        self._session, self._baton, self._tracer, self._module = session, baton, tracer, module
+        self._seen: dict[tuple[str, str], dict[str, str]] = {}
+        """By scope, the texts of the names at the last look."""
+
+    def look(self, wanted: Inspect, go_on: Callable[[], bool]) -> Inspected:
+        """Return the state of the run.
+
+        Args:
+            wanted: What is asked.
+            go_on: Called when a command comes in meanwhile; False gives up on the values.
+        """
+        tops = sys._current_frames()
+        place = self._place(wanted, tops)
+        shown, note = self._values(place, wanted.watches[:MOST_WATCHES], go_on)
+        frame = place.frame
+        scope = (frame.f_code.co_filename, frame.f_code.co_qualname) if frame is not None else ("", "")
+        variables = self._marked(("local", *scope), shown["locals"])
+        found_globals = self._marked(("global", "", ""), shown["globals"])
+        return Inspected(
+            tick=self._session.sim.tick,
+            time_ns=self._session.now,
+            thread=self.name_of(place.task),
+            frame=place.at,
+            waiting=waiting_note(self._session, place.task, place.top),
+            threads=tuple(self._thread_state(task, tops) for task in self._baton.tasks),
+            stack=tuple(self._frame_state(found) for found in place.frames[:MOST_FRAMES]),
+            variables=variables,
+            globals=found_globals,
+            watches=tuple(Watched(*one) for one in shown["watches"]),
+            note=note,
+        )
+
+    def name_of(self, task: ScheduledThread) -> str:
+        """Return the name of a thread, as the program sees it."""
+        threads: Any = threading
+        thread = threads._active.get(task.ident)
+        name = getattr(thread, "_name", "")
+        return cut(str(name), 60) if isinstance(name, str) and name else f"thread {task.ident}"
+
+    # Where
+
+    def _place(self, wanted: Inspect, tops: Mapping[int, types.FrameType]) -> _Place:
+        tasks = self._baton.tasks
+        task = next((task for task in tasks if wanted.thread and self.name_of(task) == wanted.thread), None)
+        task = task or self._baton.current
+        top = tops.get(task.ident)
+        frames = self._tracer.own_frames(top)
+        return _Place(task, top, frames, max(0, min(wanted.frame, len(frames) - 1)))
+
+    def _thread_state(self, task: ScheduledThread, tops: Mapping[int, types.FrameType]) -> ThreadState:
+        top = tops.get(task.ident)
+        held = task is self._baton.current
+        file = self._session.program_file
+        frames = [frame for frame in self._tracer.own_frames(top) if frame.f_code.co_filename == file]
+        line = frames[0].f_lineno if frames else 0
+        return ThreadState(self.name_of(task), line or 0, waiting_note(self._session, task, top), held)
+
+    def _frame_state(self, frame: types.FrameType) -> FrameState:
+        file = frame.f_code.co_filename
+        shown = "" if file == self._session.program_file else file
+        return FrameState(frame.f_code.co_name, frame.f_lineno or 0, shown)
+
+    # What
+
+    def _values(self, place: _Place, watches: tuple[str, ...], go_on: Callable[[], bool]) -> tuple[dict[str, Any], str]:
+        frame = place.frame
+        # The locals of a frame of this thread are taken in the copy: taken here, they would live longer.
+        local = None if frame is None or place.task is self._baton.current else frame.f_locals
+
+        def shown(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:
+            def work() -> bytes:
+                return json.dumps(self._shown(frame, local, expressions, seconds)).encode("utf-8", "replace")
+
+            answer = apart(self._session, self._baton, work, LOOK_LIMIT_S, go_on)
+            found: dict[str, Any] | None = None if answer is None else json.loads(answer)
+            return found
+
+        whole = shown(LOOK_LIMIT_S / 2, watches)
+        if whole is not None:
+            return whole, ""
+        # Once more without the program's own code, which may be what does not come back.
+        plain = shown(0.0, ()) or {"locals": [], "globals": []}
+        return {**plain, "watches": [(text, "", "takes too long") for text in watches]}, TOO_LONG
+
+    def _shown(
+        self, frame: types.FrameType | None, local: Mapping[str, Any] | None, watches: tuple[str, ...], seconds: float
+    ) -> dict[str, Any]:
+        """Return names and watches as plain data. Done in the copy."""
+        inside = self._module if frame is None else frame.f_globals
+        names = inside if frame is None else frame.f_locals if local is None else local
+        own_module = names is inside
+        renderer = Renderer(seconds)
+        plain = _plain(names)
+        visible = {**inside, **plain}
+        builtin = frame.f_builtins if frame is not None else self._module.get("__builtins__", {})
+        return {
+            "watches": [(text, *evaluate(renderer, text, visible, builtin)) for text in watches],
+            "locals": _texts(renderer, self._own_names(plain) if own_module else plain, whole=not own_module),
+            "globals": [] if own_module else _texts(renderer, self._own_names(inside), whole=False),
+        }
+
+    def _own_names(self, names: Mapping[str, Any]) -> dict[str, Any]:
+        prepared = self._prepared
+        return {name: value for name, value in names.items() if prepared.get(name) != id(value)}
+
+    def _marked(self, scope: tuple[str, ...], names: Names) -> tuple[Variable, ...]:
+        """Return names with the mark of those whose text is another one than before."""
+        key = (scope[0], "\0".join(scope[1:]))
+        before = self._seen.get(key)
+        if names:
+            self._seen[key] = {name: text for name, _, text in names}
+        return tuple(
+            Variable(name, kind, text, before is not None and before.get(name) != text) for name, kind, text in names
+        )
+
+
+def _plain(names: Mapping[str, Any]) -> dict[str, Any]:
+    """Return names as a plain dictionary; a class body may have a mapping of the program's own."""
+    try:
+        return dict(names)
+    except Exception:  # the mapping's own code may raise anything
+        return {}
+
+
+def _texts(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
+    """Return names with their values as text; hidden ones, and unless `whole` is asked modules and such, left out."""
+    found: Names = []
+    for name, value in list(names.items()):
+        if not isinstance(name, str) or name.startswith(("__", ".")):
+            continue
+        if not whole and issubclass(type(value), _UNSHOWN):
+            continue
+        found.append((cut(name, 80), kind_of(value), renderer.render(value)))
+        if len(found) == MOST_NAMES:
+            break
+    return found

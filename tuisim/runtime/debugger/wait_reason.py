@@ -1,0 +1,148 @@
+"""What a thread of a program that stands still is waiting for, read off its stack."""
+
+from __future__ import annotations
+
+import math
+import os
+import types
+from collections.abc import Iterator
+from typing import Any
+
+from tuisim.core.motors import POSITION, TIMED, Motor
+from tuisim.core.simulation import NS_PER_S
+from tuisim.runtime.interrupts import PACKAGE_FOLDER
+from tuisim.runtime.scheduler import FOREVER, ScheduledThread
+from tuisim.runtime.session import Session
+
+_LIBRARY = os.sep + "ev3dev2" + os.sep
+
+
+def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType | None) -> str:
+    """Return what a thread waits for and until when, empty if it could run on.
+
+    Args:
+        session: The run.
+        task: The thread.
+        frame: Its innermost frame.
+    """
+    frames = list(_frames(frame))
+    until_ns = _until_ns(session, task, frames)
+    until = f" until {until_ns / NS_PER_S:.2f} s" if until_ns is not None else ""
+    for at, found in enumerate(frames):
+        note = _note_of(session, found, frames[at + 1 :], until)
+        if note:
+            return note
+    return f"waits{until}" if until else ""
+
+
+def _frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
+    """Yield the frames between the innermost one and the program's code."""
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if file.startswith(PACKAGE_FOLDER) or _LIBRARY in file or _is_library(file):
+            yield frame
+            frame = frame.f_back
+            continue
+        return
+
+
+def _is_library(file: str) -> bool:
+    folder = os.path.dirname(os.__file__) + os.sep
+    return file.startswith((folder, "<frozen"))
+
+
+def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameType]) -> int | None:
+    """Return when the wait is over; None if that has no time, or there is no wait."""
+    if task.order:
+        return None if task.wake_ns == FOREVER else task.wake_ns
+    for frame in frames:
+        if frame.f_code.co_name in ("_pass", "advance") and frame.f_locals.get("self") is session:
+            until: int = frame.f_locals["until"]
+            return until
+    return None
+
+
+def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str) -> str:
+    """Return what one call of ours waits for, empty if it is not what says it."""
+    code = frame.f_code
+    if not code.co_filename.startswith(PACKAGE_FOLDER):
+        return ""
+    match os.path.basename(code.co_filename), code.co_name:
+        case "clock.py", "sleep":
+            return f"sleeps{until}"
+        case "clock.py", "select":
+            return f"waits for timers and files{until}"
+        case "clock.py", "turn":
+            return "computes without letting time pass"
+        case "library.py", "poll":
+            return _motor_note(session, outer, until)
+        case "program.py", "_input":
+            return "waits in input()"
+        case "buttons.py", "wait":
+            return _button_note(frame.f_locals)
+        case "buttons.py", "read_loop":
+            return "waits for a button"
+        case "session.py", "speak":
+            return f"sounds{until}"
+        case "devices.py", "read":
+            return f"reads {frame.f_locals.get('name', 'a device')}{until}"
+        case "threads.py", "join":
+            return f"waits for the thread {getattr(frame.f_locals.get('self'), 'name', '')}{until}"
+        case "scheduler.py", "acquire":
+            return f"waits for {_lock_owner(outer)}{until}"
+    return ""
+
+
+def _lock_owner(outer: list[types.FrameType]) -> str:
+    """Return what the lock that is waited for belongs to."""
+    names = [(os.path.basename(frame.f_code.co_filename), frame.f_code.co_qualname) for frame in outer]
+    for file, name in names:
+        if file == "queue.py":
+            return "a queue"
+        if file == "threading.py" and name.partition(".")[0] in ("Event", "Barrier", "Semaphore"):
+            return f"a{'n' if name.startswith('E') else ''} {name.partition('.')[0].lower()}"
+    return "a condition" if ("threading.py", "Condition.wait") in names else "a lock"
+
+
+def _button_note(names: dict[str, Any]) -> str:
+    parts = []
+    for key, verb in (("to_press", ""), ("to_release", " to be released")):
+        wanted = names.get(key) or ()
+        buttons = [wanted] if isinstance(wanted, str) else list(wanted)
+        if buttons:
+            parts.append(f"{' and '.join(map(str, buttons))}{verb}")
+    return f"waits for the button {', '.join(parts)}" if parts else "waits for a button"
+
+
+def _motors(session: Session) -> list[tuple[str, Motor]]:
+    """Return port and motor, in the order of the device folders."""
+    sim = session.sim
+    motors = zip(sim.spec.robot.motors, (sim.left, sim.right, *sim.others), strict=True)
+    return sorted(((spec.port, motor) for spec, motor in motors), key=lambda one: one[0])
+
+
+def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> str:
+    every = _motors(session)
+    waited = {path for frame in outer for path in _paths(frame.f_locals.get("self"))}
+    named = [found for at, found in enumerate(every) if any(path.endswith(f"/motor{at}") for path in waited)]
+    moving = [found for found in named or every if found[1].mode]
+    if not moving:
+        return f"waits for a motor{until}"
+    return "waits for " + " and ".join(_goal(session, port, motor) for port, motor in moving)
+
+
+def _paths(owner: object) -> list[str]:
+    """Return the device folders of a motor or a set of motors of the library."""
+    held = getattr(owner, "__dict__", {})
+    if isinstance(path := held.get("_path"), str):
+        return [path]
+    motors = held.get("motors")
+    return [path for motor in motors.values() for path in _paths(motor)] if isinstance(motors, dict) else []
+
+
+def _goal(session: Session, port: str, motor: Motor) -> str:
+    if motor.mode == POSITION:
+        return f"motor {port} to reach {motor.goal_deg:.0f}°"
+    if motor.mode == TIMED:
+        return f"motor {port} to stop at {session.sim.due_ns(math.ceil(motor.end_tick)) / NS_PER_S:.2f} s"
+    return f"motor {port} to stop"

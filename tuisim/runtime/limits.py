@@ -1,0 +1,53 @@
+"""What a program may not do: start processes, or take all the memory. Not a sandbox."""
+
+from __future__ import annotations
+
+import os
+import resource
+from typing import Any, NoReturn
+
+from tuisim.runtime import wallclock
+from tuisim.runtime.replacement import replace
+
+MEMORY_LIMIT_BYTES = 1 << 30
+"""Address space of the child; beyond it the program gets a MemoryError."""
+
+STACK_BYTES = 8 << 20
+"""Of a thread. It costs memory only as far as it is used."""
+STACKS_KEPT = 8
+"""So many stacks of threads that are over may still be there."""
+
+_PROCESS_CALLS = (
+    "fork", "forkpty", "posix_spawn", "posix_spawnp",
+    "execv", "execve", "execvp", "execvpe", "execl", "execle", "execlp", "execlpe",
+    "spawnv", "spawnve", "spawnvp", "spawnvpe", "spawnl", "spawnle", "spawnlp", "spawnlpe",
+)  # fmt: skip
+
+
+def limit_memory(threads: int = 0) -> None:
+    """Give the process a limit of address space, with room for the stacks of so many threads above it."""
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    stack = wallclock.stack_size() or STACK_BYTES
+    wanted = MEMORY_LIMIT_BYTES + (threads and threads + STACKS_KEPT) * stack
+    wanted = wanted if hard == resource.RLIM_INFINITY else min(hard, wanted)
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
+    except (OSError, ValueError):
+        # macOS knows the limit but does not keep it; the run is merely less protected there.
+        return
+
+
+def _refusal(name: str) -> Any:
+    def refuse(*_args: object, **_kwargs: object) -> NoReturn:
+        raise PermissionError(f"a program on the simulated brick cannot start other processes: {name}")
+
+    return refuse
+
+
+def refuse_processes() -> None:
+    """Let the calls of `os` that start processes say that they are not allowed."""
+    for name in _PROCESS_CALLS:
+        if hasattr(os, name):
+            replace(os, name, _refusal(f"os.{name}"))
+    # The debugger forks to look at values: nothing of the program's may run then.
+    replace(os, "register_at_fork", lambda **_functions: None)

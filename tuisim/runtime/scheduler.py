@@ -1,0 +1,313 @@
+"""Threads, one at a time: whoever holds the baton runs, and it changes hands only on a wait.
+
+A thread that waits for simulated time, a lock or a motor gives the baton to the next
+thread that is ready; if none is, the clock moves on to the earliest time that somebody
+waits for. So the order in which threads run depends on the program alone. When nobody
+is ready and nobody waits for a time, that is a deadlock, and it is said at once.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from tuisim.runtime import wallclock
+from tuisim.runtime.limits import limit_memory
+from tuisim.runtime.session import STOPPING, THREADS, Session
+from tuisim.runtime.stop import Deadlock, StopProgram
+
+MOST_THREADS = 1000
+"""Each is a real one, of which a machine has only so many."""
+FOREVER = -1
+"""A wait without a time limit."""
+
+
+class ScheduledThread:
+    """One thread of the program."""
+
+    __slots__ = (
+        "daemon", "done", "free", "gate", "ident", "joiners", "on_change", "order", "pending", "wake_ns", "woken",
+    )  # fmt: skip
+
+    def __init__(self, daemon: bool) -> None:
+        self.ident = 0
+        """Python's number of the thread, once it runs."""
+        self.gate = wallclock.allocate_lock()
+        self.gate.acquire()
+        self.daemon = daemon
+        self.done = False
+        self.free = 0
+        self.joiners: list[ScheduledThread] = []
+        self.on_change = False
+        self.order = 0
+        """Which wait of the heap is meant; an older entry is stale."""
+        self.wake_ns = FOREVER
+        self.woken = False
+        """Whether another thread, not the clock, ended the wait."""
+        self.pending: BaseException | None = None
+        """Raised in the thread when it runs again."""
+
+
+class Scheduler:
+    """The scheduler.
+
+    Args:
+        session: The program's clock.
+        parked: Told whether the main thread waits for the baton.
+    """
+
+    def __init__(self, session: Session, parked: Callable[[bool], None]) -> None:
+        self._session = session
+        self._parked = parked
+        self.entered: Callable[[], None] | None = None
+        """Called in each thread when it begins to run, or runs again."""
+        self.main = ScheduledThread(daemon=False)
+        self.main.ident = wallclock.get_ident()
+        self.current = self.main
+        self._ready: deque[ScheduledThread] = deque()
+        self._timed: list[tuple[int, int, ScheduledThread]] = []
+        self._on_change: list[ScheduledThread] = []
+        self._order = 0
+        self._alive: list[ScheduledThread] = []
+        session.sleep_threaded = self.sleep_until
+        session.aside = self.spawn_daemon
+
+    # Waiting
+
+    def sleep_until(self, until: int, on_change: bool = False) -> None:
+        """Let the current thread wait for a simulated time, or for a motor to end a move."""
+        self.wait(until, on_change)
+
+    def wait(self, until: int, on_change: bool = False) -> bool:
+        """Let the current thread wait.
+
+        Args:
+            until: Simulated ns, or FOREVER.
+            on_change: Whether a motor that ends a move ends the wait.
+
+        Returns:
+            Whether another thread (or a motor) ended the wait before its time.
+        """
+        me = self.current
+        self._order += 1
+        me.order, me.wake_ns, me.woken, me.on_change = self._order, until, False, on_change
+        if until != FOREVER:
+            heapq.heappush(self._timed, (until, me.order, me))
+        if on_change:
+            self._on_change.append(me)
+        self._sleep(me)
+        return me.woken
+
+    def _sleep(self, me: ScheduledThread) -> None:
+        """Run again when it is this thread's turn."""
+        session = self._session
+        me.free, session.free = session.free, 0
+        self._hand_over(me)
+        session.free = me.free
+        if self.entered is not None:
+            self.entered()
+        if me.pending is not None:
+            pending, me.pending = me.pending, None
+            raise pending
+        if session.slow & STOPPING:
+            self._leave_if_stopping(me)
+
+    def give_way(self) -> None:
+        """Let every thread that is ready run first, without time passing."""
+        me = self.current
+        self._order += 1
+        me.order = self._order
+        self.wake(me)
+        self._sleep(me)
+
+    def wake(self, task: ScheduledThread) -> None:
+        """End another thread's wait; it runs when its turn comes."""
+        if task.order:
+            task.order, task.woken = 0, True
+            self._ready.append(task)
+
+    def _hand_over(self, me: ScheduledThread) -> None:
+        chosen = self._choose()
+        if chosen is not me:
+            self.current = chosen
+            chosen.gate.release()
+            self._park(me)
+
+    def _park(self, me: ScheduledThread) -> None:
+        if me is not self.main:
+            me.gate.acquire()
+            return
+        self._parked(True)
+        try:
+            me.gate.acquire()
+        finally:
+            # A stop raised here ends the wait without the baton: the run is being unwound.
+            self._parked(False)
+
+    def _choose(self) -> ScheduledThread:
+        while True:
+            if self._ready:
+                return self._ready.popleft()
+            while self._timed and self._timed[0][2].order != self._timed[0][1]:
+                heapq.heappop(self._timed)
+            if not self._timed:
+                return self._deadlocked()
+            until, _, task = self._timed[0]
+            self._on_change = [waiting for waiting in self._on_change if waiting.on_change and waiting.order]
+            try:
+                changed = self._session.advance(max(until, self._session.now), bool(self._on_change))
+            except StopProgram as stop:
+                return self._send_to_main(stop)
+            if changed:
+                for waiting in self._on_change:
+                    self.wake(waiting)
+                continue
+            heapq.heappop(self._timed)
+            task.order = 0
+            return task
+
+    def _deadlocked(self) -> ScheduledThread:
+        return self._send_to_main(Deadlock("every thread of the program is waiting for another one"))
+
+    def _send_to_main(self, error: BaseException) -> ScheduledThread:
+        self.main.pending = error
+        self.main.order = 0
+        return self.main
+
+    def hand_to_main(self, stop: StopProgram) -> None:
+        """Let the main thread run next and be stopped: the current one is about to end."""
+        self._ready.appendleft(self._send_to_main(stop))
+
+    @property
+    def tasks(self) -> tuple[ScheduledThread, ...]:
+        """Every thread that is not over, the main one first."""
+        return (self.main, *self._alive)
+
+    def _leave_if_stopping(self, me: ScheduledThread) -> None:
+        reason = self._session.stop_reason
+        if me is not self.main and reason is not None:
+            raise reason
+
+    # Threads
+
+    def spawn(self, function: Callable[[], Any], daemon: bool) -> ScheduledThread:
+        """Start a thread; it runs when the current one waits.
+
+        Raises:
+            RuntimeError: there are as many as there may be, or the machine has no room for another one.
+        """
+        count = len(self._alive) + 1
+        if count > MOST_THREADS:
+            raise RuntimeError(f"can't start new thread: a program may have {MOST_THREADS} at once")
+        self._session.slow |= THREADS
+        task = ScheduledThread(daemon)
+
+        def run() -> None:
+            task.gate.acquire()
+            task.ident = wallclock.get_ident()
+            try:
+                if self.entered is not None:
+                    self.entered()
+                function()
+            except StopProgram:
+                # The main thread tells why the run stopped; this one just goes.
+                pass
+            finally:
+                self._finish(task)
+
+        limit_memory(threads=count)
+        try:
+            wallclock.start_new_thread(run, ())
+        except RuntimeError as error:
+            raise RuntimeError(f"{error}: there are {count} already, and this machine allows no more") from None
+        self._alive.append(task)
+        self._ready.append(task)
+        return task
+
+    def spawn_daemon(self, work: Callable[[], None]) -> None:
+        """Let something be done while the program goes on; it does not wait for it at its end."""
+        self.spawn(work, daemon=True)
+
+    def _finish(self, task: ScheduledThread) -> None:
+        task.done = True
+        self._alive.remove(task)
+        for joiner in task.joiners:
+            self.wake(joiner)
+        chosen = self._choose()
+        self.current = chosen
+        self._session.free = 0
+        chosen.gate.release()
+
+    def join(self, task: ScheduledThread, timeout_ns: int = FOREVER) -> None:
+        """Wait until a thread is over."""
+        until = FOREVER if timeout_ns == FOREVER else self._session.now + timeout_ns
+        while not task.done and (until == FOREVER or self._session.now < until):
+            task.joiners.append(self.current)
+            self.wait(until)
+
+    def join_all(self) -> None:
+        """Wait for every thread that is not a daemon, as Python does at the end of a program."""
+        while remaining := [task for task in self._alive if not task.daemon]:
+            self.join(remaining[0])
+
+
+class SimulatedLock:
+    """Stands in for `_thread.lock`: only one thread runs, so a flag and a queue are enough."""
+
+    def __init__(self, baton: Scheduler) -> None:
+        self._baton = baton
+        self._locked = False
+        self._waiting: deque[ScheduledThread] = deque()
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock; wait in simulated time if asked to."""
+        if timeout != -1:
+            # A lock that is free is given at once, unless something is wrong with the arguments.
+            wallclock.allocate_lock().acquire(blocking, timeout)
+        baton = self._baton
+        if not self._locked:
+            self._locked = True
+            return True
+        if not blocking or timeout == 0:
+            return False
+        me = baton.current
+        self._waiting.append(me)
+        try:
+            # A release hands the lock over: it is never free in between.
+            given = baton.wait(FOREVER if timeout == -1 else baton._session.now + round(timeout * 1e9))
+        except BaseException:  # a lock must not be handed to somebody who is gone, whatever ended the wait
+            if me in self._waiting:
+                self._waiting.remove(me)
+            raise
+        if not given and me in self._waiting:
+            self._waiting.remove(me)
+        return given
+
+    def release(self) -> None:
+        """Give the lock to the thread that has waited longest, or free it."""
+        if not self._locked:
+            raise RuntimeError("release unlocked lock")
+        if self._waiting:
+            self._baton.wake(self._waiting.popleft())
+        else:
+            self._locked = False
+
+    def locked(self) -> bool:
+        """Whether somebody has the lock."""
+        return self._locked
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def __exit__(self, *_exc: object) -> None:
+        self.release()
+
+    def _at_fork_reinit(self) -> None:
+        self._locked = False
+        self._waiting.clear()
+
+    acquire_lock = acquire
+    release_lock = release
+    locked_lock = locked

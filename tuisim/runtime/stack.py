@@ -1,0 +1,146 @@
+"""What a program sees of its own stack: its frames and those of the library, nothing of the runtime.
+
+`traceback`, `inspect` and `faulthandler` are where a program meets them.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import sys
+import types
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any
+
+from tuisim.runtime.interrupts import PACKAGE_FOLDER
+from tuisim.runtime.replacement import replace
+
+_BOTTOM = os.path.join(PACKAGE_FOLDER, "runtime", "__main__.py")
+"""Calls everything else of the process."""
+
+
+_every_frame = False
+
+
+@contextmanager
+def every_frame() -> Iterator[None]:
+    """Let `traceback` walk over all frames in the body, also over those that a program does not see."""
+    global _every_frame
+    _every_frame = True
+    try:
+        yield
+    finally:
+        _every_frame = False
+
+
+def _seen(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
+    """Yield what belongs to frames that a program may see: none of ours, and none of those below the program."""
+    for one in walk:
+        file = file_of(one)
+        if file == _BOTTOM:
+            return
+        if not file.startswith(PACKAGE_FOLDER):
+            yield one
+
+
+def _frames_from(frame: types.FrameType | None) -> Iterator[types.FrameType]:
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
+
+
+def finish_traceback(module: types.ModuleType) -> None:
+    """Let `traceback` walk over the frames that a program may see."""
+    changed: Any = module
+
+    def walk_stack(f: types.FrameType | None) -> Iterator[tuple[types.FrameType, int]]:
+        """Walk a stack yielding the frame and line number for each frame."""
+        frames = _frames_from(sys._getframe(1) if f is None else f)
+        for frame in _seen(frames, lambda frame: frame.f_code.co_filename):
+            # Without a frame it begins at the caller, which this module has called for.
+            if f is not None or frame.f_code.co_filename != module.__file__:
+                yield frame, frame.f_lineno
+
+    changed.walk_stack = wraps(changed.walk_stack)(walk_stack)
+    for name in ("walk_tb", "_walk_tb_with_full_positions"):
+        setattr(changed, name, _filtered(getattr(changed, name), lambda row: row[0].f_code.co_filename))
+
+
+def finish_inspect(module: types.ModuleType) -> None:
+    """Let `inspect` list the frames that a program may see."""
+    changed: Any = module
+    for name in ("getouterframes", "getinnerframes"):
+        setattr(changed, name, _listed(_filtered(getattr(changed, name), lambda info: str(info.filename))))
+
+
+def _filtered(walk: Callable[..., Iterable[Any]], file_of: Callable[[Any], str]) -> Callable[..., Iterator[Any]]:
+    @wraps(walk)
+    def filtered(*args: Any, **kwargs: Any) -> Iterator[Any]:
+        return iter(walk(*args, **kwargs)) if _every_frame else _seen(walk(*args, **kwargs), file_of)
+
+    return filtered
+
+
+def _listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]]:
+    @wraps(walk)
+    def listed(*args: Any, **kwargs: Any) -> list[Any]:
+        return list(walk(*args, **kwargs))
+
+    return listed
+
+
+def patch_faulthandler() -> None:
+    """Let a program switch on what is on already: a crash is written down for the host, and its line is told.
+
+    What would write the stack after a real time or at a signal does nothing: time in a run is simulated, its limits
+    are the host's, and the signals are the runtime's.
+    """
+    on = False
+
+    def switch(wanted: bool) -> bool:
+        nonlocal on
+        was, on = on, wanted
+        return was
+
+    def enable(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
+        switch(True)
+
+    def dump_traceback(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
+        _write(_told(sys._getframe(1), all_threads), sys.stderr if file is None else file)
+
+    replace(faulthandler, "enable", enable)
+    replace(faulthandler, "disable", lambda: switch(False), (0, 0))
+    replace(faulthandler, "is_enabled", lambda: on, (0, 0))
+    replace(faulthandler, "dump_traceback", dump_traceback)
+    for name in ("dump_traceback_later", "cancel_dump_traceback_later", "register"):
+        replace(faulthandler, name, lambda *_args, **_named: None)
+    replace(faulthandler, "unregister", lambda _number: False, (1, 1))
+
+
+def _told(frame: types.FrameType, all_threads: bool) -> str:
+    """Return the stacks of the threads, the current one first, in the words of `faulthandler`."""
+    if not all_threads:
+        return _stack_text("Stack", frame)
+    import threading
+
+    frames, here = sys._current_frames(), threading.current_thread()
+    others = [one for one in threading.enumerate() if one is not here and one.ident in frames]
+    told = [_stack_text(f"Thread {one.name}", frames[one.ident or 0]) for one in others]
+    return "\n".join([_stack_text(f"Current thread {here.name}", frame), *told])
+
+
+def _stack_text(heading: str, frame: types.FrameType) -> str:
+    seen = _seen(_frames_from(frame), lambda frame: frame.f_code.co_filename)
+    lines = [f'  File "{one.f_code.co_filename}", line {one.f_lineno} in {one.f_code.co_name}\n' for one in seen]
+    return f"{heading} (most recent call first):\n{''.join(lines)}"
+
+
+def _write(text: str, file: Any) -> None:
+    """Write a text to a file, which may be a number as in the real function."""
+    if isinstance(file, int):
+        os.write(file, text.encode("utf-8", "backslashreplace"))
+    else:
+        file.write(text)
+        file.flush()

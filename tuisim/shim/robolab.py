@@ -1,0 +1,76 @@
+"""What the course adds to the library's classes: the `robolab` overlay.
+
+| in ColorSensor | value |
+| --- | --- |
+| reflected_light_intensity | int(red), 0 … 255, where the profile says so (the library: 0 … 100) |
+| reflected_light_intensity_pc | 100 · int(red) / 255 |
+| full_reflected_light_intensity | 100 · (int(red) + int(green) + int(blue)) / 765 |
+| red, green, blue | whole channels, 0 … 255, where the profile says so (the library: 0 … 1020, 300 on white) |
+"""
+
+from __future__ import annotations
+
+import types
+from typing import Any
+
+from tuisim.core.profile import MotorLaw
+from tuisim.core.sensors.color import WHITE, percent
+from tuisim.shim.browser_motor import plain
+from tuisim.shim.devices import Brick
+from tuisim.shim.library import free_of_charge
+from tuisim.shim.sensors.color import ColorDevice
+from tuisim.shim.session import Session
+
+
+def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, colors: dict[str, ColorDevice]) -> None:
+    """Add the course's properties to `ev3dev2.sensor.lego`.
+
+    Args:
+        session: Clock and simulation.
+        module: The imported module.
+        brick: The devices.
+        colors: Colour sensors by device path.
+    """
+    lego: Any = module
+    color_sensor = lego.ColorSensor
+
+    def channel(index: int) -> property:
+        return property(lambda self: colors[self._path].read("RGB-RAW")[index])
+
+    def reflected(self: Any) -> int:
+        return colors[self._path].read("COL-REFLECT")[0]
+
+    if session.sim.spec.profile.reflected_max == WHITE:
+        color_sensor.reflected_light_intensity = property(reflected)
+        color_sensor.red, color_sensor.green, color_sensor.blue = channel(0), channel(1), channel(2)
+
+    def red_percent(self: Any) -> float:
+        return percent(colors[self._path].read("COL-REFLECT")[0], WHITE)
+
+    def mean_percent(self: Any) -> float:
+        return percent(sum(colors[self._path].read("RGB-RAW")), 3 * WHITE)
+
+    color_sensor.reflected_light_intensity_pc = property(red_percent)
+    color_sensor.full_reflected_light_intensity = property(mean_percent)
+    # The library's constructor reads the angle to remember where it began.
+    lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)
+
+
+def glue_module(session: Session) -> types.ModuleType:
+    """Return the module `ev3dev2_glue` that course programs import."""
+    glue = types.ModuleType("ev3dev2_glue", "Simulated time and messages, as the course has them.")
+
+    def get_clock() -> float:
+        """Return the simulated seconds since the program started."""
+        seconds = session.sim.tick / session.sim.spec.profile.tick_hz
+        return plain(seconds) if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM else seconds
+
+    def pyState() -> dict[str, list[Any]]:
+        """Return all answers of a notebook's responder so far, oldest first; without one there are none.
+
+        It has answered every line printed for it by now, and no simulated time passes meanwhile.
+        """
+        return {"messages": session.messages()}
+
+    vars(glue).update(get_clock=get_clock, pyState=pyState)
+    return glue

@@ -1,0 +1,1 @@
+"""Sensors as the kernel driver has them."""

@@ -1,0 +1,1 @@
+"""The shell of the brick: syntax, commands, and what replaces `subprocess`."""

@@ -1,0 +1,354 @@
+"""The brick's commands for text screen and sound, and the shell that carries out lines of them.
+
+To add a command: its function, and a line in `COMMANDS`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Callable, Generator, Mapping, Sequence
+from dataclasses import dataclass
+
+from tuisim.shim.console import Terminal
+from tuisim.shim.session import Session
+from tuisim.shim.shell.syntax import NOT_THERE, Call, Job, NotUnderstood, Pipeline, read_line
+from tuisim.shim.sound import Mixer
+from tuisim.shim.tones import Heard, beep_heard, file_heard, speech_heard
+
+FAILED = 1
+NEEDS_INPUT = -1
+"""Yielded by a line of commands in place of a time: it goes on when its standard input is complete."""
+
+Steps = Generator[int, None, int]
+"""A line of commands at work: yields the ns that each sound takes before it goes on, and returns its exit status."""
+
+Sink = Callable[[bytes], None]
+"""Takes what a command writes."""
+
+PLAIN_FONT = "default8x16"
+"""What `setfont` takes where nothing is said."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """What goes through a pipe."""
+
+    data: bytes = b""
+    sound: Heard | None = None
+    """Speech as sound, on its way to a player."""
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """How a command is called."""
+
+    words: Sequence[str]
+    """Its arguments."""
+    given: Flow
+    """Its standard input."""
+    folder: str
+    """Files are found from here; empty for where the program is."""
+    in_shell: bool
+    """Whether a shell calls it, which has commands of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a command did."""
+
+    status: int = 0
+    output: Flow = Flow()
+    errors: str = ""
+    heard: tuple[Heard, ...] = ()
+
+
+def own_output(data: bytes) -> None:
+    """Write where the program's prints go, also while it has put another stream in place of its own."""
+    assert sys.__stdout__ is not None
+    sys.__stdout__.write(data.decode("utf-8", "replace"))
+
+
+def own_errors(data: bytes) -> None:
+    """Write where the program's error text goes."""
+    assert sys.__stderr__ is not None
+    sys.__stderr__.write(data.decode("utf-8", "replace"))
+
+
+@dataclass(slots=True)
+class Streams:
+    """Where the commands of one process read and write."""
+
+    output: Sink = own_output
+    errors: Sink = own_errors
+    given: Flow | None = Flow()
+    """The standard input; None until it is complete."""
+    sound: Heard | None = None
+    """Speech as sound that has come to the end of the standard output."""
+
+
+class Shell:
+    """Carries out lines of commands.
+
+    Args:
+        session: The program's clock.
+        terminal: The text screen.
+        mixer: The volume.
+    """
+
+    def __init__(self, session: Session, terminal: Terminal, mixer: Mixer) -> None:
+        self.session, self.terminal, self.mixer = session, terminal, mixer
+
+    def line(self, text: str, streams: Streams, folder: str = "") -> Steps:
+        """Carry out a line as a shell does it."""
+        try:
+            jobs = read_line(text)
+        except NotUnderstood as error:
+            _tell(f"sh: {error}", streams.errors, error.status)
+            return error.status
+        status = 0
+        for job in jobs:
+            steps = self._job(job, streams, folder)
+            if job.aside:
+                Running(self.session, steps, several=len(job.pipelines) > 1)
+            status = 0 if job.aside else (yield from steps)
+        return status
+
+    def program(self, words: Sequence[str], streams: Streams, folder: str) -> Steps:
+        """Carry out one command without a shell."""
+        return (yield from self._pipeline(Pipeline((Call(tuple(words)),)), streams, folder, in_shell=False))
+
+    def _job(self, job: Job, streams: Streams, folder: str) -> Steps:
+        status = 0
+        for pipeline in job.pipelines:
+            if status == 0 if pipeline.joint == "||" else pipeline.joint == "&&" and status != 0:
+                continue
+            status = yield from self._pipeline(pipeline, streams, folder, in_shell=True)
+        return status
+
+    def _pipeline(self, pipeline: Pipeline, streams: Streams, folder: str, in_shell: bool) -> Steps:
+        flow, result = Flow(), Result()
+        heard: tuple[Heard, ...] = ()
+        for at, call in enumerate(pipeline.calls):
+            if at == 0 and _reads(call.words):
+                while streams.given is None:
+                    yield NEEDS_INPUT
+                flow = streams.given
+            result = self._result(Use(call.words[1:], flow, folder, in_shell), call.words[0])
+            if result.errors:
+                sink = streams.output if call.joined else _nowhere if call.silent_errors else streams.errors
+                _tell(result.errors, sink, result.status)
+            flow, heard = Flow() if call.silent else result.output, (*heard, *result.heard)
+        if flow.data:
+            streams.output(flow.data)
+        streams.sound = flow.sound or streams.sound
+        if flow.sound is not None and streams.output is own_output:
+            _tell("espeak: --stdout is simulated only on its way to aplay", streams.errors, FAILED)
+        for one in heard:
+            self.session.speak(one.text, 0, one.tones_row, one.file)
+            yield one.length_ns
+        return result.status
+
+    def _result(self, use: Use, name: str) -> Result:
+        command = COMMANDS.get(os.path.basename(name))
+        if command is None:
+            there = ", ".join(COMMANDS)
+            return Result(
+                NOT_THERE, errors=f"{name}: not found (return code 127): the simulated brick has only {there}"
+            )
+        return command(self, use)
+
+
+def _tell(text: str, sink: Sink, status: int) -> None:
+    """Write error text; that something is not simulated is seen in any case."""
+    line = f"{text}\n".encode("utf-8", "surrogateescape")
+    sink(line)
+    if status == NOT_THERE and sink not in (own_errors, own_output):
+        own_errors(line)
+
+
+def _nowhere(_data: bytes) -> None:
+    """Throw away what is written."""
+
+
+class Running:
+    """Commands at work while the program goes on.
+
+    Args:
+        session: The program's clock.
+        steps: What they do.
+        several: Whether something is left to be done after the first sound, so that it must not wait to be looked at.
+    """
+
+    def __init__(self, session: Session, steps: Steps, several: bool = False) -> None:
+        self._session, self._steps = session, steps
+        self.status: int | None = None
+        """Exit status, None while they are at work."""
+        self._due = session.now
+        self._busy = False
+        self.hungry = False
+        """Whether they wait for their standard input."""
+        self.go_on()
+        if several and self.status is None:
+            session.aside(self._finish)
+
+    def go_on(self) -> None:
+        """Do what is due by now."""
+        while self.status is None and not self._busy and self._session.now >= self._due:
+            self._busy = True
+            try:
+                wait_ns = next(self._steps)
+            except StopIteration as end:
+                self.status = end.value
+                return
+            finally:
+                self._busy = False
+            self.hungry = wait_ns == NEEDS_INPUT
+            if self.hungry:
+                return
+            self._due = self._session.now + wait_ns
+
+    def wait(self, limit_ns: int | None = None) -> bool:
+        """Wait for the end, at most so long; return whether it has come."""
+        until = None if limit_ns is None else self._session.now + limit_ns
+        self.go_on()
+        while self.status is None:
+            rest_ns = max(self._due - self._session.now, 0)
+            if until is not None and self._session.now + rest_ns > until:
+                self._session.spend(max(until - self._session.now, 0))
+                return False
+            self._session.spend(rest_ns)
+            self.go_on()
+        return True
+
+    def end(self, status: int) -> None:
+        """End them; what is heard already goes on to its end."""
+        if self.status is None:
+            self.status = status
+
+    def _finish(self) -> None:
+        self.wait()
+
+
+# Commands
+
+
+def _setfont(shell: Shell, use: Use) -> Result:
+    names = [word for word in use.words if not word.startswith("-")]
+    errors = shell.terminal.set_font(os.path.basename(names[-1]) if names else PLAIN_FONT)
+    return Result(FAILED if errors else 0, errors=errors)
+
+
+def _clear(shell: Shell, _use: Use) -> Result:
+    shell.terminal.clear()
+    return Result()
+
+
+def _stty(shell: Shell, use: Use) -> Result:
+    if list(use.words) == ["size"]:
+        return Result(output=Flow(shell.terminal.size.encode()))
+    # Whether keys are echoed and the like: the brick's buttons write nothing on this screen.
+    return Result()
+
+
+def _amixer(shell: Shell, use: Use) -> Result:
+    words = [word for word in use.words if word != "-q"]
+    try:
+        told = shell.mixer.do(words)
+    except ValueError as error:
+        return Result(FAILED, errors=f"amixer: {error}")
+    return Result(output=Flow(told.encode() if len(words) == len(use.words) else b""))
+
+
+def _echo(_shell: Shell, use: Use) -> Result:
+    """The shell's own reads escapes and knows -n; the program of that name reads them with -e."""
+    words, end, escapes = list(use.words), "\n", use.in_shell
+    options = "n" if use.in_shell else "neE"
+    while words and len(words[0]) > 1 and words[0][0] == "-" and set(words[0][1:]) <= set(options):
+        for letter in words.pop(0)[1:]:
+            if letter == "n":
+                end = ""
+            else:
+                escapes = letter == "e"
+    text = " ".join(words)
+    if escapes:
+        text, cut, _ = _unescaped(text).partition("\0c")
+        end = "" if cut else end
+    return Result(output=Flow((text + end).encode("utf-8", "surrogateescape")))
+
+
+_ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", "a": "\a", "b": "\b", "e": "\x1b", "r": "\r", "c": "\0c", "v": "\v"}
+
+
+def _unescaped(text: str) -> str:
+    return re.sub(r"\\([ntabcerv\\])", lambda found: _ESCAPES[found[1]], text)
+
+
+def _beep(_shell: Shell, use: Use) -> Result:
+    heard = beep_heard(use.words)
+    return Result(FAILED if heard.refused else 0, heard=(heard,))
+
+
+def _espeak(_shell: Shell, use: Use) -> Result:
+    options, words = _sorted_out("espeak", use.words)
+    if "-w" in options:
+        return Result(FAILED, errors="espeak: -w is not simulated: it says what it is given, or sends it to aplay")
+    if "-f" in options:
+        try:
+            with open(os.path.join(use.folder, options["-f"]), "rb") as file:
+                text = file.read().decode("utf-8", "replace")
+        except OSError as error:
+            return Result(FAILED, errors=f"espeak: cannot read {options['-f']}: {error.strerror}")
+    else:
+        text = words[0] if words else use.given.data.decode("utf-8", "replace")
+    if not words and not text.strip():
+        return Result(FAILED, errors="espeak: there is no text to say")
+    heard = speech_heard(" ".join(text.split("\n")).strip(), options.get("-s", ""))
+    if "--stdout" in options:
+        return Result(output=Flow(sound=heard))
+    return Result(heard=() if "-q" in options else (heard,))
+
+
+def _aplay(_shell: Shell, use: Use) -> Result:
+    files = [word for word in _sorted_out("aplay", use.words)[1] if word != "-"]
+    if files:
+        heard = tuple(file_heard(file, use.folder) for file in files)
+        return Result(FAILED if any(one.refused for one in heard) else 0, heard=heard)
+    if use.given.sound is None:
+        return Result(FAILED, errors="aplay: takes a WAV file, or what `espeak --stdout` sends through a pipe")
+    return Result(heard=(use.given.sound,))
+
+
+_OPTIONS = {
+    "espeak": ("a:s:v:p:g:k:l:b:f:w:mqxXz", ["stdin", "stdout"]),
+    "aplay": ("D:qt:c:f:r:d:s:MNvi", ["quiet"]),
+}
+"""Options of the commands that read their standard input if nothing else is named, as `getopt` takes them."""
+
+
+def _sorted_out(name: str, words: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+    """Return options and other words; an option that is not known hides no word."""
+    import getopt
+
+    try:
+        options, rest = getopt.gnu_getopt(list(words), *_OPTIONS[name])
+    except getopt.GetoptError:
+        return {}, [word for word in words if not word.startswith("-")]
+    return dict(options), rest
+
+
+def _reads(words: Sequence[str]) -> bool:
+    """Whether a command reads its standard input."""
+    name = os.path.basename(words[0])
+    if name not in _OPTIONS:
+        return False
+    options, rest = _sorted_out(name, words[1:])
+    return "-f" not in options if name == "espeak" and not rest else not set(rest) - {"-"}
+
+
+COMMANDS: Mapping[str, Callable[[Shell, Use], Result]] = {
+    "setfont": _setfont, "clear": _clear, "beep": _beep, "echo": _echo, "espeak": _espeak, "aplay": _aplay,
+    "amixer": _amixer, "stty": _stty,
+}  # fmt: skip
+"""What the brick can do, by name."""

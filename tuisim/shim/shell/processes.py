@@ -1,0 +1,309 @@
+"""`os.system`, `os.popen` and `subprocess`: they reach the commands of the brick, nothing of this computer."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import types
+from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
+from typing import IO, Any, NoReturn
+
+from tuisim.core.profile import MS
+from tuisim.errors import NotSimulated
+from tuisim.shim.session import Session
+from tuisim.shim.shell.commands import Flow, Running, Shell, Sink, Steps, Streams, own_errors, own_output
+from tuisim.shim.sound import NO_PID
+
+Replace = Callable[[types.ModuleType, str, Callable[..., Any]], None]
+"""Lets a function of a module, by its name, do something else."""
+EXIT_SHIFT = 8
+"""Bits before the exit status in what `os.system` returns."""
+
+
+class OutPipe(io.RawIOBase):
+    """What a process writes; who reads it waits for the end of the process.
+
+    Args:
+        process: The process.
+    """
+
+    def __init__(self, process: Process) -> None:
+        self.process, self._data = process, bytearray()
+        self.sound_taken = False
+
+    def take(self, data: bytes) -> None:
+        """Take what the process has written."""
+        self._data += data
+
+    def readable(self) -> bool:
+        """Always."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Give what comes next; nothing is the end."""
+        self.process.wait()
+        if self.process.streams.sound is not None and not self.sound_taken:
+            self.sound_taken = True
+            own_errors(b"espeak: --stdout is simulated only on its way to aplay\n")
+        size = min(len(buffer), len(self._data))
+        buffer[:size] = self._data[:size]
+        del self._data[:size]
+        return size
+
+    def flow(self) -> Flow:
+        """Take everything."""
+        self.sound_taken = True
+        return Flow(self.readall(), self.process.streams.sound)
+
+
+class InPipe(io.RawIOBase):
+    """What a process reads; it gets it when the pipe is closed.
+
+    Args:
+        process: The process.
+    """
+
+    def __init__(self, process: Process) -> None:
+        self._process, self._data = process, bytearray()
+
+    def writable(self) -> bool:
+        """Always."""
+        return True
+
+    def write(self, data: Any) -> int:
+        """Take bytes."""
+        self._data += bytes(data)
+        return len(data)
+
+    def close(self) -> None:
+        """Let the process have what was written."""
+        if not self.closed:
+            super().close()
+            self._process.streams.given = Flow(bytes(self._data))
+            self._process.running.go_on()
+
+
+class Process:
+    """Stands in for `subprocess.Popen`; its arguments and methods are as there.
+
+    `system` is given by `patch_processes`, in a class made for the run.
+    """
+
+    system: System
+
+    def __init__(
+        self, args: Any, bufsize: int = -1, executable: Any = None, stdin: Any = None, stdout: Any = None,
+        stderr: Any = None, preexec_fn: Any = None, close_fds: bool = True, shell: bool = False, cwd: Any = None,
+        env: Any = None, universal_newlines: bool | None = None, startupinfo: Any = None, creationflags: int = 0,
+        restore_signals: bool = True, start_new_session: bool = False, pass_fds: Any = (), *, user: Any = None,
+        group: Any = None, extra_groups: Any = None, encoding: str | None = None, errors: str | None = None,
+        text: bool | None = None, umask: int = -1, pipesize: int = -1, process_group: Any = None,
+    ) -> None:  # fmt: skip
+        system, pipe = self.system, self.system.module.PIPE
+        system.session.command()
+        self.args, self.pid = args, next(system.pids)
+        self.returncode: int | None = None
+        self.text_mode = self.universal_newlines = bool(encoding or errors or text or universal_newlines)
+        self.encoding, self.errors = encoding, errors
+        self.streams = Streams(given=None if stdin == pipe else _given(stdin))
+        self.stdout: IO[Any] | None = None
+        self.stderr: IO[Any] | None = None
+        if stdout == pipe:
+            outlet = OutPipe(self)
+            self.streams.output, self.stdout = outlet.take, self._opened(io.BufferedReader(outlet))
+        else:
+            self.streams.output = _sink(stdout, own_output)
+        if stderr == pipe:
+            outlet = OutPipe(self)
+            self.streams.errors, self.stderr = outlet.take, self._opened(io.BufferedReader(outlet))
+        else:
+            joined = stderr == system.module.STDOUT
+            self.streams.errors = self.streams.output if joined else _sink(stderr, own_errors)
+        folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
+        steps, several = _steps(system.shell, args, shell, self.streams, folder)
+        self.running = Running(system.session, steps, several)
+        self.stdin: IO[Any] | None = self._opened(io.BufferedWriter(InPipe(self))) if stdin == pipe else None
+        system.processes[self.pid] = self
+
+    def _opened(self, pipe: Any) -> Any:
+        """Return a pipe as the program wants it: for bytes or for text."""
+        return io.TextIOWrapper(pipe, self.encoding or "utf-8", self.errors) if self.text_mode else pipe
+
+    def __class_getitem__(cls, item: Any) -> types.GenericAlias:
+        """As for the real class, in annotations."""
+        return types.GenericAlias(cls, item)
+
+    def __repr__(self) -> str:
+        """As of the real class."""
+        return f"<Popen: returncode: {self.returncode} args: {self.args!r}>"
+
+    def __enter__(self) -> Process:
+        """Return itself."""
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        """Close the pipes and wait for the end."""
+        for stream in (self.stdout, self.stderr, self.stdin):
+            if stream is not None:
+                stream.close()
+        self.wait()
+
+    def poll(self) -> int | None:
+        """Return the exit status, None while it is at work."""
+        self.system.session.command()
+        self.running.go_on()
+        return self._looked()
+
+    def _looked(self) -> int | None:
+        if self.returncode is None:
+            self.returncode = self.running.status
+        return self.returncode
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait for the end and return the exit status.
+
+        Raises:
+            subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
+        """
+        if self.streams.given is None and self.running.hungry:
+            # The real one would wait for ever for what nobody writes while the program waits.
+            assert self.stdin is not None
+            self.stdin.close()
+        if not self.running.wait(None if timeout is None else max(int(timeout * 1000 * MS), 0)):
+            raise self.system.module.TimeoutExpired(self.args, timeout)
+        status = self._looked()
+        assert status is not None
+        return status
+
+    def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:  # noqa: A002
+        """Give it its input, wait for the end, and return what it has written.
+
+        Raises:
+            subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
+        """
+        if self.stdin is not None and not self.stdin.closed:
+            if input:
+                self.stdin.write(input)
+            self.stdin.close()
+        self.wait(timeout)
+        read = [stream.read() if stream and not stream.closed else None for stream in (self.stdout, self.stderr)]
+        return read[0], read[1]
+
+    def send_signal(self, sig: int) -> None:
+        """End it, whatever the signal is."""
+        if self.poll() is None:
+            self.running.end(-sig)
+            self._looked()
+
+    def terminate(self) -> None:
+        """End it."""
+        self.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """End it."""
+        self.send_signal(signal.SIGKILL)
+
+
+class System:
+    """Everything that the processes of a run share.
+
+    Args:
+        session: The program's clock.
+        shell: The brick's commands.
+    """
+
+    def __init__(self, session: Session, shell: Shell) -> None:
+        self.session, self.shell = session, shell
+        self.module: Any = None
+        """`subprocess`, once it is imported."""
+        self.processes: dict[int, Process] = {}
+        self.pids = count(NO_PID + 1)
+
+    def patch_os(self, replace: Replace) -> None:
+        """Replace the calls of `os` that processes are started and ended with."""
+        group_of = os.getpgid
+
+        def getpgid(pid: int) -> int:
+            # Each is in a group of its own.
+            return pid if pid in self.processes else group_of(pid)
+
+        def system(command: Any) -> int:
+            # Returns as the kernel tells how a process ended.
+            self.session.command()
+            running = Running(self.session, self.shell.line(os.fsdecode(command), Streams()))
+            running.wait()
+            return (running.status or 0) << EXIT_SHIFT
+
+        replace(os, "system", system)
+        replace(os, "kill", self._reaching(os.kill))
+        replace(os, "killpg", self._reaching(os.killpg))
+        replace(os, "getpgid", getpgid)
+
+    def _reaching(self, real: Callable[[int, int], None]) -> Callable[[int, int], None]:
+        def send(pid: int, sig: int) -> None:
+            if pid not in self.processes:
+                real(pid, sig)
+            elif sig:
+                self.processes[pid].send_signal(sig)
+
+        return send
+
+    def finish_subprocess(self, module: types.ModuleType) -> None:
+        """Finish `subprocess` after its import: everything in it builds on this class."""
+        self.module = module
+        vars(module)["Popen"] = type("Popen", (Process,), {"system": self, "__module__": "subprocess"})
+
+
+def finish_asyncio(module: types.ModuleType) -> None:
+    """Refuse the processes of `asyncio`, after the import of its event loop."""
+
+    async def refuse(*_args: object, **_kwargs: object) -> NoReturn:
+        hint = "use subprocess.run, or os.system for commands of the brick"
+        raise NotSimulated("asyncio.create_subprocess_exec is not part of the simulated brick", hint)
+
+    loop = vars(module)["BaseEventLoop"]
+    loop.subprocess_exec = loop.subprocess_shell = refuse
+
+
+def _steps(shell: Shell, args: Any, in_shell: bool, streams: Streams, folder: str) -> tuple[Steps, bool]:
+    """Return what a process does, and whether that may be several commands."""
+    words = [os.fsdecode(word) for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)]
+    if in_shell:
+        return shell.line(words[0], streams, folder), True
+    return shell.program(words, streams, folder), False
+
+
+def _given(source: Any) -> Flow:
+    """Return the standard input of a process: nothing, a file, or what another process writes."""
+    if source is None or (isinstance(source, int) and source < 0):
+        return Flow()
+    raw = getattr(getattr(source, "buffer", source), "raw", source)
+    if isinstance(raw, OutPipe):
+        return raw.flow()
+    if isinstance(source, int):
+        with open(source, "rb", closefd=False) as file:
+            return Flow(file.read())
+    data = source.read()
+    return Flow(data.encode() if isinstance(data, str) else data)
+
+
+def _sink(target: Any, own: Sink) -> Sink:
+    """Return what writes to where a process is to write."""
+    if target is None:
+        return own
+    if isinstance(target, int):
+        return (lambda _data: None) if target < 0 else lambda data: _write_all(target, data)
+    with suppress(OSError, ValueError):
+        target.flush()
+        number = target.fileno()
+        return lambda data: _write_all(number, data)
+    # The program's own streams have no number.
+    return own if own is own_errors or getattr(target, "name", "") != "<stderr>" else own_errors
+
+
+def _write_all(number: int, data: bytes) -> None:
+    while data:
+        data = data[os.write(number, data) :]

@@ -1,1 +1,0 @@
-"""The app: Textual widgets over the host."""

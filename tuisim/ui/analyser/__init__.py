@@ -1,1 +1,0 @@
-"""The analyser: a log as table, chart, bands and figures, with one cursor in time for all."""

@@ -1,1 +1,0 @@
-"""Screens that come over the desk: pickers, dialogs, help."""
