@@ -60,6 +60,11 @@ PROGRAMS = {
         "threading.Thread(target=f).start()\nprint('early')",
         ["early", "late"],
     ),
+    "a sleep after a join that was given up": (
+        "import threading, time\nt = threading.Thread(target=lambda: time.sleep(2))\nt.start()\nt.join(0.5)\n"
+        "time.sleep(5)\nprint(round(time.monotonic(), 1))",
+        ["5.5"],
+    ),
     "error in a thread": (
         "import threading\nt = threading.Thread(target=lambda: 1 / 0)\nt.start()\nt.join()\nprint('main goes on')",
         ["main goes on"],

@@ -112,6 +112,7 @@ class Child:
     def run(self) -> NoReturn:
         """Run the program and end the process."""
         # Imported here: threads must be on the baton before anything else imports `threading`.
+        from tuisim.runtime.alarm import patch_alarm
         from tuisim.runtime.program import Outcome, ProgramRunner
         from tuisim.runtime.scheduler import Scheduler
         from tuisim.runtime.threads import patch_threads
@@ -129,6 +130,7 @@ class Child:
         waits.patch_select()
         refuse_processes()
         patch_threads(baton)
+        patch_alarm(session, baton)
         wallclock.stack_size(STACK_BYTES)
         limit_memory()
         install(

@@ -65,17 +65,17 @@ class Interrupts:
         faulthandler.enable(self._stack_file, all_threads=False)
         faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
         signal.signal(signal.SIGUSR1, self._on_command)
-        signal.signal(signal.SIGALRM, self._on_command)
+        wallclock.set_signal(signal.SIGALRM, self._on_command)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         if self._session.limits.stall_s:
             signal.signal(signal.SIGVTALRM, self._on_stall)
-            signal.setitimer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
+            wallclock.set_timer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
 
     def remove(self) -> None:
         """Stop listening: the program is over. Any thread may end it, but only the main one can change handlers."""
         self._removed = True
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        wallclock.set_timer(signal.ITIMER_REAL, 0.0)
+        wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)
 
     def _on_command(self, _number: int, frame: types.FrameType | None) -> None:
         session = self._session
@@ -95,7 +95,7 @@ class Interrupts:
         # A program that swallows the stop gets it again and again, until the host kills it.
         if self._session.stop_reason is not None and not self._timer_on:
             self._timer_on = True
-            signal.setitimer(signal.ITIMER_REAL, RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S)
+            wallclock.set_timer(signal.ITIMER_REAL, RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S)
 
     def _on_stall(self, _number: int, frame: types.FrameType | None) -> None:
         session = self._session

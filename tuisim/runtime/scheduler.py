@@ -28,7 +28,8 @@ class ScheduledThread:
     """One thread of the program."""
 
     __slots__ = (
-        "daemon", "done", "free", "gate", "ident", "joiners", "on_change", "order", "pending", "wake_ns", "woken",
+        "daemon", "done", "free", "gate", "ident", "interrupt", "joiners", "on_change", "order", "pending",
+        "struck", "wake_ns", "woken",
     )  # fmt: skip
 
     def __init__(self, daemon: bool) -> None:
@@ -48,6 +49,14 @@ class ScheduledThread:
         """Whether another thread, not the clock, ended the wait."""
         self.pending: BaseException | None = None
         """Raised in the thread when it runs again."""
+        self.interrupt: Callable[[], None] | None = None
+        """Called in the thread when it runs again."""
+        self.struck = False
+        """Whether that, not the clock or another thread, ended the wait."""
+
+
+Queue = list[ScheduledThread] | deque[ScheduledThread]
+"""Threads that wait for the same."""
 
 
 class Scheduler:
@@ -80,30 +89,75 @@ class Scheduler:
         """Let the current thread wait for a simulated time, or for a motor to end a move."""
         self.wait(until, on_change)
 
-    def wait(self, until: int, on_change: bool = False) -> bool:
+    def wait(self, until: int, on_change: bool = False, queue: Queue | None = None) -> bool:
         """Let the current thread wait.
 
         Args:
             until: Simulated ns, or FOREVER.
             on_change: Whether a motor that ends a move ends the wait.
+            queue: Where the thread stands as long as it waits, for another one to wake it. Such a wait also ends when
+                something was called in the thread: what it waits for may have come meanwhile.
 
         Returns:
             Whether another thread (or a motor) ended the wait before its time.
         """
         me = self.current
-        self._order += 1
-        me.order, me.wake_ns, me.woken, me.on_change = self._order, until, False, on_change
-        if until != FOREVER:
-            heapq.heappush(self._timed, (until, me.order, me))
-        if on_change:
-            self._on_change.append(me)
-        self._sleep(me)
-        return me.woken
+        self._heed(me)
+        while True:
+            self._order += 1
+            me.order, me.wake_ns, me.woken, me.on_change = self._order, until, False, on_change
+            if until != FOREVER:
+                heapq.heappush(self._timed, (until, me.order, me))
+            if on_change:
+                self._on_change.append(me)
+            if queue is None:
+                self._sleep(me)
+            else:
+                self._sleep_in(queue, me)
+            if not me.struck:
+                return me.woken
+            self._heed(me)
+            if queue is not None or self._session.now >= until != FOREVER:
+                return False
+
+    def pause(self) -> None:
+        """Let the main thread wait until something was called in it."""
+        self.wait(FOREVER, queue=[])
+
+    def interrupt_main(self, call: Callable[[], None]) -> None:
+        """Call something in the main thread as soon as it waits; unless that raises, it waits on afterwards."""
+        main = self.main
+        main.interrupt = call
+        if main.order:
+            main.order, main.struck = 0, True
+            self._ready.appendleft(main)
+
+    def _heed(self, me: ScheduledThread) -> None:
+        """Call what is to be called in this thread."""
+        if me.interrupt is None:
+            return
+        call, me.interrupt = me.interrupt, None
+        # It is the program's, wherever the thread waits.
+        free, self._session.free = self._session.free, 0
+        try:
+            call()
+        finally:
+            self._session.free = free
+
+    def _sleep_in(self, queue: Queue, me: ScheduledThread) -> None:
+        queue.append(me)
+        try:
+            self._sleep(me)
+        finally:
+            # Whoever stays would be woken later on, out of another wait.
+            if me in queue:
+                queue.remove(me)
 
     def _sleep(self, me: ScheduledThread) -> None:
         """Run again when it is this thread's turn."""
         session = self._session
         me.free, session.free = session.free, 0
+        me.struck = False
         self._hand_over(me)
         session.free = me.free
         if self.entered is not None:
@@ -244,8 +298,7 @@ class Scheduler:
         """Wait until a thread is over."""
         until = FOREVER if timeout_ns == FOREVER else self._session.now + timeout_ns
         while not task.done and (until == FOREVER or self._session.now < until):
-            task.joiners.append(self.current)
-            self.wait(until)
+            self.wait(until, queue=task.joiners)
 
     def join_all(self) -> None:
         """Wait for every thread that is not a daemon, as Python does at the end of a program."""
@@ -267,23 +320,17 @@ class SimulatedLock:
             # A lock that is free is given at once, unless something is wrong with the arguments.
             wallclock.allocate_lock().acquire(blocking, timeout)
         baton = self._baton
-        if not self._locked:
-            self._locked = True
-            return True
-        if not blocking or timeout == 0:
-            return False
-        me = baton.current
-        self._waiting.append(me)
-        try:
-            # A release hands the lock over: it is never free in between.
-            given = baton.wait(FOREVER if timeout == -1 else baton._session.now + round(timeout * 1e9))
-        except BaseException:  # a lock must not be handed to somebody who is gone, whatever ended the wait
-            if me in self._waiting:
-                self._waiting.remove(me)
-            raise
-        if not given and me in self._waiting:
-            self._waiting.remove(me)
-        return given
+        until = FOREVER if timeout == -1 else baton._session.now + round(timeout * 1e9)
+        while self._locked:
+            if not blocking or timeout == 0:
+                return False
+            # A release hands the lock over: it is free afterwards only if this thread was interrupted.
+            if baton.wait(until, queue=self._waiting):
+                return True
+            if self.locked() and baton._session.now >= until != FOREVER:
+                return False
+        self._locked = True
+        return True
 
     def release(self) -> None:
         """Give the lock to the thread that has waited longest, or free it."""

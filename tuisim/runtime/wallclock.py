@@ -10,6 +10,8 @@ import os
 import select
 import sys
 import time
+from importlib import import_module
+from typing import Any
 
 monotonic = time.monotonic
 process_time = time.process_time
@@ -20,6 +22,9 @@ stack_size = _thread.stack_size
 select_files = select.select
 exit_process = os._exit
 fork, getpid = os.fork, os.getpid
+signals: Any = import_module("_signal")
+"""What `signal` has its functions from; no type checker knows it."""
+set_signal, set_timer = signals.signal, signals.setitimer
 settrace, gettrace = sys.settrace, sys.gettrace
 
 

@@ -92,8 +92,8 @@ def _be_the_copy(
             (signal.SIGPROF, signal.ITIMER_PROF, limit_s),
             (signal.SIGALRM, signal.ITIMER_REAL, 2 * BLOCKED_LIMIT_S),
         ):
-            signal.signal(number, signal.SIG_DFL)
-            signal.setitimer(timer, seconds)
+            wallclock.set_signal(number, int(signal.SIG_DFL))
+            wallclock.set_timer(timer, seconds)
         wallclock.settrace(None)
         _freeze(session, baton)
         data = work()
@@ -133,8 +133,8 @@ def time_limit(seconds: float) -> Iterator[None]:
         raise TooLong
 
     signal.signal(signal.SIGVTALRM, too_long)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, seconds / 10)
+    wallclock.set_timer(signal.ITIMER_VIRTUAL, seconds, seconds / 10)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)

@@ -1,0 +1,122 @@
+"""Alarms in simulated time: `signal.alarm` and `signal.setitimer` interrupt the main thread, as on a brick."""
+
+from __future__ import annotations
+
+import errno
+import operator
+import os
+import signal
+import sys
+import types
+from typing import Any
+
+from tuisim.core.simulation import NS_PER_S
+from tuisim.errors import NotSimulated
+from tuisim.runtime import wallclock
+from tuisim.runtime.replacement import replace
+from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler
+from tuisim.runtime.session import Session
+
+
+class Alarm:
+    """The one alarm of a program.
+
+    The signal itself belongs to the runtime: the program's handler is only kept here, and a thread that nobody sees
+    waits for the time of the alarm.
+
+    Args:
+        session: The program's clock.
+        baton: Lets the handler be called in the main thread.
+    """
+
+    def __init__(self, session: Session, baton: Scheduler) -> None:
+        self._session = session
+        self._baton = baton
+        self._task: ScheduledThread | None = None
+        self._due_ns = FOREVER
+        self._interval_ns = 0
+        self.handler: Any = int(signal.SIG_DFL)
+        """What the program has said, as a number where it has one."""
+
+    def left_ns(self) -> tuple[int, int]:
+        """Return how long it is until the alarm, 0 if there is none, and from one to the next."""
+        left = 0 if self._due_ns == FOREVER else max(self._due_ns - self._session.now, 1)
+        return left, self._interval_ns
+
+    def set(self, after_ns: int, interval_ns: int) -> None:
+        """Set the alarm; 0 takes it away."""
+        self._due_ns = self._session.now + after_ns if after_ns else FOREVER
+        self._interval_ns = interval_ns if after_ns else 0
+        if self._task is not None:
+            self._baton.wake(self._task)
+        elif after_ns:
+            self._task = self._baton.spawn(self._wait, daemon=True)
+
+    def _wait(self) -> None:
+        while True:
+            if self._baton.wait(self._due_ns) or self._session.now < self._due_ns:
+                # It has been set anew.
+                continue
+            self._due_ns = self._due_ns + self._interval_ns if self._interval_ns else FOREVER
+            if self.handler != signal.SIG_IGN:
+                self._baton.interrupt_main(self._call)
+
+    def _call(self) -> None:
+        if self.handler == signal.SIG_DFL:
+            wallclock.set_signal(signal.SIGALRM, self.handler)
+            signal.raise_signal(signal.SIGALRM)
+        frame: types.FrameType | None = sys._getframe(1)
+        while frame is not None and frame.f_code.co_filename != self._session.program_file:
+            frame = frame.f_back
+        self.handler(int(signal.SIGALRM), frame)
+
+
+def patch_alarm(session: Session, baton: Scheduler) -> None:
+    """Replace the functions of `signal` that set an alarm, wait for one, or say what is done then."""
+    alarm = Alarm(session, baton)
+    real_signal, real_getsignal, real_getitimer = wallclock.set_signal, wallclock.signals.getsignal, signal.getitimer
+
+    def set_alarm(seconds: Any) -> int:
+        length = operator.index(seconds) % 2**32
+        before, _ = alarm.left_ns()
+        alarm.set(length * NS_PER_S, 0)
+        # Whole seconds, and not 0 as long as there is an alarm.
+        return max(round(before / NS_PER_S), 1) if before else 0
+
+    def getitimer(which: Any) -> tuple[float, float]:
+        if which != signal.ITIMER_REAL:
+            return real_getitimer(which)
+        left, interval = alarm.left_ns()
+        return left / NS_PER_S, interval / NS_PER_S
+
+    def setitimer(which: Any, seconds: Any, interval: Any = 0.0) -> tuple[float, float]:
+        before = getitimer(which)
+        if which != signal.ITIMER_REAL:
+            raise NotSimulated("this timer is not part of the simulated brick", "use signal.ITIMER_REAL")
+        lengths = [round(float(length) * NS_PER_S) for length in (seconds, interval)]
+        if min(lengths) < 0:
+            raise signal.ItimerError(errno.EINVAL, os.strerror(errno.EINVAL))
+        alarm.set(*lengths)
+        return before
+
+    def set_handler(number: Any, handler: Any) -> Any:
+        before = real_signal(number, handler)
+        if number != signal.SIGALRM:
+            return before
+        # It was good enough for the signal, which is the runtime's own.
+        real_signal(number, before)
+        before, alarm.handler = alarm.handler, handler
+        return before
+
+    def handler_of(number: Any) -> Any:
+        return alarm.handler if number == signal.SIGALRM else real_getsignal(number)
+
+    replace(signal, "alarm", set_alarm, (1, 1))
+    replace(signal, "setitimer", setitimer, (2, 3))
+    replace(signal, "getitimer", getitimer, (1, 1))
+    replace(signal, "pause", baton.pause, (0, 0))
+    # Those of `signal` call them, and make numbers of what has a name there, and names again.
+    replace(wallclock.signals, "signal", set_handler, (2, 2))
+    replace(
+        wallclock.signals, "getsignal", lambda n: alarm.handler if n == signal.SIGALRM else real_getsignal(n), (1, 1)
+    )
