@@ -78,6 +78,21 @@ async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
         assert app.desk.brick.held == frozenset()
 
 
+async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() -> None:
+    app = LabApp(settings(WATCHES))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("K", "R")
+        await until(pilot, lambda: "ready" in printed(app))
+        panel = app.desk.brick
+        assert panel is not None
+        panel.action_tap("down")
+        panel.release_all()
+        # As the timer does that had fired already.
+        panel._tap_over("down", 0.0)
+        assert panel.held == frozenset()
+
+
 async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
     app = LabApp(settings(WATCHES))
     async with app.run_test(size=(120, 40)) as pilot:

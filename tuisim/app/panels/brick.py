@@ -131,6 +131,9 @@ class Brick(Widget, can_focus=True):
 
     def _tap_over(self, name: str, seen_s: float) -> None:
         """Let a button go, but not before the program has had the time to see it, however slow the run is."""
+        if name not in self._tapped:
+            # The run ended after the timer had fired.
+            return
         if self._time_s < seen_s:
             self._tapped[name] = self.set_timer(TAP_S, partial(self._tap_over, name, seen_s))
         else:
