@@ -139,7 +139,7 @@ def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: s
     sim = simulation_of(replace(RUN, profile=PROFILES[profile]), MemorySink())
     assert isinstance(sim, FurtherMotors)
     told: list[tuple[int, tuple[Turn, ...]]] = [(0, ((0.0, 0.0),) * 2)]
-    sim.tell = lambda turns: told.append((sim.tick, turns))
+    sim.on_turns = lambda turns: told.append((sim.tick, turns))
     arm, lift = sim.others
     steps: dict[int, Callable[[], None]] = {
         0: lambda: arm.run(300.0),

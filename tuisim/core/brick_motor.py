@@ -1,7 +1,7 @@
-"""Wheel motors: what they were told, how their speed ramps, when a move is over.
+"""Wheel motors of a brick: their commands, speed ramps and ends of moves.
 
-A motor is changed in place, tick by tick: this is the hottest data of the simulation.
-Angles in degrees of the wheel (one encoder count is one degree), speeds in degrees per
+Motors are mutable and updated every tick: this is the hottest data of the simulation.
+Angles are in degrees of the wheel (one encoder count is one degree), speeds in degrees per
 second.
 """
 
@@ -13,16 +13,16 @@ from itertools import accumulate, repeat
 from operator import neg
 
 from tuisim.core.drive import EvenGlide, Glide
-from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDS_STILL_DEG, STOPPED, TIMED, MotorState
+from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDSTILL_DEG, STOPPED, TIMED, MotorState
 
 
 def ramped(speed: float, target: float, step: float) -> float:
     """Return the speed one tick later.
 
     Args:
-        speed: Speed now.
-        target: Speed asked for.
-        step: Change allowed in a tick; 0 for a motor without inertia.
+        speed: Current speed.
+        target: Target speed.
+        step: Largest change in one tick; 0 for a motor without inertia.
     """
     if step == 0.0:
         speed = target
@@ -41,9 +41,9 @@ class BrickMotor:
     """One motor with its encoder.
 
     Args:
-        tick_hz: Ticks a second.
-        weight_step: Change of speed in a tick that the weight allows; 0 is at once.
-        limit_dps: The fastest that noise makes it.
+        tick_hz: Ticks per second.
+        weight_step: Largest change of speed in one tick that the weight allows; 0 is unlimited.
+        limit_dps: Highest speed that noise can cause.
     """
 
     __slots__ = (
@@ -58,44 +58,44 @@ class BrickMotor:
         self.speed_dps = 0.0
         self.target_dps = 0.0
         self.sign = 1.0
-        """-1 while a move goes backwards at a speed given without sign."""
+        """-1 while a move runs backwards and its speed is given without sign."""
         self.goal_deg = 0.0
         self.end_tick: float = 0
         self.slowest_ramp_dps2 = 0.0
-        """Change of speed a second that the program asked for; 0 leaves it to the motor's weight."""
+        """Acceleration that the program set; 0 if only the motor's weight limits it."""
         self.approach_dps2 = 0.0
-        """How it slows down before a goal or the end of its time; 0: it stops at once when it is there."""
+        """Deceleration before the goal or the end time; 0 stops abruptly."""
         self.blocked_ticks = 0
-        """For how many ticks something solid has kept the wheel from turning."""
+        """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
 
     def run(self, speed_dps: float) -> None:
-        """Run until told otherwise."""
+        """Run until the next command."""
         if self.mode == FOREVER and not (self.slowest_ramp_dps2 or self.blocked_ticks):
-            # A control loop steers like this a hundred times a second: only the speed is new.
+            # A control loop calls this a hundred times a second: only the speed changes.
             self.target_dps = speed_dps
         else:
             self._begin(FOREVER, speed_dps, 1.0)
 
     def run_until(self, speed_dps: float, end_tick: int) -> None:
-        """Run until a tick is over."""
+        """Run until the end of a tick."""
         self._begin(TIMED, speed_dps, 1.0)
         self.end_tick = end_tick
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run to an encoder position at a speed given without sign."""
+        """Run to an encoder position; the speed has no sign."""
         self._begin(POSITION, abs(speed_dps), -1.0 if backwards else 1.0)
         self.goal_deg = goal_deg
 
     def _begin(self, mode: int, speed_dps: float, sign: float) -> None:
         if sign != self.sign:
-            # The wheel keeps turning the way it turns: only the way it is written down changes.
+            # The wheel keeps its direction: only the sign convention changes.
             self.speed_dps = -self.speed_dps
         self.mode, self.target_dps, self.sign = mode, speed_dps, sign
         self.slowest_ramp_dps2 = self.approach_dps2 = 0.0
         self.blocked_ticks = 0
 
     def stop(self) -> None:
-        """Stand still now."""
+        """Stop immediately."""
         self.mode = STOPPED
         self.target_dps = 0.0
         self.blocked_ticks = 0
@@ -103,43 +103,43 @@ class BrickMotor:
         self.sign = 1.0
 
     def state(self) -> MotorState:
-        """Return what `hold_back` needs to undo a tick."""
+        """Return the state that `hold_back` needs to undo a tick."""
         return MotorState(self.mode, self.sign, self.target_dps, self.position_deg)
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which something solid stopped the wheel, as `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
         if before.mode == STOPPED or turned_deg == 0.0:
             return
         if before.mode == POSITION and self.mode == STOPPED:
-            # It did not get to its goal after all.
+            # The motor did not reach its goal after all.
             self.mode, self.sign, self.target_dps = before.mode, before.sign, before.target_dps
         self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
         self.speed_dps *= part
-        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDS_STILL_DEG else 0
+        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
 
     @property
     def moving_dps(self) -> float:
-        """The speed at which the wheel turns, with its sign."""
+        """Current speed of the wheel, signed."""
         return 0.0 if self.mode == STOPPED else self.speed_dps * self.sign
 
     @property
     def counting_dps(self) -> float:
-        """How fast the encoder counts."""
+        """Current speed of the encoder."""
         return self.moving_dps
 
     @property
     def aim_dps(self) -> float:
-        """The speed at which the wheel is to turn, with its sign."""
+        """Target speed of the wheel, signed."""
         return self.target_dps * self.sign if self.mode else 0.0
 
     @property
     def resting(self) -> bool:
-        """Whether no tick changes anything of it until it is told something."""
+        """Whether ticks leave this motor unchanged until its next command."""
         return self.mode == STOPPED
 
     @property
     def ramp_step(self) -> float:
-        """By how much the speed can change in a tick; 0 is at once."""
+        """Largest change of speed in one tick; 0 is unlimited."""
         if not self.slowest_ramp_dps2:
             return self._weight_step
         asked = self.slowest_ramp_dps2 * self._tick_s
@@ -147,21 +147,21 @@ class BrickMotor:
 
     @property
     def ramping_ticks(self) -> int:
-        """How many ticks until its speed is steady."""
+        """Number of ticks until the speed is steady."""
         if self.mode == STOPPED or self.speed_dps == self.target_dps:
             return 0
         step = self.ramp_step
         return math.ceil(abs(self.target_dps - self.speed_dps) / step) if step else 1
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Do quiet ticks at a steady speed, as `Motor.glide_evenly`."""
+        """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
         if self.mode == STOPPED:
             return EvenGlide(0.0, repeat(self.position_deg, ticks))
         turned = self.speed_dps * self.sign * self._tick_s
         return EvenGlide(turned, accumulate(repeat(turned, ticks - 1), initial=self.position_deg + turned))
 
     def glide(self, ticks: int) -> Glide:
-        """Do quiet ticks, as `Motor.glide`."""
+        """Run quiet ticks; see `Motor.glide`."""
         if self.mode == STOPPED:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign, tick_s = self.sign, self._tick_s
@@ -171,12 +171,12 @@ class BrickMotor:
         return Glide(turns, counts[1:])
 
     def _speeds_ahead(self, ticks: int) -> list[float]:
-        """Change the speed as so many ticks do, and return it for each of them."""
+        """Advance the speed by `ticks` ticks and return the speed after each."""
         speed, target, step = self.speed_dps, self.target_dps, self.ramp_step
         if speed == target or step == 0.0:
             speeds = [speed if speed == target else target] * ticks
         else:
-            # The sums of `ramped`, without a call for each; those beyond the target become it.
+            # Same sums as `ramped`, without a call per tick; values beyond the target are clamped to it.
             change = step if speed < target else -step
             speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
             short = bisect_left(speeds, target) if change > 0 else bisect_left(speeds, -target, key=neg)
@@ -185,7 +185,7 @@ class BrickMotor:
         return speeds
 
     def quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks nothing but the ramp can change this motor, as `Motor.quiet_ticks`."""
+        """Return for how many ticks only the ramp changes this motor; see `Motor.quiet_ticks`."""
         if self.approach_dps2:
             return 0
         if self.mode == TIMED:
@@ -199,10 +199,10 @@ class BrickMotor:
         return ENDLESS
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Do one tick, as `Motor.step`."""
+        """Run one tick; see `Motor.step`."""
         mode = self.mode
         if mode == FOREVER and not noise_dps:
-            # Most ticks are such: they need only the ramp.
+            # The common case: only the ramp matters.
             if self.speed_dps != self.target_dps:
                 step = self.ramp_step if self.slowest_ramp_dps2 else self._weight_step
                 self.speed_dps = ramped(self.speed_dps, self.target_dps, step)
@@ -227,7 +227,7 @@ class BrickMotor:
         return turned
 
     def _slow_down(self, tick: int) -> None:
-        """Keep the speed so low that the motor can stand at its goal, or at the end of its time."""
+        """Limit the speed so that the motor can stop at its goal or at its end time."""
         change = self._ramp_down_step
         if self.mode == TIMED:
             limit = change * max(0, self.end_tick - tick)
@@ -240,7 +240,7 @@ class BrickMotor:
 
     @property
     def _ramp_down_step(self) -> float:
-        """By how much the speed falls in a tick while the motor slows down by itself."""
+        """Decrease of speed in one tick while the motor decelerates by itself."""
         asked = self.approach_dps2 * self._tick_s
         return min(self._weight_step, asked) if self._weight_step else asked
 

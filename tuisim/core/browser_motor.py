@@ -1,9 +1,9 @@
-"""Motors of the browser simulator nbev3devsim: what they do in each tick, to the last bit.
+"""Motors of the browser simulator nbev3devsim, reproduced to the last bit.
 
-A motor has a speed register that runs after its set point in every tick, also while the
-motor stands, and a command that decides what the register is good for. In a move to a
-position the encoder counts each step twice, so that the wheel makes half the way, and it
-goes on counting after the end. Set points are live: what is written works at once.
+A motor has a speed register that follows its set point in every tick, even while the motor
+is stopped, and a command that decides how the register is used. In a move to a
+position the encoder counts each step twice, so the wheel covers half the distance, and it
+continues to count after the end. Set points are live: a written value takes effect at once.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from collections.abc import Iterator
 from itertools import accumulate, islice, repeat
 
 from tuisim.core.drive import EvenGlide, Glide
-from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDS_STILL_DEG, STOPPED, TIMED, MotorState
+from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDSTILL_DEG, STOPPED, TIMED, MotorState
 
 
 class BrowserMotor:
     """One motor with its encoder.
 
     Args:
-        tick_hz: Ticks a second.
-        ramp_step: Change of speed in a tick that the weight allows; 0 is at once.
-        limit_dps: The fastest that it goes forwards.
+        tick_hz: Ticks per second.
+        ramp_step: Largest change of speed in one tick that the weight allows; 0 is unlimited.
+        limit_dps: Highest forward speed.
     """
 
     __slots__ = (
@@ -35,28 +35,28 @@ class BrowserMotor:
         self._ramp_step = ramp_step or math.inf
         self._command = STOPPED
         self.mode = STOPPED
-        """The command, as long as the motor says that it runs."""
+        """The command while the motor reports `running`."""
         self.position_deg = 0.0
         self.speed_dps = 0.0
-        """The speed register: a size in moves to a position, a signed speed otherwise."""
+        """The speed register: a magnitude in moves to a position, otherwise a signed speed."""
         self.speed_sp = 0.0
-        """The speed that the register runs after, in every state."""
+        """The speed that the register follows, in every state."""
         self.backwards = False
-        """The direction of a move to a position; it may change while the motor moves, and afterwards."""
+        """Direction of a move to a position; it may change during the move and afterwards."""
         self.goal_deg = 0.0
         self.end_tick = 0.0
         self.roll_sign = 1.0
-        """-1 for a motor of inversed polarity: the wheel rolls the other way, the encoder counts as ever."""
+        """-1 for a motor of inversed polarity: the wheel rolls the other way, the encoder counts as usual."""
         self.blocked_ticks = 0
 
     # Commands
 
     def run(self, speed_dps: float) -> None:
-        """Run until told otherwise."""
+        """Run until the next command."""
         self._begin(FOREVER, speed_dps)
 
     def run_until(self, speed_dps: float, end_tick: float) -> None:
-        """Run as long as ticks are before one, which need not be whole."""
+        """Run while ticks are before `end_tick`, which need not be whole."""
         self._begin(TIMED, speed_dps)
         self.end_tick = end_tick
 
@@ -73,14 +73,14 @@ class BrowserMotor:
         self.blocked_ticks = 0
 
     def stop(self) -> None:
-        """Stand still from the next tick on, which also ends the state."""
+        """Stop from the next tick on; this also ends the state."""
         self._command = STOPPED
         self.blocked_ticks = 0
 
     # Ticks
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Do one tick, as `Motor.step`."""
+        """Run one tick; see `Motor.step`."""
         speed, target = self.speed_dps, self.speed_sp
         if speed != target or noise_dps:
             self.speed_dps = speed = self._next(speed, noise_dps)
@@ -102,7 +102,7 @@ class BrowserMotor:
         return turned * self.roll_sign + 0.0
 
     def _next(self, speed: float, noise_dps: float = 0.0) -> float:
-        """The register after one more tick."""
+        """Return the register after one more tick."""
         target, step = self.speed_sp, self._ramp_step
         if speed < target:
             speed += step
@@ -112,7 +112,7 @@ class BrowserMotor:
             speed -= step
             if speed < target:
                 speed = target
-        # A speed that is negative even with the noise is left as it is.
+        # A speed that is negative even with the noise is left unchanged.
         noisy = speed + noise_dps
         if noisy < 0.0:
             return speed
@@ -124,38 +124,38 @@ class BrowserMotor:
 
     @property
     def _aim(self) -> float:
-        """Where the register comes to stand."""
+        """The final value of the register."""
         return min(self.speed_sp, self._limit_dps)
 
     @property
     def _ended(self) -> bool:
-        """Whether a move to a position is over, so that only the encoder goes on."""
+        """Whether a move to a position is over, so that only the encoder continues."""
         return self._command == POSITION and self.mode == STOPPED
 
     # Ticks ahead
 
     @property
     def ramping_ticks(self) -> int:
-        """About how many ticks until the register is steady; 0 only if it is."""
+        """Approximate number of ticks until the register is steady; 0 only if it is steady."""
         if self.speed_dps == self.speed_sp <= self._limit_dps:
             return 0
         way = abs(self._aim - self.speed_dps)
         return math.ceil(way / self._ramp_step) or int(way > 0)
 
     def quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks nothing but the register can change, as `Motor.quiet_ticks`."""
+        """Return for how many ticks only the register changes; see `Motor.quiet_ticks`."""
         if self._command == FOREVER or (self.mode == STOPPED and self._command != POSITION):
             return ENDLESS
         if self._command == POSITION:
             return self._quiet_ticks_to_goal()
-        # A motor that was told to stop says so in its next tick.
+        # After a stop command the state changes in the next tick.
         return max(0, math.ceil(self.end_tick) - 1 - tick) if self._command == TIMED else 0
 
     def _quiet_ticks_to_goal(self) -> int:
         if self._ended and self.speed_dps == self.speed_sp == 0.0:
             return ENDLESS
         if self._ended:
-            # It must not only be beyond its goal but also stay there.
+            # The motor must be beyond its goal and also stay there.
             return ENDLESS if self._beyond() and self.speed_dps >= 0 and self.speed_sp >= 0 else 0
         # Rounding adds up to half a degree a second.
         fastest = (max(abs(self.speed_dps), abs(self.speed_sp)) + 0.5) * self._tick_s
@@ -163,7 +163,7 @@ class BrowserMotor:
         return 0 if self._beyond() else max(0, int(left / (2 * fastest)) - 1)
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Do quiet ticks at a steady speed, as `Motor.glide_evenly`."""
+        """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
         turned = self.speed_dps * (-self._tick_s if self._command == POSITION and self.backwards else self._tick_s)
         start = self.position_deg
         counts: Iterator[float]
@@ -176,7 +176,7 @@ class BrowserMotor:
         return EvenGlide(0.0 if self.mode == STOPPED else turned * self.roll_sign + 0.0, counts)
 
     def glide(self, ticks: int) -> Glide:
-        """Do quiet ticks, as `Motor.glide`."""
+        """Run quiet ticks; see `Motor.glide`."""
         speeds = self._registers(ticks)
         tick_s = -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
         turns = [speed * tick_s for speed in speeds]
@@ -188,7 +188,7 @@ class BrowserMotor:
         return Glide([turned * sign + 0.0 for turned in turns], counts)
 
     def _registers(self, ticks: int) -> list[float]:
-        """Let the register run ahead; returns it for each tick."""
+        """Advance the register by `ticks` ticks and return it after each."""
         speed, aim = self.speed_dps, self._aim
         speeds: list[float] = []
         while speed != aim and len(speeds) < ticks:
@@ -207,7 +207,7 @@ class BrowserMotor:
             return [start] * len(turns)
         return list(accumulate(turns, initial=start))[1:]
 
-    # What others see
+    # State for other modules
 
     @property
     def _direction(self) -> float:
@@ -215,36 +215,36 @@ class BrowserMotor:
 
     @property
     def moving_dps(self) -> float:
-        """The speed at which the wheel turns, with its sign."""
+        """Current speed of the wheel, signed."""
         return 0.0 if self.mode == STOPPED else self.speed_dps * self._direction
 
     @property
     def counting_dps(self) -> float:
-        """How fast the encoder counts."""
+        """Current speed of the encoder."""
         if self._command == POSITION:
             return self.speed_dps * ((self.mode != STOPPED) + 1) * (-1.0 if self.backwards else 1.0)
         return 0.0 if self.mode == STOPPED else self.speed_dps
 
     @property
     def aim_dps(self) -> float:
-        """The speed at which the wheel is to turn, with its sign."""
+        """Target speed of the wheel, signed."""
         return 0.0 if self.mode == STOPPED else self._aim * self._direction
 
     @property
     def resting(self) -> bool:
-        """Whether no tick changes anything of it until it is told something."""
+        """Whether ticks leave this motor unchanged until its next command."""
         return self.mode == STOPPED and self.speed_dps == self._aim and (self.speed_dps == 0.0 or not self._ended)
 
-    # Solid things
+    # Collisions
 
     def state(self) -> MotorState:
-        """Return what `hold_back` needs to undo a tick."""
+        """Return the state that `hold_back` needs to undo a tick."""
         return MotorState(self.mode, self._direction, self._aim, self.position_deg)
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which something solid stopped the wheel, as `Motor.hold_back`."""
+        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
         if before.mode == STOPPED or turned_deg == 0.0:
             return
         self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
         self.speed_dps *= part
-        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDS_STILL_DEG else 0
+        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0

@@ -1,4 +1,4 @@
-"""Checks that the frozen specs make of their values."""
+"""Validation of values in the frozen specs."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ def require(
     """Check that a value is a number within limits.
 
     Args:
-        value: What is checked; a truth value is no number.
-        low: The least that is allowed.
-        high: The most that is allowed.
-        key: What the value is called.
+        value: Value to check; a bool is not a number.
+        low: Smallest allowed value.
+        high: Largest allowed value.
+        key: Name of the value in the error.
         error: Class of the error.
         whole: Whether only whole numbers are allowed.
 
     Raises:
-        ConfigError: of the class `error`: it is not.
+        ConfigError: the check failed; raised as `error`.
     """
     number = isinstance(value, int) or (isinstance(value, float) and not whole and math.isfinite(value))
     if not number or isinstance(value, bool):
@@ -34,17 +34,17 @@ def require(
 def require_one_of(
     value: object, what: str, allowed: Iterable[object], key: str, error: type[ConfigError] = RobotError
 ) -> None:
-    """Check that a value is among some.
+    """Check that a value is one of `allowed`.
 
     Args:
-        value: What is checked; a truth value is no number.
-        what: What it is, such as `port`.
-        allowed: Everything that it can be.
-        key: What the value is called.
+        value: Value to check; a bool is not a number.
+        what: What the value is, such as `port`.
+        allowed: All allowed values.
+        key: Name of the value in the error.
         error: Class of the error.
 
     Raises:
-        ConfigError: of the class `error`: it is not.
+        ConfigError: the check failed; raised as `error`.
     """
     allowed = tuple(allowed)
     if value not in allowed or isinstance(value, bool):

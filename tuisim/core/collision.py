@@ -1,13 +1,13 @@
-"""Solid things: how far the robot's outline can go before it meets a wall or an obstacle.
+"""Collisions: how far the robot's outline can move before it meets a wall or an obstacle.
 
-The motion of a tick is followed in steps so short that nothing can be passed between
-them, and the place of contact is found by halving, so the outline never enters a solid
-thing by more than `TOUCH_MM`.
+The motion of a tick is checked in steps so short that no obstacle can be skipped, and the
+point of contact is found by bisection, so the outline never enters an obstacle by more
+than `TOUCH_MM`.
 
-A robot may be put where it overlaps a thing. From there it never gets deeper into that thing:
-straight on or back it drives only away from it, and a turn pushes it aside by as much as the
-turn would lead it deeper. A turn on the spot or round one wheel also pushes a robot aside that meets a
-thing on the way, as its corner slides along it.
+A robot may be placed where it overlaps an obstacle. From there it never gets deeper into it:
+straight on or back it only drives away from it, and a turn pushes it aside by as much as the
+turn would lead it deeper. A turn on the spot or around one wheel also pushes aside a robot that
+meets an obstacle during the turn, because its corner slides along it.
 """
 
 from __future__ import annotations
@@ -22,64 +22,64 @@ TOUCH_MM = 1e-4
 """Overlap that still counts as touching."""
 
 ROUNDING_MM = 1e-9
-"""Rounding takes a robot that drives along a thing no deeper into it than this."""
+"""Rounding takes a robot that drives along an obstacle no deeper into it than this."""
 
 BACK_OFF_MM = 1e-6
-"""The robot stops so far before the contact, so that rounding cannot put it past it."""
+"""The robot stops this far before the contact, so that rounding cannot put it past it."""
 
 STEP_MM = 1.0
-"""No corner moves further between two looks; on an arc that hides less than 0.001 mm."""
+"""Largest distance a corner moves between two checks; on an arc this misses less than 0.001 mm."""
 
 NEAR_MM = 150.0
-"""Obstacles so much further away than the robot reaches are looked at again only after such a way."""
+"""Obstacles farther from the robot's reach than this are checked again only after it has moved this far."""
 
 SENSOR_HOUSING_MM = 15.0
-"""A sensor's housing reaches so far to every side of its middle."""
+"""A sensor's housing extends this far from its centre, to every side."""
 
 _HALVINGS = 22
 
 Box = tuple[float, float, float, float]
-"""Left, lower, right and upper edge in mm."""
+"""Left, lower, right and upper edge, in mm."""
 
 PoseTuple = tuple[float, float, float]
 """x and y in mm, heading in degrees."""
 
 Body = tuple[float, float, float, float, float, float, float, float]
-"""A body somewhere: its middle, its forward direction, half its length and width, half the upright box around it."""
+"""Centre, forward direction, half length and half width of a body, and half the size of its bounding box."""
 
 
 class Clearance(NamedTuple):
-    """How far the body can move from a pose without meeting anything, in mm."""
+    """How far the body can move from a pose without a collision, in mm."""
 
     pose: PoseTuple
     any_mm: float
-    """In any way: how far its fastest point may go."""
+    """In any direction: how far its fastest point may move."""
     straight: int
-    """1 where the way straight on was looked at, -1 for straight back, 0 for neither."""
+    """1 if the way straight ahead was checked, -1 for straight back, 0 for neither."""
     straight_mm: float
     """How far that way is free."""
 
 
 class Leeway(NamedTuple):
-    """What solid things allow of a tick's motion."""
+    """How much of a tick's motion obstacles allow."""
 
     part: float
-    """Which part of it can be made, 0 … 1."""
+    """Fraction of the motion that is possible, 0 … 1."""
     aside_mm: tuple[float, float]
-    """How far the robot is pushed aside besides, along x and y."""
+    """Displacement by which the robot is pushed aside in addition, along x and y."""
 
 
 UNHINDERED = Leeway(1.0, (0.0, 0.0))
 
 
 def front_mm(robot: RobotSpec) -> float:
-    """Return how far the body reaches forward of the axle: to the front of its sensors."""
+    """Return how far the body extends forward of the axle: to the front of its sensors."""
     sensors = [sensor.y_mm for sensor in robot.color_sensors]
     return max([0.0, robot.wheel_diameter_mm / 2, *(y + SENSOR_HOUSING_MM for y in sensors)])
 
 
 def half_width_mm(robot: RobotSpec) -> float:
-    """Return how far the body reaches to either side: to the outer edge of its wheels."""
+    """Return how far the body extends to either side: to the outer edge of its wheels."""
     return (robot.wheel_spacing_mm + robot.wheel_width_mm) / 2
 
 
@@ -90,20 +90,20 @@ def outline(robot: RobotSpec) -> tuple[tuple[float, float], ...]:
 
 
 def reach_mm(robot: RobotSpec) -> float:
-    """Return how far the body reaches from the middle of the axle, about which it turns."""
+    """Return the largest distance of the body from the centre of the axle, about which it turns."""
     return max(math.hypot(x, y) for x, y in outline(robot))
 
 
 class Solids:
-    """The solid things of a world, for one robot.
+    """The obstacles and walls of a world, for one robot.
 
-    Most of the time nothing is near, so how far every point of the body may move is worked
-    out once and used up tick by tick; only then are things looked at again.
+    Most of the time nothing is near. The distance that every point of the body may move is
+    therefore computed once and used up tick by tick; obstacles are checked again only then.
 
     Args:
         world: Walls and obstacles.
-        robot: Its outline counts.
-        early: Which part of a tick's turn counts already for the way of that tick.
+        robot: The robot; its outline is used.
+        early: Fraction of a tick's turn that already applies to the motion of that tick.
     """
 
     def __init__(self, world: WorldSpec, robot: RobotSpec, early: float = 0.0) -> None:
@@ -113,60 +113,60 @@ class Solids:
         self._half_width, front, back = half_width_mm(robot), front_mm(robot), robot.back_mm
         self._middle, self._half_length = (front + back) / 2, (front - back) / 2
         self._turns_mm = robot.wheel_spacing_mm / 2 * (1.0 + 1e-9)
-        """A motion whose way is at most this times its turn in radians is a turn: no two wheels push the same way."""
+        """Distance per radian of turn up to which a motion is a turn: its wheels do not push the same way."""
         self.reach_mm = reach_mm(robot)
-        """How far the body reaches from the middle of the axle."""
+        """Largest distance of the body from the centre of the axle."""
         self._near: list[Box] = []
         self._near_at = (math.inf, math.inf)
-        self._room = Clearance((math.inf, math.inf, 0.0), 0.0, 0, 0.0)
+        self._free = Clearance((math.inf, math.inf, 0.0), 0.0, 0, 0.0)
         self._last_asked: tuple[float, ...] = ()
         self._last_leeway = UNHINDERED
 
     def free_way_mm(self, pose: PoseTuple, wanted_mm: float, straight: int = 0) -> float:
-        """Return how far every point of the body can move without meeting anything; may say less than there is.
+        """Return a lower bound of how far every point of the body can move without a collision.
 
         Args:
             pose: x and y in mm, heading in degrees.
-            wanted_mm: If so much is known to be free, nothing is looked at again.
+            wanted_mm: Nothing is checked again if at least this distance is known to be free.
             straight: 1 or -1 for a robot that only moves forwards or backwards, 0 for any motion.
         """
-        left = self.left_of_room_mm(pose)
+        left = self.remaining_mm(pose)
         if left >= wanted_mm:
             return left
-        if self._room.pose != pose or self._room.straight != straight:
-            self._room = self._look(pose, straight)
-        return max(self._room.any_mm, self._room.straight_mm)
+        if self._free.pose != pose or self._free.straight != straight:
+            self._free = self._clearance(pose, straight)
+        return max(self._free.any_mm, self._free.straight_mm)
 
-    def left_of_room_mm(self, pose: PoseTuple) -> float:
-        """What is left of the room that was found last, after the way since then."""
-        x, y, heading = self._room.pose
+    def remaining_mm(self, pose: PoseTuple) -> float:
+        """Remaining free distance of the last check, less the distance moved since."""
+        x, y, heading = self._free.pose
         turned = math.radians(abs(pose[2] - heading)) * self.reach_mm
-        return self._room.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
+        return self._free.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
 
     def leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
-        """Return what can be made of a tick's motion.
+        """Return how much of a tick's motion is possible.
 
         Args:
             pose: x and y in mm, heading in degrees.
-            forward_mm: Way of the tick.
-            turn_deg: Turn, counter-clockwise.
+            forward_mm: Distance in this tick.
+            turn_deg: Turn in this tick, counter-clockwise.
         """
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
-        if self.left_of_room_mm(pose) >= way:
+        if self.remaining_mm(pose) >= way:
             return UNHINDERED
         asked = (*pose, forward_mm, turn_deg)
-        # A robot that pushes against something asks the same every tick.
+        # A robot that pushes against an obstacle asks the same in every tick.
         if asked != self._last_asked:
             self._last_asked, self._last_leeway = asked, self._leeway(pose, forward_mm, turn_deg, way)
         return self._last_leeway
 
     def _leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float) -> Leeway:
-        if self._room.pose != pose:
-            self._room = self._look(pose, 0)
-        if self._room.any_mm >= way_mm:
+        if self._free.pose != pose:
+            self._free = self._clearance(pose, 0)
+        if self._free.any_mm >= way_mm:
             return UNHINDERED
         body = self._body(*pose)
-        # A robot that is pushed aside goes up to twice the way.
+        # A robot that is pushed aside moves up to twice the distance.
         boxes = [box for box in self._boxes_near(pose) if _box_gap(body, box) <= 2 * way_mm]
         gaps = list(self._gaps(body, boxes))
         x_mm, y_mm, heading_deg = pose
@@ -192,7 +192,7 @@ class Solids:
         return Leeway(part, (0.0, 0.0))
 
     def _pushed_aside(self, body: Body, boxes: list[Box], floors: list[float]) -> Leeway:
-        """Push a body aside until it is as far from each thing as `floors` tell, or let it not move at all."""
+        """Push a body aside until each gap is at least its value in `floors`; if that fails, allow no motion at all."""
         x_mm = y_mm = 0.0
         there = body
         for number, floor in enumerate(floors):
@@ -206,24 +206,24 @@ class Solids:
             return Leeway(0.0, (0.0, 0.0))
         return Leeway(1.0, (x_mm, y_mm))
 
-    # Looking
+    # Gaps
 
     def _gaps(self, body: Body, boxes: list[Box]) -> Iterator[float]:
-        """How far the body is from each wall and each box, negative when it overlaps."""
+        """Yield the gap between the body and each wall and box, negative if they overlap."""
         if self._walls:
             yield from _wall_gaps(body)
         for box in boxes:
             yield _box_gap(body, box)
 
     def _way_out(self, body: Body, number: int, boxes: list[Box]) -> tuple[float, float]:
-        """Return the direction of the shortest way out of a thing that is overlapped; `number` as in `_gaps`."""
+        """Return the direction of the shortest way out of an overlap; `number` is an index into `_gaps`."""
         if self._walls:
             if number < len(_AWAY_FROM_WALLS):
                 return _AWAY_FROM_WALLS[number]
             number -= len(_AWAY_FROM_WALLS)
         return _way_out_of_box(body, boxes[number])
 
-    def _look(self, pose: PoseTuple, straight: int) -> Clearance:
+    def _clearance(self, pose: PoseTuple, straight: int) -> Clearance:
         body = self._body(*pose)
         # Boxes that are not near are at least this far away.
         boxes = self._boxes_near(pose)
@@ -235,7 +235,7 @@ class Solids:
         cx, cy, _, _, _, _, wide, high = body
         for box in boxes:
             left, lower, right, upper = box
-            # The box's own axes first: they are quickly told, and mostly enough.
+            # The box's own axes first: cheap to compute, and mostly sufficient.
             apart = max(left - cx - wide, cx - right - wide, lower - cy - high, cy - upper - high)
             if apart >= any_mm and not straight:
                 continue
@@ -246,7 +246,7 @@ class Solids:
             elif straight:
                 along, aside, before = _box_beside(body, box)
                 if aside < 0.0 and along < 0.0:
-                    # Only a corner is clear of it: the way may lead into it wherever its middle is.
+                    # Only a corner is clear of the box: the way may lead into it wherever its centre is.
                     on_mm = min(on_mm, gap)
                 elif aside < 0.0 and before == (straight > 0):
                     on_mm = min(on_mm, along)
@@ -279,13 +279,13 @@ _AWAY_FROM_WALLS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 
 
 def _wall_gaps(body: Body) -> tuple[float, float, float, float]:
-    """How far the body is from the left, right, lower and upper wall, negative when it is in one."""
+    """Return the gap to the left, right, lower and upper wall, negative if the body is in the wall."""
     cx, cy, _, _, _, _, wide, high = body
     return cx - wide, FIELD_WIDTH_MM - wide - cx, cy - high, FIELD_HEIGHT_MM - high - cy
 
 
 def _way_to_wall(body: Body, direction: int) -> float:
-    """How far the body can move along its heading (direction 1) or against it (-1) before it meets a wall."""
+    """Return how far the body can move along its heading (direction 1) or against it (-1) before it meets a wall."""
     cx, cy, fx, fy, _, _, wide, high = body
     way = math.inf
     for centre, half, end, step in ((cx, wide, FIELD_WIDTH_MM, fx), (cy, high, FIELD_HEIGHT_MM, fy)):
@@ -296,7 +296,7 @@ def _way_to_wall(body: Body, direction: int) -> float:
 
 
 def _box_gap(body: Body, box: Box) -> float:
-    """How far body and box are apart along the axis that separates them best, negative when they overlap."""
+    """Return the largest gap between body and box along any separating axis, negative if they overlap."""
     cx, cy, _, _, _, _, wide, high = body
     left, lower, right, upper = box
     upright = max(left - cx, cx - right) - wide
@@ -306,7 +306,7 @@ def _box_gap(body: Body, box: Box) -> float:
 
 
 def _way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
-    """Return the direction in which a body that overlaps a box leaves it on the shortest way."""
+    """Return the direction in which a body that overlaps a box leaves it by the shortest way."""
     cx, cy, fx, fy, _, _, wide, high = body
     left, lower, right, upper = box
     along, aside, in_front = _box_beside(body, box)
@@ -322,7 +322,7 @@ def _way_out_of_box(body: Body, box: Box) -> tuple[float, float]:
 
 
 def _box_beside(body: Body, box: Box) -> tuple[float, float, bool]:
-    """Return how far a box is apart along the heading and across it, and whether it is in front."""
+    """Return the gap to a box along the heading and across it, and whether the box is in front."""
     cx, cy, fx, fy, length, width, _, _ = body
     left, lower, right, upper = box
     dx, dy = (left + right) / 2 - cx, (lower + upper) / 2 - cy
@@ -334,7 +334,7 @@ def _box_beside(body: Body, box: Box) -> tuple[float, float, bool]:
 
 
 def _free_part(meets: Callable[[float], bool], way_mm: float) -> float:
-    """Return which part of a way that nothing is met on; `meets` tells it for any part."""
+    """Return the largest fraction of a motion that is free of contact; `meets` answers for any fraction."""
     steps = max(1, math.ceil(way_mm / STEP_MM))
     for step in range(1, steps + 1):
         if meets(step / steps):

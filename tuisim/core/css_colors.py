@@ -1,4 +1,4 @@
-"""Colours by their CSS names, without an image library."""
+"""CSS colour names, without an image library."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Differential drive: how two rolling wheels move the robot.
 
-A profile's motor law also says how it reckons, because figures that are to be the same
-to the last bit need the same sums in the same order. The loops over many ticks do the
-sums of one tick in full, and write the records themselves: they are the hottest ones.
+A profile's motor law also selects the arithmetic, because results that must be the same
+to the last bit need the same operations in the same order. The loops over many ticks inline
+the arithmetic of one tick and write the records themselves, because they are the hottest.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ _WHOLE_TURN = 2 * math.pi
 
 
 def float32(value: float) -> float:
-    """Return `value` as the telemetry stores it, so that viewers and programs see the same."""
+    """Return `value` rounded to single precision, as the telemetry stores it."""
     return float(_FLOAT32.unpack(_FLOAT32.pack(value))[0])
 
 
 def mm_per_degree(robot: RobotSpec) -> float:
-    """Return how far a wheel rolls for one degree of turn."""
+    """Return how far a wheel rolls per degree."""
     return math.pi * robot.wheel_diameter_mm / 360.0
 
 
@@ -35,21 +35,21 @@ def turn_rate_dps(left_dps: float, right_dps: float, robot: RobotSpec) -> float:
     """Return the counter-clockwise rate of turn in degrees per second.
 
     Args:
-        left_dps: Turning speed of the left wheel, degrees per second.
-        right_dps: Turning speed of the right wheel.
+        left_dps: Speed of the left wheel, degrees per second.
+        right_dps: Speed of the right wheel.
         robot: Wheel diameter and spacing.
     """
     return (right_dps - left_dps) * robot.wheel_diameter_mm / (2.0 * robot.wheel_spacing_mm)
 
 
 class Records(NamedTuple):
-    """Where the records of some ticks go, and what is the same in all of them."""
+    """Destination of the records of several ticks, and the fields that are the same in all of them."""
 
     buffer: Buffer
     at: int
-    """Where the first one begins in it, in bytes."""
+    """Offset of the first record in the buffer, in bytes."""
     tick: int
-    """The first one."""
+    """The first tick."""
     line: int
     flags: int
     actions: int
@@ -57,43 +57,43 @@ class Records(NamedTuple):
 
 
 class Glide(NamedTuple):
-    """What a wheel does in some ticks."""
+    """Motion of one wheel over several ticks."""
 
     rolls_deg: list[float]
-    """How far it rolls in each."""
+    """Rotation in each tick."""
     counts_deg: list[float]
-    """What its encoder shows after each."""
+    """Encoder position after each tick."""
 
 
 class EvenGlide(NamedTuple):
-    """What a wheel of steady speed does in some ticks."""
+    """Motion of one wheel at a steady speed over several ticks."""
 
     roll_deg: float
-    """How far it rolls in each."""
+    """Rotation in each tick."""
     counts_deg: Iterator[float]
-    """What its encoder shows after each."""
+    """Encoder position after each tick."""
 
 
 class Drive(Protocol):
-    """Where the robot is, and how its wheels move it."""
+    """The robot's pose, and how its wheels change it."""
 
     x_mm: float
     y_mm: float
     heading_deg: float
     gyro_zero_deg: float
-    """Heading at which the gyro shows 0."""
+    """Heading at which the gyro reads 0."""
 
     def put(self, pose: Pose) -> None:
-        """Put the robot somewhere."""
+        """Set the robot's pose."""
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Let the wheels roll by what one tick turns them."""
+        """Move the robot by one tick's rotation of the wheels."""
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
-        """Let the wheels roll for some ticks, and write each down."""
+        """Move the robot by several ticks and write a record for each."""
 
     def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
-        """Let the wheels roll by the same for some ticks, and write each down; returns what the encoders show then."""
+        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
 
 
 class BrickDrive:
@@ -101,8 +101,8 @@ class BrickDrive:
 
     Args:
         robot: Wheel diameter and spacing.
-        start: Where the robot is.
-        early: Which part of a tick's turn counts already for the way of that tick.
+        start: Initial pose.
+        early: Fraction of a tick's turn that already applies to the motion of that tick.
     """
 
     __slots__ = ("_early", "_mm_per_deg", "_spacing_mm", "gyro_zero_deg", "heading_deg", "x_mm", "y_mm")
@@ -113,11 +113,11 @@ class BrickDrive:
         self.gyro_zero_deg = float32(start.heading_deg)
 
     def put(self, pose: Pose) -> None:
-        """Put the robot somewhere."""
+        """Set the robot's pose."""
         self.x_mm, self.y_mm, self.heading_deg = pose.x_mm, pose.y_mm, pose.heading_deg
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Let the wheels roll by what one tick turns them."""
+        """Move the robot by one tick's rotation of the wheels."""
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         turned = degrees((right_mm - left_mm) / self._spacing_mm)
         heading = radians(self.heading_deg + turned * self._early)
@@ -127,7 +127,7 @@ class BrickDrive:
         self.heading_deg += turned
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
-        """Let the wheels roll for some ticks, and write each down."""
+        """Move the robot by several ticks and write a record for each."""
         buffer, at, tick, line, flags, actions, hz = records
         per_deg, spacing, early, zero = self._mm_per_deg, self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
@@ -147,7 +147,7 @@ class BrickDrive:
         self.x_mm, self.y_mm, self.heading_deg = x, y, heading
 
     def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
-        """Let the wheels roll by the same for some ticks, and write each down; returns what the encoders show then."""
+        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
         buffer, at, tick, line, flags, actions, hz = records
         left_mm, right_mm = left.roll_deg * self._mm_per_deg, right.roll_deg * self._mm_per_deg
         turned, forward = degrees((right_mm - left_mm) / self._spacing_mm), (left_mm + right_mm) / 2
@@ -174,12 +174,12 @@ class BrickDrive:
 
 
 class BrowserDrive:
-    """The drive of the browser simulator: headings in radians, which drop by a whole turn when they pass it upwards.
+    """The drive of the browser simulator: headings in radians, reduced by a whole turn when they exceed one.
 
     Args:
         robot: Wheel diameter and spacing.
-        start: Where the robot is.
-        early: Which part of a tick's turn counts already for the way of that tick.
+        start: Initial pose.
+        early: Fraction of a tick's turn that already applies to the motion of that tick.
     """
 
     __slots__ = ("_early", "_heading", "_rim_mm", "_spacing_mm", "gyro_zero_deg", "heading_deg", "x_mm", "y_mm")
@@ -190,13 +190,13 @@ class BrowserDrive:
         self.gyro_zero_deg = float32(self.heading_deg)
 
     def put(self, pose: Pose) -> None:
-        """Put the robot somewhere."""
+        """Set the robot's pose."""
         self.x_mm, self.y_mm = pose.x_mm, pose.y_mm
         self._heading = radians(pose.heading_deg)
         self.heading_deg = self._heading * 180 / math.pi
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Let the wheels roll by what one tick turns them."""
+        """Move the robot by one tick's rotation of the wheels."""
         left_mm, right_mm = left_deg / 360 * self._rim_mm, right_deg / 360 * self._rim_mm
         turned, forward = (right_mm - left_mm) / self._spacing_mm, (left_mm + right_mm) / 2
         way = self._heading + turned * self._early
@@ -210,7 +210,7 @@ class BrowserDrive:
             self._heading, self.heading_deg = heading, heading * 180 / math.pi
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
-        """Let the wheels roll for some ticks, and write each down."""
+        """Move the robot by several ticks and write a record for each."""
         buffer, at, tick, line, flags, actions, hz = records
         rim, spacing, early, zero = self._rim_mm, self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, shown, pack_into = self.x_mm, self.y_mm, self._heading, self.heading_deg, TICK_RECORD.pack_into
@@ -235,7 +235,7 @@ class BrowserDrive:
         self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = x, y, heading, shown, zero
 
     def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
-        """Let the wheels roll by the same for some ticks, and write each down; returns what the encoders show then."""
+        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
         buffer, at, tick, line, flags, actions, hz = records
         left_mm, right_mm = left.roll_deg / 360 * self._rim_mm, right.roll_deg / 360 * self._rim_mm
         turned, forward = (right_mm - left_mm) / self._spacing_mm, (left_mm + right_mm) / 2

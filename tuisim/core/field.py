@@ -1,8 +1,8 @@
-"""The mat as sensors see it: pixels, and prepared sums of every disc on it.
+"""The mat as sensors see it: pixels, and precomputed sums of every disc on it.
 
 A disc of diameter d is the set of pixels of a d × d box with
-(row - d/2)² + (col - d/2)² < (d/2)². Its sums over the whole mat are prepared once, so
-that a reading is one look-up. Off the mat a pixel is black.
+(row - d/2)² + (col - d/2)² < (d/2)². Its sums over the whole mat are precomputed, so
+that a reading is one look-up. Pixels off the mat are black.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 OUTSIDE_DISC_RGB = (245, 226, 225)
-"""What a pixel array shows in the corners of the box, outside the disc."""
+"""Colour of a pixel array in the corners of the box, outside the disc."""
 
 
 def disc_mask(diameter: int) -> list[list[bool]]:
-    """Return which pixels of a box belong to its disc, rows of `diameter` booleans."""
+    """Return which pixels of a box belong to its disc, as rows of `diameter` booleans."""
     radius = diameter / 2
     return [
         [(row - radius) ** 2 + (col - radius) ** 2 < radius**2 for col in range(diameter)] for row in range(diameter)
@@ -23,22 +23,22 @@ def disc_mask(diameter: int) -> list[list[bool]]:
 
 
 def disc_pixels(diameter: int) -> int:
-    """Return how many pixels a disc has: 305 for 20, 69 for 10, 697 for 30."""
+    """Return the number of pixels in a disc: 305 for 20, 69 for 10, 697 for 30."""
     return sum(map(sum, disc_mask(diameter)))
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A mat, ready to be read.
+    """A mat, ready to be read by sensors.
 
-    Buffers are memory views, usually of memory-mapped files, so that neither numpy nor
-    an image library is needed to read them.
+    Buffers are memory views, usually of memory-mapped files, so that reading needs neither
+    numpy nor an image library.
     """
 
     width_px: int
     height_px: int
     pixels: memoryview
-    """Bytes: rows from the top, three a pixel."""
+    """Rows from the top, three bytes per pixel."""
     sums: Mapping[int, memoryview]
     """By diameter d: unsigned 32-bit red, green and blue sums of the disc whose box has its
     corner at (col - d, row - d); shape (height + d, width + d, 3), flat."""
@@ -47,9 +47,9 @@ class Field:
         """Return the sums of red, green and blue over one disc.
 
         Args:
-            diameter: One of `sums`.
-            col: Left column of its box; may lie off the mat.
-            row: Top row of its box; may lie off the mat.
+            diameter: A key of `sums`.
+            col: Left column of its box; may be off the mat.
+            row: Top row of its box; may be off the mat.
         """
         width = self.width_px + diameter
         col += diameter
@@ -61,7 +61,7 @@ class Field:
         return sums[at], sums[at + 1], sums[at + 2]
 
     def box(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of one box, row-major, three bytes a pixel; black off the mat."""
+        """Return the pixels of one box, row-major, three bytes per pixel; black off the mat."""
         left, right = max(col, 0), min(col + diameter, self.width_px)
         before = bytes(3 * min(max(left - col, 0), diameter))
         rows = []

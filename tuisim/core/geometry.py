@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where something is and which way it faces."""
+    """Position and heading."""
 
     x_mm: float
     y_mm: float
@@ -17,7 +17,7 @@ class Pose:
 
 
 def shown_heading_deg(heading_deg: float) -> float:
-    """Return a heading as people read it, from -180 to 180; what is recorded goes on counting turns."""
+    """Return a heading wrapped to -180 … 180 for display; recorded headings are not wrapped."""
     if -180.0 <= heading_deg <= 180.0:
         return heading_deg
     return 180.0 - (180.0 - heading_deg) % 360.0
@@ -34,7 +34,7 @@ def world_point(pose: Pose, x_mm: float, y_mm: float) -> tuple[float, float]:
     Returns:
         x and y in mm in the world.
     """
-    # The robot's own frame has y forward, so it is turned by heading - 90 degrees.
+    # The robot's frame has y forward, so it is rotated by heading - 90 degrees.
     turn = math.radians(pose.heading_deg - 90.0)
     cos, sin = math.cos(turn), math.sin(turn)
     return pose.x_mm + cos * x_mm - sin * y_mm, pose.y_mm + sin * x_mm + cos * y_mm

@@ -1,8 +1,8 @@
-"""Motion: motors and robot moved on in whole ticks, each of which is recorded.
+"""Motion: advances motors and robot in whole ticks, each of which is recorded.
 
 `advance` gives the same state to the last bit however the ticks are divided among
-calls: stretches in which nothing happens but motion are done in tight loops, and every
-loop does the same floating-point operations in the same order as a single tick.
+calls: stretches with nothing but motion run in tight loops, and every loop does the same
+floating-point operations in the same order as a single tick.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from tuisim.core.spec import RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
 
 STALL_MS = 100
-"""A running motor that stands still for longer is stalled (EV3 motor driver)."""
+"""A running motor that does not turn for longer than this is stalled (EV3 motor driver)."""
 
 ROOM_TICKS = 256
-"""The sink is asked for room for so many records beyond those at hand."""
+"""Number of records beyond the current ones for which space is requested from the sink."""
 
-LOOK_TICKS = 4
-"""Solid things are looked at anew when the way known to be free is shorter than that of so many ticks."""
+CHECK_TICKS = 4
+"""Obstacles are checked again when the distance known to be free is less than this many ticks need."""
 
 FEW_TICKS = 3
-"""Up to so many ticks, setting up a tight loop costs more than it saves."""
+"""Up to this number of ticks, setting up a tight loop costs more than it saves."""
 
 
 class Motion:
@@ -35,7 +35,7 @@ class Motion:
 
     Args:
         spec: Robot, world, profile and seed.
-        sink: Gets one record a tick, beginning with tick 0.
+        sink: Receives one record per tick, starting with tick 0.
     """
 
     __slots__ = (
@@ -52,62 +52,62 @@ class Motion:
         self._mm_per_deg = mm_per_degree(spec.robot)
         self._spacing_mm = spec.robot.wheel_spacing_mm
         self._early = 0.5 if spec.profile.halfway_heading else 0.0
-        """Which part of a tick's turn counts already for the way of that tick."""
+        """Fraction of a tick's turn that already applies to the motion of that tick."""
         self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
         if self._solids is not None:
-            # A wheel at full speed forwards and the other backwards.
+            # One wheel at full speed forwards, the other backwards.
             fastest = max(top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors)
             farthest = fastest * self._tick_s * self._mm_per_deg
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
         self.drive = drive_of(spec)
-        """Where the robot is."""
+        """The robot's pose and how its wheels change it."""
         left, right = spec.robot.wheel_motors
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
         self.noise = spec.world.noise
         self.pen_down = spec.robot.pen.down
         self.line = 0
-        """Source line that lets the time pass, for the record."""
+        """Source line that spends the simulated time, for the record."""
         self.actions = 0
-        """User actions applied so far."""
+        """Number of user actions applied."""
         self.changed = False
         """Set when a motor ends a move by itself; the caller clears it."""
         self._left_dps = self._right_dps = 0.0
         self._buffer: Buffer = sink.room(ROOM_TICKS)
         self._room_end = ROOM_TICKS
-        """How many records the buffer has room for."""
+        """Number of records the buffer has space for."""
         TICK_RECORD.pack_into(self._buffer, 64, *self._fields())
         sink.publish(1)
 
     @property
     def x_mm(self) -> float:
-        """Where the robot is."""
+        """Position along x."""
         return self.drive.x_mm
 
     @property
     def y_mm(self) -> float:
-        """Where the robot is."""
+        """Position along y."""
         return self.drive.y_mm
 
     @property
     def heading_deg(self) -> float:
-        """Where the robot looks."""
+        """Heading, not wrapped."""
         return self.drive.heading_deg
 
     @property
     def gyro_zero_deg(self) -> float:
-        """Heading at which the gyro shows 0."""
+        """Heading at which the gyro reads 0."""
         return self.drive.gyro_zero_deg
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Do some ticks.
+        """Run ticks.
 
         Args:
-            ticks: How many.
-            until_change: Come back early when a motor ends a move.
+            ticks: Number of ticks.
+            until_change: Return early when a motor ends a move.
 
         Returns:
-            How many were done.
+            Number of ticks that were run.
         """
         if ticks == 1:
             self.tick_once()
@@ -126,7 +126,7 @@ class Motion:
         return done
 
     def _quiet_ticks(self, most: int) -> int:
-        """For how many ticks nothing but ramps and motion goes on, at most `most`."""
+        """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
         if self.noise.motor:
             return 0
         return min(
@@ -137,14 +137,14 @@ class Motion:
         )
 
     def tick_once(self) -> None:
-        """Do one tick in full: the rule that the loops below abbreviate."""
+        """Run one tick in full: the reference for the loops below."""
         count = self._sink.count
-        # Before anything moves: where there is no room for its record, there is no tick.
+        # Before anything moves: without space for its record there is no tick.
         buffer = self._buffer if count < self._room_end else self._make_room(1)
         self.tick = tick = self.tick + 1
         left, right, drive = self.left, self.right, self.drive
         before, aside_mm = None, None
-        if self._solids is not None and self._solids.left_of_room_mm(self._pose()) < self._longest_mm:
+        if self._solids is not None and self._solids.remaining_mm(self._pose()) < self._longest_mm:
             before = left.state(), right.state()
         left_noise, right_noise = self._noise_dps(tick) if self.noise.motor else (0.0, 0.0)
         left_mode, right_mode = left.mode, right.mode
@@ -171,7 +171,7 @@ class Motion:
         return left * self.noise.motor, right * self.noise.motor
 
     def _clear_ticks(self, most: int) -> int:
-        """For how many ticks, at most `most`, nothing solid can be met by a robot that is not told anything new."""
+        """Return for how many ticks, at most `most`, no collision is possible without a new command."""
         if self._solids is None:
             return most
         left, right = self.left, self.right
@@ -189,8 +189,8 @@ class Motion:
         if way == 0.0:
             return most
         pose = self._pose()
-        free = self._solids.free_way_mm(pose, way * min(most, LOOK_TICKS), straight)
-        # Where nothing stands in the way it is infinite.
+        free = self._solids.free_way_mm(pose, way * min(most, CHECK_TICKS), straight)
+        # Without any obstacle it is infinite.
         return most if free >= way * most else int(free / way)
 
     def _pose(self) -> tuple[float, float, float]:
@@ -200,10 +200,10 @@ class Motion:
     def _obstructed(
         self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
     ) -> tuple[float, float, tuple[float, float] | None]:
-        """Take back what something solid does not allow of a tick.
+        """Undo the part of a tick that an obstacle or wall blocks.
 
         Returns:
-            The degrees that are left, and how far the robot is pushed aside along x and y.
+            The remaining degrees of each wheel, and the displacement that pushes the robot aside along x and y.
         """
         left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
@@ -222,11 +222,11 @@ class Motion:
 
     @property
     def stall_ticks(self) -> int:
-        """A motor that has been kept from turning for so many ticks is stalled."""
+        """Number of blocked ticks after which a motor is stalled."""
         return STALL_MS * self._hz // 1000 + 1
 
     def _fields(self) -> tuple[float, ...]:
-        """The present tick's record."""
+        """Return the record of the current tick."""
         return (
             self.tick, self.line, *self._pose(),
             self.left.position_deg, self.right.position_deg, self._left_dps, self._right_dps,
@@ -241,14 +241,14 @@ class Motion:
         )
 
     def _make_room(self, ticks: int) -> Buffer:
-        """Return a buffer with room for so many more records, and often for some beyond."""
+        """Return a buffer with space for `ticks` more records, and usually for some beyond."""
         end = self._sink.count + ticks
         if end > self._room_end:
             self._buffer, self._room_end = self._sink.room(ticks + ROOM_TICKS), end + ROOM_TICKS
         return self._buffer
 
     def _glide(self, ticks: int) -> None:
-        """Do ticks in which only the ramps and the motion go on."""
+        """Run ticks in which only ramps and motion happen."""
         while ticks:
             ramping = min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
             part = ramping or ticks
@@ -257,7 +257,7 @@ class Motion:
                     self.tick_once()
                 ticks -= part
                 continue
-            # Before anything moves: where there is no room for the records, there are no ticks.
+            # Before anything moves: without space for the records there are no ticks.
             buffer = self._make_room(part)
             sink, hz = self._sink, self._hz
             at, flags, actions = 64 + 64 * sink.count, self._flags(), self.actions & 0xFFFF

@@ -1,4 +1,4 @@
-"""The motor law of a profile, as objects: which motors a robot has, and how they drive it."""
+"""Implementation of a profile's motor law: the classes of motors and drive."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from tuisim.core.profile import MotorLaw
 from tuisim.core.spec import RunSpec
 
 WEIGHT_DPS2 = 5000.0
-"""Change of speed in a second, times the robot's weight."""
+"""Change of speed per second, times the robot's weight."""
 
 
 def weight_step(spec: RunSpec) -> float:
-    """Return by how much a motor's speed can change in a tick, in degrees per second; 0 is at once."""
+    """Return the largest change of a motor's speed in one tick, in degrees per second; 0 is unlimited."""
     return WEIGHT_DPS2 / spec.robot.weight / spec.profile.tick_hz if spec.robot.weight else 0.0
 
 
 def motor_of(spec: RunSpec, kind: str) -> Motor:
-    """Return a motor of a run that has not been told anything yet.
+    """Return a motor in its initial state.
 
     Args:
         spec: Robot, world and profile.
@@ -38,7 +38,7 @@ def motor_of(spec: RunSpec, kind: str) -> Motor:
 
 
 def drive_of(spec: RunSpec) -> Drive:
-    """Return the drive of a run's robot, at its start."""
+    """Return the drive of a run's robot, at its initial pose."""
     robot, start, early = spec.robot, spec.world.start, 0.5 if spec.profile.halfway_heading else 0.0
     match spec.profile.motor_law:
         case MotorLaw.BRICK:

@@ -1,7 +1,7 @@
-"""What a motor is to the rest of the simulation, whatever law it follows.
+"""The interface of a motor to the rest of the simulation, for any motor law.
 
-A motor is changed in place, tick by tick: this is the hottest data of the simulation.
-Angles in degrees of the wheel (one encoder count is one degree), speeds in degrees per
+Motors are mutable and updated every tick: this is the hottest data of the simulation.
+Angles are in degrees of the wheel (one encoder count is one degree), speeds in degrees per
 second.
 """
 
@@ -14,7 +14,7 @@ from tuisim.core.drive import EvenGlide, Glide
 from tuisim.core.profile import ProfileSpec
 
 STOPPED, FOREVER, TIMED, POSITION = range(4)
-"""What a motor is doing."""
+"""Values of `Motor.mode`."""
 
 ENDLESS = 1 << 60
 """More ticks than any run has."""
@@ -22,18 +22,18 @@ ENDLESS = 1 << 60
 MEDIUM_MAX_SPEED_DPS = 1560.0
 """Medium motor, no load (EV3 motor driver table)."""
 
-STANDS_STILL_DEG = 1e-3
-"""A wheel that turns less in a tick stands still."""
+STANDSTILL_DEG = 1e-3
+"""A wheel that turns less than this in a tick does not turn."""
 
 
 def top_speed_dps(kind: str, profile: ProfileSpec) -> float:
-    """Return how fast a motor of a kind turns without a load."""
+    """Return the speed of a kind of motor without load."""
     return MEDIUM_MAX_SPEED_DPS if kind == "medium" else profile.max_speed_dps
 
 
 @dataclass(frozen=True, slots=True)
 class MotorState:
-    """A motor before a tick."""
+    """State of a motor before a tick."""
 
     mode: int
     sign: float
@@ -42,81 +42,81 @@ class MotorState:
 
 
 class Motor(Protocol):
-    """One motor with its encoder. How it obeys and moves is the law of its class."""
+    """One motor with its encoder. Its class implements the motor law."""
 
     mode: int
-    """What it is doing: anything but `STOPPED` counts as running."""
+    """The current command; anything but `STOPPED` counts as running."""
     position_deg: float
-    """What the encoder shows."""
+    """Encoder position."""
     speed_dps: float
-    """Speed the motor has reached; some laws keep it while the motor stands."""
+    """Current speed; some laws keep it while the motor is stopped."""
     goal_deg: float
-    """Where a move to a position ends."""
+    """Target of a move to a position."""
     end_tick: float
-    """When a timed move ends."""
+    """End of a timed move."""
     blocked_ticks: int
-    """For how many ticks something solid has kept the wheel from turning."""
+    """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
 
     @property
     def moving_dps(self) -> float:
-        """The speed at which the wheel turns, with its sign."""
+        """Current speed of the wheel, signed."""
 
     @property
     def counting_dps(self) -> float:
-        """How fast the encoder counts."""
+        """Current speed of the encoder."""
 
     @property
     def aim_dps(self) -> float:
-        """The speed at which the wheel is to turn, with its sign."""
+        """Target speed of the wheel, signed."""
 
     @property
     def resting(self) -> bool:
-        """Whether no tick changes anything of it until it is told something."""
+        """Whether ticks leave this motor unchanged until its next command."""
 
     @property
     def ramping_ticks(self) -> int:
-        """About how many ticks until its speed is steady; 0 only if it is."""
+        """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
 
     def run(self, speed_dps: float) -> None:
-        """Run until told otherwise."""
+        """Run until the next command."""
 
     def run_until(self, speed_dps: float, end_tick: int) -> None:
         """Run until a tick."""
 
     def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run to an encoder position at a speed given without sign."""
+        """Run to an encoder position; the speed has no sign."""
 
     def stop(self) -> None:
-        """Stand still."""
+        """Stop."""
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Do one tick, whatever it brings.
+        """Run one tick of any kind.
 
         Args:
-            tick: The tick that is being done.
-            noise_dps: Added to the speed; 0 for none.
+            tick: The current tick.
+            noise_dps: Added to the speed; 0 for no noise.
 
         Returns:
-            Degrees by which the wheel rolls.
+            Rotation of the wheel, in degrees.
         """
 
     def quiet_ticks(self, tick: int) -> int:
-        """Return for how many ticks nothing but the ramp can change this motor; `tick` of them are done."""
+        """Return for how many ticks after `tick` only the ramp changes this motor."""
 
     def glide(self, ticks: int) -> Glide:
-        """Do quiet ticks."""
+        """Run quiet ticks."""
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
-        """Do quiet ticks of a motor that is not ramping; the caller sets what its encoder shows in the end."""
+        """Run quiet ticks of a motor at a steady speed; the caller sets the final encoder position."""
 
     def state(self) -> MotorState:
-        """Return what `hold_back` needs to undo a tick."""
+        """Return the state that `hold_back` needs to undo a tick."""
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which something solid stopped the wheel.
+        """Undo the rest of a tick in which an obstacle stopped the wheel.
 
         Args:
-            before: The state before the tick.
-            turned_deg: What the tick turned the wheel.
-            part: The part of it that was possible, below 1.
+            before: State before the tick.
+            turned_deg: Rotation of the wheel in the tick.
+            part: Fraction of it that was possible, below 1.
         """

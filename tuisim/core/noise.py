@@ -1,4 +1,4 @@
-"""Noise that depends on seed, tick and sensor only: a value read twice or late is the same.
+"""Noise that depends only on seed, tick and sensor: reading a value twice or late does not change it.
 
 The stream is SHAKE-128, the same on every machine and Python version.
 """
@@ -11,8 +11,8 @@ _BLOCK_TICKS = 256
 
 
 def stream(seed: int, tick: int, channel: str, size: int) -> bytes:
-    """Return `size` random bytes that belong to one seed, tick and channel."""
-    # Imported when there is noise: a program without it starts sooner.
+    """Return `size` random bytes for one seed, tick and channel."""
+    # Imported on first use: a program without noise starts faster.
     from hashlib import shake_128
 
     return shake_128(f"{seed}/{tick}/{channel}".encode()).digest(size)

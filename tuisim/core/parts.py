@@ -1,6 +1,6 @@
-"""Parts that a robot or a world may have besides the usual ones: further motors, touch, infrared, a remote control.
+"""Optional parts of a robot or a world: extra motors, touch, infrared, remote control.
 
-Lengths in mm in the robot's own frame (x right, y forward) unless said otherwise, times in
+Lengths are in mm in the robot's own frame (x right, y forward) unless stated otherwise, times in
 simulated seconds.
 """
 
@@ -12,13 +12,13 @@ from tuisim.core.checks import require, require_one_of
 from tuisim.errors import ObstacleError
 
 MOTOR_KINDS = ("large", "medium")
-"""Kinds of motors, for `MotorSpec.kind` and the motors of the wheels."""
+"""Kinds of motors, for `MotorSpec.kind` and the wheel motors."""
 
 REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
-"""Buttons of the remote control, as ev3dev2 names them."""
+"""Buttons of the remote control, by their names in ev3dev2."""
 
 REMOTE_CHANNELS = (1, 2, 3, 4)
-"""Channels that a remote control or beacon can be set to."""
+"""Channels of a remote control or beacon."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class MotorSpec:
 
 @dataclass(frozen=True, slots=True)
 class TouchSpec:
-    """A touch sensor: pressed while its bumper meets something solid."""
+    """A touch sensor: pressed while its bumper touches an obstacle or a wall."""
 
     name: str = "touch"
     port: str = "in1"
@@ -52,14 +52,14 @@ class TouchSpec:
 
 @dataclass(frozen=True, slots=True)
 class InfraredSpec:
-    """The infrared sensor: proximity, the way to a beacon, buttons of a remote control."""
+    """The infrared sensor: proximity, direction and distance of a beacon, buttons of a remote control."""
 
     name: str = "infrared"
     port: str = "in4"
     x_mm: float = 0.0
     y_mm: float = 20.0
     angle_deg: float = 0.0
-    """Where it looks, counter-clockwise from straight ahead."""
+    """Direction, counter-clockwise from straight ahead."""
 
     def __post_init__(self) -> None:
         require(self.x_mm, -500, 500, f"{self.name}.x_mm")
@@ -69,7 +69,7 @@ class InfraredSpec:
 
 @dataclass(frozen=True, slots=True)
 class BeaconSpec:
-    """An infrared beacon that lies on the field, in world coordinates."""
+    """An infrared beacon on the field, in world coordinates."""
 
     x_mm: float
     y_mm: float
@@ -83,10 +83,10 @@ class BeaconSpec:
 
 @dataclass(frozen=True, slots=True)
 class RemotePress:
-    """Somebody holds buttons of the remote control for a while."""
+    """Buttons of the remote control that are pressed for some time."""
 
     buttons: tuple[str, ...]
-    """One or two of `REMOTE_BUTTONS`; `beacon` only alone, as the sensor can tell no others apart."""
+    """One or two of `REMOTE_BUTTONS`; `beacon` only alone, since the sensor cannot distinguish other combinations."""
     from_s: float = 0.0
     until_s: float = 1e9
     channel: int = 1
@@ -123,4 +123,4 @@ REMOTE_CODES = {
     )
     if buttons
 }
-"""What the sensor gives for each set of buttons; 0 is none."""
+"""Value of the sensor for each set of buttons; 0 is none."""

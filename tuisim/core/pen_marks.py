@@ -14,17 +14,17 @@ from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.core.weights import disc_weights
 
 _BLOCK_PX = 32
-"""Side of the squares in which it is noted whether anything is drawn at all."""
+"""Side of the square blocks for which it is tracked whether they contain any mark."""
 
 Marks = dict[tuple[int, int], tuple[int, int, int]]
-"""By image column and row, the colour drawn there."""
+"""Colour of each drawn pixel, by image column and row."""
 
 
 @dataclass(frozen=True, slots=True)
 class MarkedField(Field):
-    """A mat with marks on it; reads like any other.
+    """A mat with marks on it; it is read like any other.
 
-    `marks` and `blocks` are filled by `PenMarks`, which is the only one to change them.
+    `marks` and `blocks` are filled by `PenMarks`; nothing else changes them.
     """
 
     marks: Marks
@@ -36,8 +36,8 @@ class MarkedField(Field):
         return any((block_col, block_row) in self.blocks for block_row in rows for block_col in cols)
 
     def disc_sums(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
-        """As `Field.disc_sums`, marks included."""
-        # Field.disc_sums by name: a slotted dataclass is made anew, which `super()` without arguments cannot follow.
+        """As `Field.disc_sums`, including marks."""
+        # Field.disc_sums by name: `slots=True` makes a new class, which `super()` without arguments does not find.
         red, green, blue = Field.disc_sums(self, diameter, col, row)
         if not self._touched(diameter, col, row):
             return red, green, blue
@@ -52,7 +52,7 @@ class MarkedField(Field):
         return red, green, blue
 
     def box(self, diameter: int, col: int, row: int) -> bytes:
-        """As `Field.box`, marks included."""
+        """As `Field.box`, including marks."""
         pixels = Field.box(self, diameter, col, row)
         if not self._touched(diameter, col, row):
             return pixels
@@ -75,31 +75,31 @@ class _PenPoint:
 
 
 class PenMarks:
-    """Draws what the pen drew, tick record by tick record.
+    """Draws the pen's trace, tick record by tick record.
 
     Args:
         field: The mat.
-        spec: The run; its robot's pen counts.
+        spec: The run; its robot's pen is used.
     """
 
     def __init__(self, field: Field, spec: RunSpec) -> None:
         self._pen = spec.robot.pen
         self._rgb = css_rgb(self._pen.color) or (0, 0, 0)
         self.field = MarkedField(field.width_px, field.height_px, field.pixels, field.sums, {}, set())
-        """The mat with what has been drawn so far."""
+        """The mat with everything drawn up to now."""
         self.records = 0
-        """How many tick records have been taken in."""
+        """Number of tick records processed."""
         self._last: _PenPoint | None = None
 
     def field_of_first(self, count: int) -> MarkedField:
-        """Return the mat with the first `count` marks only, as it was when there were no more."""
+        """Return the mat with only the first `count` marks, as it was at that time."""
         field = self.field
         marks = dict(islice(field.marks.items(), count))
         blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
         return MarkedField(field.width_px, field.height_px, field.pixels, field.sums, marks, blocks)
 
     def take_in(self, records: Iterable[tuple[float, ...]]) -> None:
-        """Draw on.
+        """Continue the trace.
 
         Args:
             records: The next tick records, with the fields of `state.TICK_RECORD`.
@@ -111,7 +111,7 @@ class PenMarks:
                 continue
             pen_x, pen_y = world_point(Pose(x_mm, y_mm, heading_deg), self._pen.x_mm, self._pen.y_mm)
             point = _PenPoint(int(tick), pen_x, pen_y, int(actions))
-            # A robot that was lifted to another place draws no line on its way.
+            # A robot that was moved by hand draws no line.
             last = self._last if self._last is not None and self._last.actions == point.actions else point
             if last is point or (last.x_mm, last.y_mm) != (pen_x, pen_y):
                 self._stroke(last, point)
@@ -125,7 +125,7 @@ class PenMarks:
         field = self.field
         for row in range(max(0, int(min(y0, y1) - radius)), min(field.height_px, int(max(y0, y1) + radius) + 1)):
             for col in range(max(0, int(min(x0, x1) - radius)), min(field.width_px, int(max(x0, x1) + radius) + 1)):
-                # A pixel is drawn when its middle is no further from the line than half the pen's width.
+                # A pixel is drawn if its centre is no farther from the line than half the pen's width.
                 px, py = col + 0.5 - x0, row + 0.5 - y0
                 along = max(0.0, min(1.0, (px * dx + py * dy) / squared)) if squared else 0.0
                 if (px - along * dx) ** 2 + (py - along * dy) ** 2 <= radius * radius:

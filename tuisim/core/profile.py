@@ -1,7 +1,7 @@
-"""Profiles: how much each call costs and how a motor behaves, as frozen data.
+"""Profiles: the cost of each call and the behaviour of motors, as frozen data.
 
-`robolab` is the course as its text says; `nbev3devsim` gives the figures of the old
-simulator. A profile is only data: the code that reads it never asks for its name.
+`robolab` follows the text of the course; `nbev3devsim` gives the results of the old
+simulator. A profile is only data: the code that reads it never checks its name.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ MS = 1_000_000
 
 
 class MotorLaw(StrEnum):
-    """How motors obey commands and move, and how the library drives them; `laws` holds what each one is."""
+    """How motors obey commands and move, and how the library drives them; see `motor_laws`."""
 
     BRICK = "brick"
-    """Moves end exactly where and when they were to end, as on the real brick."""
+    """Moves end exactly at their goal or time, as on the real brick."""
     NBEV3DEVSIM = "nbev3devsim"
     """As in the browser simulator of that name, to the last bit."""
 
 
 @dataclass(frozen=True, slots=True)
 class ProfileSpec:
-    """The rules of one kind of brick. Costs are simulated nanoseconds a call."""
+    """The rules of one kind of brick. Costs are simulated nanoseconds per call."""
 
     name: str
     title: str
     tick_hz: int
-    """Ticks a second: tick k falls due at ceil(k * 10^9 / tick_hz) ns."""
+    """Ticks per second: tick k is due at ceil(k * 10^9 / tick_hz) ns."""
 
     color_read_ns: int = 10 * MS
     color_code_read_ns: int = 20 * MS
@@ -42,26 +42,26 @@ class ProfileSpec:
     """Any other device attribute."""
     clock_read_ns: int = 20_000
     display_update_ns: int = 10 * MS
-    """`Display.update()`: it turns 22 784 pixels into 91 KB."""
+    """`Display.update()`: it converts 22 784 pixels into 91 KB."""
 
     motor_law: MotorLaw = MotorLaw.BRICK
     """How motors obey commands and move."""
     max_speed_dps: float = 1050.0
     """Large motor, no load (EV3 motor driver table)."""
     reflected_max: int = 255
-    """What `reflected_light_intensity` gives on white."""
+    """Value of `reflected_light_intensity` on white."""
     ambient_percent: int = 0
-    """What `ambient_light_intensity` gives on white: the light that a sensor close to the mat still gets."""
+    """Value of `ambient_light_intensity` on white: the light that reaches a sensor close to the mat."""
     halfway_heading: bool = False
-    """A tick moves the robot along the heading it has halfway through its turn, not along that before it."""
+    """Whether a tick moves the robot along its heading halfway through the tick's turn, not at its start."""
     ultrasonic_period_ticks: int = 1
-    """The ultrasonic sensor measures every so many ticks."""
+    """The ultrasonic sensor measures once in this number of ticks."""
     solid: bool = False
-    """Obstacles and walls stop the robot, unless the world says otherwise."""
+    """Whether obstacles and walls stop the robot, unless the world overrides it."""
     mend_library: bool = True
-    """What the library does wrong and course programs need is put right."""
+    """Whether defects of the library that affect course programs are fixed."""
     starts_in_own_folder: bool = False
-    """A program starts in the folder that it is in, not where the user is."""
+    """Whether a program starts in its own folder, not in the user's working directory."""
 
 
 ROBOLAB = ProfileSpec(
@@ -97,7 +97,7 @@ EV3 = ProfileSpec(
 )
 
 PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3)}
-"""Every profile by name."""
+"""All profiles, by name."""
 
 _EARLIER_BRICK: Mapping[str, Mapping[str, bool | int]] = {
     "halfway_heading": {
@@ -108,17 +108,17 @@ _EARLIER_BRICK: Mapping[str, Mapping[str, bool | int]] = {
     "ultrasonic_period_ticks": {"forward_noise_only": False},
     "mend_library": {"plain_state": False},
 }  # fmt: skip
-"""By the key that followed them, what profiles said of a brick's motors before there was `motor_law`."""
+"""Defaults of a brick's motors in profiles stored before `motor_law` existed, by the key that followed them."""
 
 EARLIER_KEYS = frozenset(key for keys in _EARLIER_BRICK.values() for key in keys)
-"""Keys of profiles whose place `motor_law` took."""
+"""Keys of stored profiles that `motor_law` has replaced."""
 
 
 def profile_to_plain(profile: ProfileSpec) -> dict[str, Any]:
-    """Return a profile as JSON has it; one of a brick as it was ever written, so that its exports stay the same."""
+    """Return a profile as JSON data. The form for a brick never changes, so that its exports stay the same."""
     plain = asdict(profile)
     if not profile.starts_in_own_folder:
-        # As of runs before there was a choice.
+        # Runs from before this option have no such key.
         del plain["starts_in_own_folder"]
     if profile.motor_law != MotorLaw.BRICK:
         return plain
@@ -127,16 +127,16 @@ def profile_to_plain(profile: ProfileSpec) -> dict[str, Any]:
 
 
 def law_of_earlier(keys: Mapping[str, Any]) -> MotorLaw | None:
-    """Return the motor law that a profile of before had, from the key that shows it; None if it says nothing of it."""
+    """Return the motor law of a profile stored before `motor_law` existed; None if its keys do not show it."""
     halved = keys.get("halve_position_moves")
     return None if halved is None else MotorLaw.NBEV3DEVSIM if halved else MotorLaw.BRICK
 
 
 def profile_from_plain(data: Mapping[str, Any]) -> ProfileSpec:
-    """Return the profile that a stored run or log describes.
+    """Return the profile in a stored run or log.
 
     Raises:
-        TypeError, ValueError: there is a key too many or too few, or no such motor law.
+        TypeError, ValueError: keys are missing or unknown, or the motor law is unknown.
     """
     known = {key: value for key, value in data.items() if key not in EARLIER_KEYS}
     known["motor_law"] = MotorLaw(data["motor_law"]) if "motor_law" in data else law_of_earlier(data) or MotorLaw.BRICK

@@ -1,4 +1,4 @@
-"""The simulation of one run: the world at this moment, and the changes that come from outside."""
+"""The simulation of one run: the current state of the world, and changes from outside."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ class Simulation(Motion):
 
     Args:
         spec: Robot, world, profile and seed.
-        sink: Gets one record a tick, beginning with tick 0.
+        sink: Receives one record per tick, starting with tick 0.
     """
 
     __slots__ = ()
 
     others: tuple[Motor, ...] = ()
-    """Motors that do not drive the robot, in the order of `RobotSpec.extra_motors`."""
+    """Motors that do not drive a wheel, in the order of `RobotSpec.extra_motors`."""
 
     # Reading
 
     def due_ns(self, tick: int) -> int:
-        """Return when a tick falls due, in ns from the start: ceil(tick · 10⁹ / f)."""
+        """Return when a tick is due, in ns from the start: ceil(tick · 10⁹ / f)."""
         return -(-tick * NS_PER_S // self._hz)
 
     def ticks_at(self, time_ns: int) -> int:
-        """Return how many ticks have fallen due at a time."""
+        """Return the number of ticks that are due at a time."""
         return time_ns * self._hz // NS_PER_S
 
     @property
     def pose(self) -> Pose:
-        """Where the robot is."""
+        """The robot's pose."""
         drive = self.drive
         return Pose(drive.x_mm, drive.y_mm, drive.heading_deg)
 
     def instant(self) -> Instant:
-        """Return the present moment, with values rounded as the telemetry stores them."""
+        """Return the current instant, with values rounded as the telemetry stores them."""
         left, right = float32(self._left_dps), float32(self._right_dps)
         return Instant(
             tick=self.tick,
@@ -65,21 +65,21 @@ class Simulation(Motion):
     # Changing
 
     def place(self, pose: Pose) -> None:
-        """Put the robot somewhere; the gyro keeps the angle it shows."""
+        """Set the robot's pose; the gyro keeps its angle."""
         drive, before_deg = self.drive, self.heading_deg
         drive.put(pose)
         drive.gyro_zero_deg = float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
 
     def reset_gyro(self) -> None:
-        """Let the gyro show 0 here."""
+        """Make the current heading the gyro's 0."""
         self.drive.gyro_zero_deg = float32(self.heading_deg)
 
     def end_tick_after(self, now_ns: int, duration_ns: int) -> int:
-        """Return the tick in which a timed move that starts now comes to its end."""
+        """Return the tick in which a timed move that starts now ends."""
         return self.ticks_at(now_ns + duration_ns)
 
     def rewrite_record(self) -> None:
-        """Write the present tick's record again, after a change from outside."""
-        # In one piece: readers look at this record already.
+        """Write the current tick's record again, after a change from outside."""
+        # In one write: readers see this record already.
         at = 64 * self._sink.count
         self._buffer[at : at + 64] = TICK_RECORD.pack(*self._fields())

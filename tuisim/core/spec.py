@@ -1,7 +1,7 @@
-"""What a run is made of: robot, world, noise and profile as frozen data.
+"""The specification of a run: robot, world, noise and profile as frozen data.
 
-Lengths in mm, angles in degrees, x to the right of the robot and y forward of the
-midpoint between its wheels. Defaults are those of the seed course's Default_Robot.
+Lengths are in mm, angles in degrees, x to the right of the robot and y forward of the
+midpoint between its wheels. Defaults are those of the original course's Default_Robot.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ FIELD_HEIGHT_MM = 1143
 """Height of the field."""
 
 MAX_OBSTACLE_MM = 10_000.0
-"""Farthest coordinate and largest size of an obstacle."""
+"""Largest absolute coordinate and size of an obstacle."""
 
 MAX_RAYS = 100
-"""Rays of an ultrasonic sensor."""
+"""Maximum number of rays of an ultrasonic sensor."""
 
 MAX_LIGHT_NOISE = 128
 MAX_MOTOR_NOISE = 500
@@ -35,20 +35,20 @@ OUTPUT_PORTS = ("outA", "outB", "outC", "outD")
 INPUT_PORTS = ("in1", "in2", "in3", "in4")
 
 ROBOT_WEIGHTS: Mapping[str, float] = {"weightless": 0.0, "light": 3.0, "medium": 6.0, "heavy": 9.0}
-"""Names for `RobotSpec.weight`: a motor gains 5000 / weight degrees per second each second."""
+"""Names for `RobotSpec.weight`: a motor accelerates by 5000 / weight degrees per second each second."""
 
 
 STRATEGIES = ("mean", "gaussian", "centre")
-"""How a colour sensor weighs the pixels of its disc: all alike, by a bell curve, or the middle threefold."""
+"""How a colour sensor weights the pixels of its disc: equally, by a bell curve, or the centre threefold."""
 
 BACKGROUND_FITS = ("stretch", "fit", "centre", "corner")
-"""How an own image becomes a mat: filling the field, as large as fits, or pixel for pixel in the middle or
-from the upper left corner."""
+"""How the user's image becomes a mat: stretched over the field, as large as fits, or pixel for pixel in the
+centre or from the upper left corner."""
 
 
 @dataclass(frozen=True, slots=True)
 class ColorSensorSpec:
-    """One downward colour sensor: the mean of a disc of mat pixels."""
+    """A downward colour sensor: the mean of a disc of mat pixels."""
 
     name: str
     """Prefix of its telemetry columns, such as `left`."""
@@ -57,7 +57,7 @@ class ColorSensorSpec:
     y_mm: float
     diameter_mm: int = 20
     strategy: str = "mean"
-    """How the pixels of the disc count, one of `STRATEGIES`."""
+    """How the pixels of the disc are weighted, one of `STRATEGIES`."""
 
     def __post_init__(self) -> None:
         require(self.x_mm, -500, 500, f"{self.name}.x_mm")
@@ -70,7 +70,7 @@ class ColorSensorSpec:
 
 @dataclass(frozen=True, slots=True)
 class UltrasonicSpec:
-    """The forward distance sensor: a fan of rays, the nearest echo counts."""
+    """The forward distance sensor: the nearest echo of a fan of rays."""
 
     name: str = "ultrasonic"
     port: str = "in1"
@@ -78,7 +78,7 @@ class UltrasonicSpec:
     y_mm: float = 20.0
     angle_deg: float = 0.0
     max_range_mm: float = 2550.0
-    """Reported when no echo returns (EV3 sensor data sheet)."""
+    """Reading when no echo returns (EV3 sensor data sheet)."""
     ray_angles_deg: tuple[float, ...] = (-21.0, -14.0, -7.0, 0.0, 7.0, 14.0, 21.0)
     noise_mm: float = 0.0
     """Uniform ±noise_mm on every distance."""
@@ -100,7 +100,7 @@ class UltrasonicSpec:
 
 @dataclass(frozen=True, slots=True)
 class GyroSpec:
-    """The gyro: clockwise turn since the last reset, and the rate of turn."""
+    """The gyro: clockwise angle since the last reset, and rate of turn."""
 
     name: str = "gyro"
     port: str = "in4"
@@ -123,22 +123,22 @@ class SensorSpec(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Mount:
-    """Where a robot keeps sensors of one class."""
+    """Where `RobotSpec` stores sensors of one class."""
 
     field: str
     """The field of `RobotSpec`."""
     spec: type
-    """Class of the sensors; all its fields have defaults, but those of colour sensors."""
+    """Class of the sensors; all fields have defaults, except for colour sensors."""
     many: bool
-    """Whether the field holds a tuple; otherwise one sensor, or None."""
+    """Whether the field is a tuple; otherwise it is one sensor or None."""
     usual: bool = False
-    """Whether panels and files have a place of its own for it; the others are shown and written alike."""
+    """Whether panels and files have a dedicated place for it; all others are handled generically."""
     written: str = ""
-    """How it is called in a robot's file, if not as the field."""
+    """Key in a robot file, if it differs from the field."""
 
     @property
     def key(self) -> str:
-        """How it is called in a robot's file."""
+        """The key in a robot file."""
         return self.written or self.field
 
 
@@ -151,7 +151,7 @@ MOUNTS = (
     Mount("infrared", InfraredSpec, many=False),
     Mount("extra_infrareds", InfraredSpec, many=True, written="infrareds"),
 )
-"""Every place for sensors, in the order of the telemetry columns."""
+"""All fields for sensors, in the order of the telemetry columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,9 +180,9 @@ class RobotSpec:
     wheel_spacing_mm: float = 180.0
     wheel_width_mm: float = 20.0
     back_mm: float = -120.0
-    """How far the body reaches behind the axle, as a negative y."""
+    """How far the body extends behind the axle, as a negative y."""
     weight: float = ROBOT_WEIGHTS["medium"]
-    """0 changes speed at once; otherwise 5000 / weight degrees per second each second."""
+    """0 changes speed at once; otherwise the acceleration is 5000 / weight degrees per second each second."""
     left_port: str = "outB"
     right_port: str = "outC"
     color_sensors: tuple[ColorSensorSpec, ...] = (
@@ -193,37 +193,37 @@ class RobotSpec:
     gyro: GyroSpec | None = field(default_factory=GyroSpec)
     pen: PenSpec = field(default_factory=PenSpec)
     extra_motors: tuple[MotorSpec, ...] = ()
-    """Motors that do not drive the robot."""
+    """Motors that do not drive a wheel."""
     extra_ultrasonics: tuple[UltrasonicSpec, ...] = ()
     touch_sensors: tuple[TouchSpec, ...] = ()
     infrared: InfraredSpec | None = None
     extra_infrareds: tuple[InfraredSpec, ...] = ()
     left_motor: str = "large"
-    """Kind of the motor that drives the left wheel, one of `MOTOR_KINDS`."""
+    """Kind of the motor of the left wheel, one of `MOTOR_KINDS`."""
     right_motor: str = "large"
 
     @property
     def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
-        """The motors that drive the left and the right wheel."""
+        """The motors of the left and the right wheel."""
         return MotorSpec(self.left_port, self.left_motor), MotorSpec(self.right_port, self.right_motor)
 
     @property
     def motors(self) -> tuple[MotorSpec, ...]:
-        """Every motor, those of the wheels first."""
+        """All motors, wheel motors first."""
         return *self.wheel_motors, *self.extra_motors
 
     @property
     def sensors(self) -> tuple[SensorSpec, ...]:
-        """Every sensor that is mounted, in the order of the telemetry columns."""
+        """All mounted sensors, in the order of the telemetry columns."""
         return tuple(sensor for mount in MOUNTS for sensor in self.sensors_in(mount))
 
     @property
     def further_sensors(self) -> tuple[SensorSpec, ...]:
-        """Sensors that only some robots have, in the same order."""
+        """Sensors that are not standard equipment, in the same order."""
         return tuple(sensor for mount in MOUNTS if not mount.usual for sensor in self.sensors_in(mount))
 
     def sensors_in(self, mount: Mount) -> tuple[SensorSpec, ...]:
-        """Return the sensors in one place."""
+        """Return the sensors of one mount."""
         found = getattr(self, mount.field)
         if mount.many:
             return tuple(found)
@@ -282,10 +282,10 @@ class Obstacle:
 
 @dataclass(frozen=True, slots=True)
 class NoiseSpec:
-    """How far readings and wheel speeds are disturbed."""
+    """Amplitude of the noise on readings and wheel speeds."""
 
     light: int = 0
-    """0 … 128: uniform ±light on every pixel and channel a colour sensor sees."""
+    """0 … 128: uniform ±light on every pixel and channel that a colour sensor sees."""
     motor: int = 0
     """0 … 500: uniform ±motor degrees per second on the wheel speed, every tick."""
 
@@ -298,16 +298,16 @@ class NoiseSpec:
 
 @dataclass(frozen=True, slots=True)
 class WorldSpec:
-    """Everything the robot meets."""
+    """The robot's environment."""
 
     background: str = "Empty_Map"
     obstacles: tuple[Obstacle, ...] = ()
     walls: bool = True
-    """Whether the field has walls on its four edges: they echo, and stop the robot where things are solid."""
+    """Whether the field has walls on its four edges: they echo, and stop the robot if `solid`."""
     solid: bool = False
     """Whether obstacles and walls stop the robot."""
     background_fit: str = "stretch"
-    """For an own image, one of `BACKGROUND_FITS`."""
+    """One of `BACKGROUND_FITS`, for the user's image."""
     pen_marks: bool = False
     """Whether the pen marks the mat that the sensors see."""
     start: Pose = Pose(100.0, 800.0, 0.0)
@@ -315,12 +315,12 @@ class WorldSpec:
     beacon: BeaconSpec | None = None
     """An infrared beacon."""
     remote: tuple[RemotePress, ...] = ()
-    """What is pressed on the infrared remote control, and when."""
+    """Presses of buttons on the infrared remote control."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunSpec:
-    """All that decides a run besides the program: the same spec gives the same log."""
+    """Everything that determines a run besides the program: the same spec gives the same log."""
 
     robot: RobotSpec
     world: WorldSpec
@@ -328,14 +328,14 @@ class RunSpec:
     seed: int = 0
 
 
-_SAID_IF_UNUSUAL: Mapping[str, Any] = {"extra_infrareds": (), "left_motor": "large", "right_motor": "large"}
-"""Fields of a robot that are left out where they have these values, so that its exports are those of any version."""
+_OMITTED_DEFAULTS: Mapping[str, Any] = {"extra_infrareds": (), "left_motor": "large", "right_motor": "large"}
+"""Fields of a robot that are omitted when they have these values, so that exports do not depend on the version."""
 
 
 def to_plain(spec: RunSpec) -> dict[str, Any]:
-    """Return `spec` as dictionaries, lists, strings and numbers, ready for JSON."""
+    """Return `spec` as JSON-compatible data."""
     plain = asdict(spec)
-    for key, usual in _SAID_IF_UNUSUAL.items():
+    for key, usual in _OMITTED_DEFAULTS.items():
         if plain["robot"][key] == usual:
             del plain["robot"][key]
     plain["profile"] = profile_to_plain(spec.profile)
@@ -343,15 +343,15 @@ def to_plain(spec: RunSpec) -> dict[str, Any]:
 
 
 def from_plain(data: Mapping[str, Any]) -> RunSpec:
-    """Rebuild what `to_plain` wrote.
+    """Rebuild a spec from the output of `to_plain`.
 
     Raises:
-        KeyError, TypeError: `data` was not written by `to_plain`.
-        RobotError, ObstacleError: a value in it is impossible.
+        KeyError, TypeError: `data` is not the output of `to_plain`.
+        RobotError, ObstacleError: a value is invalid.
     """
     robot, world = dict(data["robot"]), dict(data["world"])
     for mount in MOUNTS:
-        # A run of a robot that could not have such sensors yet says nothing of them.
+        # Runs stored before such sensors existed have no such key.
         plain = robot[mount.field] if mount.usual else robot.get(mount.field)
         if mount.many:
             robot[mount.field] = tuple(_sensor(mount.spec, sensor) for sensor in plain or ())

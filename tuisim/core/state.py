@@ -1,4 +1,4 @@
-"""The state of the world at one tick, and where the simulation puts its tick records."""
+"""The state of the world at one tick, and the interface that receives tick records."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TICK_RECORD = Struct("<IIdddddfffHH")
 """tick, line, x_mm, y_mm, heading_deg, left_position_deg, right_position_deg,
 left_speed_dps, right_speed_dps, gyro_zero_deg, flags, actions.
 
-`line` is the program's own line that let the time pass (0: none). `gyro_deg` is
+`line` is the program's own line that spent the time (0: none). `gyro_deg` is
 gyro_zero_deg - heading_deg. `actions` counts the user actions applied before this tick."""
 
 FLAG_LEFT_RUNNING = 1
@@ -24,7 +24,7 @@ FLAG_PEN_DOWN = 4
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """One moment of a run; the same record the telemetry stores for each tick."""
+    """One moment of a run: the values that the telemetry stores for a tick."""
 
     tick: int
     pose: Pose
@@ -35,22 +35,22 @@ class Instant:
     turn_rate_dps: float = 0.0
     """Counter-clockwise, over the last tick."""
     gyro_zero_deg: float = 0.0
-    """Heading at which the gyro shows 0."""
+    """Heading at which the gyro reads 0."""
     noise: NoiseSpec = NoiseSpec()
     seed: int = 0
 
 
 Buffer: TypeAlias = mmap | bytearray
-"""Bytes that can be set: of a mapped file, or in memory."""
+"""A mutable buffer: a mapped file, or memory."""
 
 
 class TickSink(Protocol):
-    """Where tick records go."""
+    """Receives tick records."""
 
     count: int
 
     def room(self, records: int) -> Buffer:
-        """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k; it holds until the next call."""
+        """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k; valid until the next call."""
 
     def publish(self, count: int) -> None:
-        """Tell readers how many records are whole."""
+        """Make the first `count` records visible to readers."""

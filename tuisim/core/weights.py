@@ -1,4 +1,4 @@
-"""How the pixels of a disc count in a reading."""
+"""Weights of the pixels of a disc in a colour reading."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ CENTRE_WEIGHT = 3
 def disc_weights(diameter: int, strategy: str) -> tuple[int, ...]:
     """Return the weight of each pixel of a box, row-major, 0 outside the disc.
 
-    Args:
-        diameter: Of the disc, in pixels.
-        strategy: `mean`: all alike. `gaussian`: a bell curve whose standard deviation is half
+    diameter: Diameter of the disc in pixels.
+        strategy: `mean`: equal weights. `gaussian`: a bell curve whose standard deviation is half
+        the radius. `centre`: threefold weight within half the radius.
             the radius. `centre`: the inner half of the radius counts threefold.
     """
     radius = diameter / 2

@@ -98,7 +98,7 @@ class Child:
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):
-            self._sim.tell = self._write_turns
+            self._sim.on_turns = self._write_turns
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim

@@ -1,8 +1,8 @@
-"""Sensors: one file a kind, and the table of kinds.
+"""Sensors: one file for each kind, and the table of kinds.
 
-To add a sensor: write its frozen spec (`core.parts`), say where a robot keeps it (`MOUNTS` in
+To add a sensor: write its frozen spec (`core.parts`), add its place on the robot (`MOUNTS` in
 `core.spec`), write its file, pure functions from an `Instant` to values, and add a line to
-`SENSORS`; its device is a line in `shim.building.DEVICES`. Robot files, settings, breaks, the
+`SENSORS`; its device is a line in `DEVICES` of the shim. Robot files, settings, breakpoints, the
 telemetry frame, the panels and the contract test walk these tables.
 """
 
@@ -24,14 +24,14 @@ class SensorKind:
     """How one kind of sensor is measured and named."""
 
     driver_name: str
-    """What the kernel calls it; `ev3dev2` looks for this name."""
+    """Name of the kernel driver; `ev3dev2` searches for this name."""
     spec: type
     columns: Callable[[Any], tuple[str, ...]]
-    """From a sensor's spec to the names of its telemetry columns."""
+    """Takes a sensor's spec; returns the names of its telemetry columns."""
     measure: Callable[[Any, Instant, RunSpec, Field], tuple[float, ...]]
-    """From spec and instant to the values of those columns."""
+    """Takes spec and instant; returns the values of those columns."""
     port_mode: str = "ev3-uart"
-    """The mode of the port that it needs; `ev3-analog` for one without a processor of its own."""
+    """The port mode it needs; `ev3-analog` for a sensor without a processor of its own."""
 
 
 SENSORS: Mapping[str, SensorKind] = {
@@ -41,7 +41,7 @@ SENSORS: Mapping[str, SensorKind] = {
     "touch": SensorKind("lego-ev3-touch", TouchSpec, touch.columns, touch.measure, "ev3-analog"),
     "infrared": SensorKind("lego-ev3-ir", InfraredSpec, infrared.columns, infrared.measure),
 }
-"""Every kind of sensor, in the order of the telemetry columns."""
+"""All kinds of sensors, in the order of the telemetry columns."""
 
 
 def mounted(robot: RobotSpec) -> list[tuple[SensorKind, Any]]:
@@ -50,6 +50,6 @@ def mounted(robot: RobotSpec) -> list[tuple[SensorKind, Any]]:
 
 
 def with_kinds(sensors: Iterable[SensorSpec]) -> list[tuple[SensorKind, Any]]:
-    """Return sensors as (kind, spec)."""
+    """Return each sensor with its kind, as (kind, spec)."""
     kinds = {kind.spec: kind for kind in SENSORS.values()}
     return [(kinds[type(sensor)], sensor) for sensor in sensors]

@@ -15,21 +15,21 @@ from tuisim.core.state import Instant
 from tuisim.core.weights import disc_weights, weighted_mean
 
 COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
-"""Names by colour code, as ev3dev2 has them."""
+"""Names by colour code, as in ev3dev2."""
 
 WHITE = 255
-"""A whole channel of a white pixel."""
+"""Maximum of a channel."""
 
 
 def percent(value: int, whole: int) -> float:
-    """Return what part of `whole` a value is, as the course's programs get it."""
-    # Divided first: the other order ends in another last digit for 57 of the 256 channel values.
+    """Return a value as a percentage of `whole`, with the rounding that the course's programs expect."""
+    # Division first: the other order changes the last digit for 57 of the 256 channel values.
     return 100 * (value / whole)
 
 
 @dataclass(frozen=True, slots=True)
 class ColorReading:
-    """What one colour sensor sees: mean channels, 0 … 255."""
+    """The reading of one colour sensor: mean channels, 0 … 255."""
 
     red: float
     green: float
@@ -37,7 +37,7 @@ class ColorReading:
 
     @property
     def rgb(self) -> tuple[int, int, int]:
-        """The channels cut to whole numbers, as programs get them."""
+        """The channels truncated to integers, as programs get them."""
         return int(self.red), int(self.green), int(self.blue)
 
     @property
@@ -62,7 +62,7 @@ class ColorReading:
 
 
 def hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
-    """Return hue 0 … 360 and saturation and value 0 … 100, cut to whole numbers."""
+    """Return hue 0 … 360 and saturation and value 0 … 100, truncated to integers."""
     high, low = max(red, green, blue), min(red, green, blue)
     span = high - low
     if not span:
@@ -91,12 +91,12 @@ def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
     """Return the image column and row of the corner of the box under a sensor."""
     x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
     radius = spec.diameter_mm / 2
-    # Cut toward zero, not down: that is how the box of the seed simulator falls on the mat.
+    # Truncated toward zero, not floored: this matches the original simulator.
     return int(x_mm - radius), int(FIELD_HEIGHT_MM - y_mm - radius)
 
 
 def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
-    """Return what a colour sensor sees without noise."""
+    """Return the reading of a colour sensor without noise."""
     if spec.strategy != "mean":
         box = field.box(spec.diameter_mm, *box_corner(pose, spec))
         return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))
@@ -106,11 +106,11 @@ def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReadi
 
 
 def rgb_reader(spec: ColorSensorSpec, field: Field) -> Callable[[float, float, float], tuple[int, int, int]]:
-    """Return a function that gives the whole channels a sensor sees without noise.
+    """Return a function that gives a sensor's channels without noise, truncated to integers.
 
     It takes the robot's x and y in mm and its heading in degrees, and agrees with
-    `clear_reading(...).rgb`. A tight control loop spends much of its time here, so all
-    that depends on the sensor is worked out before, and the steps are written out.
+    `clear_reading(...).rgb`. A tight control loop spends much of its time here, so everything
+    that depends on the sensor is precomputed, and the steps are inlined.
     """
     if spec.strategy != "mean":
         return lambda x_mm, y_mm, heading_deg: clear_reading(spec, Pose(x_mm, y_mm, heading_deg), field).rgb
@@ -139,18 +139,18 @@ def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
 
 
 def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
-    """Return what a colour sensor sees at an instant, noise included."""
+    """Return the reading of a colour sensor at an instant, including noise."""
     if not instant.noise.light:
         return clear_reading(spec, instant.pose, field)
     return ColorReading(*weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy))
 
 
 disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
-"""`field.disc_pixels`, remembered."""
+"""`field.disc_pixels`, cached."""
 
 
 def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    """Return the box a sensor sees as RGB bytes, row-major, d × d pixels, noise included.
+    """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, including noise.
 
     Pixels outside the disc are OUTSIDE_DISC_RGB.
     """

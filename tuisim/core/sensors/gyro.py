@@ -8,12 +8,12 @@ from tuisim.core.state import Instant
 
 
 def angle_deg(instant: Instant) -> int:
-    """Return the clockwise angle since the last reset, whole degrees, not wrapped."""
+    """Return the clockwise angle since the last reset, in whole degrees, not wrapped."""
     return round(instant.gyro_zero_deg - instant.pose.heading_deg)
 
 
 def rate_dps(instant: Instant) -> int:
-    """Return the clockwise rate of turn, whole degrees per second."""
+    """Return the clockwise rate of turn, in whole degrees per second."""
     return round(-instant.turn_rate_dps)
 
 

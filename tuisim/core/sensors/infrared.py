@@ -1,4 +1,4 @@
-"""Infrared sensor: how near something is, the way to a beacon, buttons of a remote control."""
+"""Infrared sensor: proximity, direction and distance of a beacon, buttons of a remote control."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from tuisim.core.spec import RunSpec, WorldSpec
 from tuisim.core.state import Instant
 
 PROXIMITY_RANGE_MM = 700.0
-"""What 100 % of proximity is."""
+"""Distance that is 100 % proximity."""
 RAY_ANGLES_DEG = (-10.0, -5.0, 0.0, 5.0, 10.0)
-"""Light is thrown and looked for in a narrow cone."""
+"""Rays of the narrow cone in which light is emitted and received."""
 SEEK_RANGE_MM = 2000.0
-"""What 100 % of a beacon's distance is; further away it is not found."""
+"""Distance of a beacon that reads 100 %; farther beacons are not found."""
 SEEK_ANGLE_DEG = 100.0
-"""A beacon further aside is not found."""
+"""A beacon at a larger angle is not found."""
 SEEK_STEPS = 25
-"""Heading of a beacon at `SEEK_ANGLE_DEG`."""
+"""Heading reading for a beacon at `SEEK_ANGLE_DEG`."""
 NOT_FOUND = (0, -128)
-"""Heading and distance where there is no beacon."""
+"""Heading and distance readings without a beacon."""
 
 _REM_A_NONE = 262
 _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_right": 128}
 
 
 def _way_mm(place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float) -> float:
-    """How far light goes before it meets a surface, at most `most_mm`."""
+    """Return how far light travels before it meets a surface, at most `most_mm`."""
     found, angle = surfaces(world), math.radians(angle_deg)
     (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
     way = first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), most_mm)
@@ -37,7 +37,7 @@ def _way_mm(place: tuple[float, float], angle_deg: float, world: WorldSpec, most
 
 
 def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
-    """Return how far the nearest surface ahead is, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
+    """Return the distance to the nearest surface ahead, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
     place, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
     nearest = min(_way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM) for ray_deg in RAY_ANGLES_DEG)
     return round(100 * nearest / PROXIMITY_RANGE_MM)
@@ -62,8 +62,8 @@ def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
     return NOT_FOUND * (beacon.channel - 1) + seen + NOT_FOUND * (4 - beacon.channel)
 
 
-def _held(channel: int, time_s: float, world: WorldSpec) -> frozenset[str]:
-    """The buttons held on a channel; of two presses at once the later in the list counts."""
+def _pressed(channel: int, time_s: float, world: WorldSpec) -> frozenset[str]:
+    """Return the buttons pressed on a channel; of two presses at the same time the later in the list counts."""
     for press in reversed(world.remote):
         if press.channel == channel and press.from_s <= time_s < press.until_s:
             return frozenset(press.buttons)
@@ -71,14 +71,14 @@ def _held(channel: int, time_s: float, world: WorldSpec) -> frozenset[str]:
 
 
 def remote(time_s: float, world: WorldSpec) -> tuple[int, int, int, int]:
-    """Return the code of the buttons that are held, for channels 1 to 4; 0 is none."""
-    one, two, three, four = (REMOTE_CODES.get(_held(channel, time_s, world), 0) for channel in range(1, 5))
+    """Return the code of the pressed buttons, for channels 1 to 4; 0 is none."""
+    one, two, three, four = (REMOTE_CODES.get(_pressed(channel, time_s, world), 0) for channel in range(1, 5))
     return one, two, three, four
 
 
 def remote_bits(time_s: float, world: WorldSpec) -> int:
-    """Return the buttons held on channel 1 as bits."""
-    return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in _held(1, time_s, world))
+    """Return the buttons pressed on channel 1 as bits."""
+    return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in _pressed(1, time_s, world))
 
 
 def columns(spec: InfraredSpec) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Touch sensor: pressed while its bumper meets an obstacle or a wall."""
+"""Touch sensor: pressed while its bumper touches an obstacle or a wall."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, WorldSpec
 from tuisim.core.state import Instant
 
 REACH_MM = 2.0
-"""The bumper feels what is so near: it gives way before the robot is stopped."""
+"""The bumper reacts at this distance: it gives way before the robot is stopped."""
 
 
 def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:
-    """Return whether either end or the middle of the bumper meets something."""
+    """Return whether either end or the centre of the bumper touches something."""
     half = spec.width_mm / 2
     return any(_meets(*world_point(pose, spec.x_mm + aside, spec.y_mm), world) for aside in (-half, 0.0, half))
 

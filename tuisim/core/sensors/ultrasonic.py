@@ -1,4 +1,4 @@
-"""Ultrasonic sensor: distance to the nearest surface that echoes."""
+"""Ultrasonic sensor: distance to the nearest surface that returns an echo."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, Ultrasoni
 from tuisim.core.state import Instant
 
 MIN_ECHO_DEG, MAX_ECHO_DEG = 40.0, 140.0
-"""A surface met at a flatter angle to the heading throws the pulse away."""
+"""A surface at an angle to the heading outside these limits reflects the pulse away."""
 
 Edge = tuple[float, float, float]
-"""An edge along one axis: its place on the other axis, and where it begins and ends, in mm."""
+"""An edge parallel to one axis: its coordinate on the other axis, its start and its end, in mm."""
 
 
 @dataclass(frozen=True, slots=True)
 class Surfaces:
-    """Everything that can echo, sorted by place, so that a ray meets the edges one after the other."""
+    """Every surface that can echo, sorted by coordinate, so that a ray meets the edges in order."""
 
     upright: tuple[Edge, ...]
     """x, lower y, upper y."""
@@ -33,7 +33,7 @@ class Surfaces:
 
 def surfaces(world: WorldSpec) -> Surfaces:
     """Return every edge that can echo: the four walls and the sides of the obstacles."""
-    # Remembered by identity: hashing a world with many obstacles would cost more than the rays.
+    # Cached by identity: hashing a world with many obstacles would cost more than the rays.
     global _last_asked
     if _last_asked is None or _last_asked[0] is not world:
         _last_asked = (world, _sorted_surfaces(world))
@@ -53,7 +53,7 @@ def _sorted_surfaces(world: WorldSpec) -> Surfaces:
 
 
 def _echoes(edge_deg: float, heading_deg: float) -> bool:
-    """Whether the angle between an edge and the heading is above 40 and below 140 degrees."""
+    """Return whether the angle between an edge and the heading is above 40 and below 140 degrees."""
     return MIN_ECHO_DEG < abs(edge_deg - heading_deg) % 180.0 < MAX_ECHO_DEG
 
 
@@ -64,13 +64,13 @@ def first_hit_mm(
     step: tuple[float, float],
     most: float,
 ) -> float:
-    """Return how far a ray goes before it meets one of the edges, at most `most`.
+    """Return the distance at which a ray meets one of the edges, at most `most`.
 
     Args:
-        edges: Sorted by place.
-        places: Their places.
-        start: Where the ray begins: across the edges, and along them.
-        step: How far it goes in each direction for one mm of way.
+        edges: Sorted by coordinate.
+        places: Their coordinates.
+        start: Start of the ray: across the edges, and along them.
+        step: Change in each direction per mm along the ray.
         most: Length of the ray.
     """
     across, along = start
@@ -99,7 +99,7 @@ def rays_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> list[tuple[fl
 
 
 def _ray_mm(start: tuple[float, float], angle_deg: float, facing_deg: float, found: Surfaces, most: float) -> float:
-    """Return how far one ray goes before it meets a surface that echoes, at most `most`."""
+    """Return the distance at which one ray meets a surface that echoes, at most `most`."""
     x_mm, y_mm = start
     angle = math.radians(angle_deg)
     cos, sin = math.cos(angle), math.sin(angle)
@@ -115,13 +115,13 @@ def distance_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> int:
     start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
     found, nearest = surfaces(world), spec.max_range_mm
     for ray_deg in spec.ray_angles_deg:
-        # A ray need not be followed further than the nearest echo so far.
+        # A ray need not be followed beyond the nearest echo found.
         nearest = _ray_mm(start, facing + ray_deg, facing, found, nearest)
     return round(nearest)
 
 
 def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
-    """Return the distance in whole mm with the sensor's own noise, 0 … `max_range_mm`."""
+    """Return the distance in whole mm including the sensor's noise, 0 … `max_range_mm`."""
     distance = distance_mm(instant.pose, spec, world)
     if not spec.noise_mm:
         return distance
