@@ -1,4 +1,4 @@
-"""Builds the brick of a robot: which simulated device is on which port."""
+"""Builds the brick of a robot: the simulated devices and their ports."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tuisim.shim.sensors.others import GyroDevice, infrared_sensor, touch_sensor
 from tuisim.shim.session import Session
 
 MOTOR_CLASS, SENSOR_CLASS = "tacho-motor", "lego-sensor"
-"""Classes of devices, as the kernel names them."""
+"""Device classes, by their kernel names."""
 
 DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor]] = {
     ColorSensorSpec: lambda session, spec, _others: ColorDevice(session, spec),
@@ -31,18 +31,18 @@ DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor
     TouchSpec: lambda session, spec, _others: touch_sensor(session, spec),
     InfraredSpec: lambda session, spec, _others: infrared_sensor(session, spec),
 }
-"""What makes a sensor's device, by the class of its spec: from the session, the spec and the sensors made so far."""
+"""Factories of sensor devices, by class of spec: they take the session, the spec and the sensors made before."""
 
 
 def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
-    """Build the brick and plug the robot's motors and sensors in.
+    """Build the brick and connect the robot's motors and sensors.
 
     Returns:
         The brick, and its colour sensors by device path.
     """
     brick, robot, sim = Brick(), session.sim.spec.robot, session.sim
     motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
-    # Listed by port, so that a class asked for without an address finds the first port.
+    # Sorted by port, so that a class without an address finds the first port.
     for at, (motor, simulated) in enumerate(sorted(motors, key=lambda found: found[0].port)):
         brick.add(MOTOR_CLASS, f"motor{at}", _motor_device(session, simulated, motor.port, motor.kind))
     colors: dict[str, ColorDevice] = {}
@@ -71,7 +71,7 @@ def _motor_device(session: Session, motor: Motor, port: str, kind: str) -> SimDe
 
 
 def ports_hint(session: Session, class_name: str) -> str:
-    """Return what is on which port, for a program that looked for something else; empty for other classes."""
+    """Return which devices are on which ports, as a hint for a failed look-up; empty for other classes."""
     robot = session.sim.spec.robot
     if class_name == MOTOR_CLASS:
         found = [(motor.port, KINDS[motor.kind].driver_name) for motor in robot.motors]

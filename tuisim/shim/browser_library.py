@@ -1,6 +1,6 @@
-"""Where the library that the browser simulator had differs from the genuine one: set points, waiting, motors.
+"""Differences between the library of the browser simulator and the genuine one: set points, waiting, motors.
 
-What is not here is the genuine library's. Numbers in the program are as there: `position`
+Everything else comes from the genuine library. Numbers have the browser's form: `position`
 and `speed` with all their digits, `time_sp` in seconds, `state` '' or 'running'.
 """
 
@@ -15,17 +15,17 @@ from tuisim.core.profile import MS
 from tuisim.shim.devices import Brick
 from tuisim.shim.session import Session
 
-LOOK_MS = 10
-"""Whoever waits for a motor sleeps so long, and then looks."""
+POLL_MS = 10
+"""Interval at which a waiting thread polls the motor."""
 
 
 def round_half_up(number: float) -> int:
-    """Return the nearest whole number, the upper one of two."""
+    """Return the nearest integer; halves are rounded up."""
     return math.floor(number + 0.5)
 
 
 def speak_as_browser(session: Session, motor: Any, brick: Brick) -> None:
-    """Change `ev3dev2.motor` after its import.
+    """Patch `ev3dev2.motor` after its import.
 
     Args:
         session: Clock and simulation.
@@ -41,7 +41,7 @@ def speak_as_browser(session: Session, motor: Any, brick: Brick) -> None:
 
     def __init__(self: Any, *args: Any, **named: Any) -> None:  # noqa: N807
         make(self, *args, **named)
-        # A quotient of whole numbers lost its fraction.
+        # As there: the integer quotient has no fraction.
         self.max_rps = float(self.max_speed // self.count_per_rot)
         self.max_rpm, self.max_dps = self.max_rps * 60, self.max_rps * 360
         self.max_dpm = self.max_rpm * 360
@@ -65,13 +65,13 @@ def _patch_properties(motor_class: Any, brick: Brick) -> None:
 
 
 def _wait(session: Session, library: str) -> Callable[..., bool]:
-    look_ns = LOOK_MS * MS
+    look_ns = POLL_MS * MS
 
     def now_s() -> float:
         return session.now / MS / 1000
 
-    def look_when_a_motor_ends() -> None:
-        """Sleep until the first look after that, or until the next look where others may change things meanwhile."""
+    def sleep_until_motor_ends() -> None:
+        """Sleep until the first poll after a motor ends, or until the next poll if other threads may interfere."""
         begun = session.now
         session.wait_for_motor(look_ns, again=True)
         if rest_ns := (begun - session.now) % look_ns:
@@ -80,13 +80,13 @@ def _wait(session: Session, library: str) -> Callable[..., bool]:
             session.spend(look_ns)
 
     def wait(self: Any, cond: Callable[[str], bool], timeout: float | None = None) -> bool:
-        """Sleep and look until `cond(self.state)` holds, or the timeout in milliseconds is over."""
+        """Poll until `cond(self.state)` is true or the timeout in milliseconds is over."""
         deadline_s = now_s() + (timeout or 0) / 1000
-        # What a condition of the library's own says changes only when a motor ends a move.
+        # The result of the library's own conditions changes only when a motor ends a move.
         only_state = timeout is None and getattr(cond, "__module__", "") == library
         while True:
             if only_state and not cond(self.state):
-                look_when_a_motor_ends()
+                sleep_until_motor_ends()
             else:
                 session.spend(look_ns)
             if cond(self.state):
@@ -102,7 +102,7 @@ def _patch_moves(motor: Any) -> None:
         """Rotate the motor at `speed` for `degrees`."""
         native = self._speed_native_units(speed)
         if isinstance(speed, motor.SpeedValue):
-            # Rounded with its sign first.
+            # Rounded including its sign.
             native = round_half_up(native)
         self.position_sp = round_half_up(-degrees if native < 0 else degrees)
         self.speed_sp = round_half_up(abs(native))
@@ -125,7 +125,7 @@ def _patch_moves(motor: Any) -> None:
             _block(motor, self)
 
     def on(self: Any, speed: Any, brake: bool = True, block: bool = False) -> None:
-        """Rotate the motor at `speed` for ever."""
+        """Rotate the motor at `speed` indefinitely."""
         self.speed_sp = round_half_up(self._speed_native_units(speed))
         self._set_brake(brake)
         self.run_forever()
@@ -156,7 +156,7 @@ def _block(motor: Any, one: Any) -> None:
 
 def _patch_sets(motor: Any) -> None:
     def __init__(self: Any, motor_specs: Mapping[str, Any], desc: str | None = None) -> None:  # noqa: N807
-        # In the order given, which is that of waiting.
+        # In the given order, which is the order of waiting.
         self.motors = OrderedDict((port, motor_class(port)) for port, motor_class in motor_specs.items())
         self.desc = desc
         self.reset()
@@ -172,7 +172,7 @@ def _patch_pairs(motor: Any) -> None:
     def on_for_degrees(
         self: Any, left_speed: Any, right_speed: Any, degrees: float, brake: bool = True, block: bool = True
     ) -> None:
-        """Rotate the motors for `degrees`, the slower one for its part of them."""
+        """Rotate the motors for `degrees`; the slower one turns proportionally less."""
         speeds = [round_half_up(speed) for speed in self._unpack_speeds_to_native_units(left_speed, right_speed)]
         fastest = max(map(abs, speeds))
         pair = (self.left_motor, self.right_motor)
@@ -200,7 +200,7 @@ def _patch_pairs(motor: Any) -> None:
             self._block()
 
     def on(self: Any, left_speed: Any, right_speed: Any) -> None:
-        """Rotate the motors for ever."""
+        """Rotate the motors indefinitely."""
         pair = (self.left_motor, self.right_motor)
         for one, speed in zip(pair, self._unpack_speeds_to_native_units(left_speed, right_speed), strict=True):
             one.speed_sp = round_half_up(speed)

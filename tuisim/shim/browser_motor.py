@@ -1,4 +1,4 @@
-"""Tacho motors of the browser simulator: set points that work at once, commands without a driver in between."""
+"""Tacho motors of the browser simulator: set points take effect at once, commands bypass the driver."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ WITHOUT_EFFECT = (
     "duty_cycle_sp", "ramp_up_sp", "ramp_down_sp", "speed_pid/Kp", "speed_pid/Ki", "speed_pid/Kd", "hold_pid/Kp",
     "hold_pid/Ki", "hold_pid/Kd",
 )  # fmt: skip
-"""Numbers that are only kept."""
+"""Attributes that are stored without effect."""
 
 
 def plain(value: float) -> float:
-    """Return a number so that a whole one is shown without a point."""
+    """Return a whole number as int, so that it is shown without a decimal point."""
     return int(value) if value.is_integer() else value
 
 
@@ -27,8 +27,8 @@ class BrowserTacho:
     Args:
         session: Clock and simulation.
         motor: The simulated motor.
-        port: Such as `outB`.
-        kind: One of `tacho.KINDS`.
+        port: Name of the port, such as `outB`.
+        kind: One of `motor.KINDS`.
     """
 
     def __init__(self, session: Session, motor: BrowserMotor, port: str, kind: str = "large") -> None:
@@ -53,7 +53,7 @@ class BrowserTacho:
             "state": lambda: "running" if motor.mode else "",
             "speed_sp": lambda: int(motor.speed_sp),
             "position_sp": lambda: self._position_sp,
-            # As it was there.
+            # As in the browser simulator.
             "time_sp": lambda: int(motor.speed_sp),
             "stop_action": lambda: self._stop_action,
             "polarity": lambda: self._polarity,
@@ -80,7 +80,7 @@ class BrowserTacho:
                 motor.run(motor.speed_sp)
             case "run-timed":
                 sim = self._session.sim
-                # Counted from the ticks done: the part of a tick that has passed since does not count.
+                # Counted from the last completed tick: the fraction of a tick since then is ignored.
                 motor.run_until(motor.speed_sp, sim.tick + self._time_sp_s * sim.spec.profile.tick_hz)
             case "run-to-rel-pos":
                 motor.run_to(motor.position_deg + self._position_sp, motor.speed_sp, self._position_sp < 0)
@@ -94,7 +94,7 @@ class BrowserTacho:
                 raise refuse(text)
 
     def _set_position_sp(self, value: int) -> None:
-        # Its sign works at once, also in a move and after it.
+        # Its sign takes effect at once, also during and after a move.
         self._position_sp, self._motor.backwards = value, value < 0
 
     def _set_time(self, text: str) -> None:

@@ -1,4 +1,4 @@
-"""The brick's six buttons: the key state and the events that the library reads."""
+"""The brick's six buttons: their state and the events that the library reads."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
 
 POLL_NS = 10 * MS
-"""How often whoever waits for buttons looks at them."""
+"""Interval at which a waiting thread polls the buttons."""
 DEVICE_PATH = "/dev/input/event0"
 DEVICE_NAME = "EV3 Brick Buttons"
 EV_KEY = 1
-"""The type of an event about a key."""
+"""Event type for keys."""
 KEY_CODES = dict(zip(BUTTONS, (103, 108, 105, 106, 28, 14), strict=True))
-"""By button, its code in Linux's table of keys."""
+"""Linux key code of each button."""
 
 
 @dataclass(frozen=True, slots=True)
 class InputEvent:
-    """A button was pressed or released."""
+    """A press or release of a button."""
 
     sec: int
     usec: int
     type: int
     code: int
     value: int
-    """1 pressed, 0 released."""
+    """1 for a press, 0 for a release."""
 
     def timestamp(self) -> float:
-        """Return the simulated seconds."""
+        """Return the simulated time in seconds."""
         return self.sec + self.usec / 1e6
 
 
 class InputDevice:
-    """The buttons as `evdev` has an input device.
+    """The buttons as an input device of `evdev`.
 
     Args:
-        session: Knows what is pressed.
-        path: `DEVICE_PATH`, there is no other.
+        session: Provides the buttons that are pressed.
+        path: Must be `DEVICE_PATH`.
 
     Raises:
-        FileNotFoundError: another path.
+        FileNotFoundError: `path` is another path.
     """
 
     def __init__(self, session: Session, path: str) -> None:
@@ -58,11 +58,11 @@ class InputDevice:
         self.path, self.name = path, DEVICE_NAME
 
     def active_keys(self) -> list[int]:
-        """Return the codes of the buttons that are pressed, after the cost of reading them."""
+        """Return the key codes of the pressed buttons. Charges the cost of a read."""
         return [KEY_CODES[name] for name in read_pressed(self._session)]
 
     def read_loop(self) -> Iterator[InputEvent]:
-        """Wait for events, for ever; a button that is pressed already makes none."""
+        """Yield events forever, blocking between them; buttons that are already pressed yield none."""
         session = self._session
         before = session.pressed
         while True:
@@ -76,14 +76,14 @@ class InputDevice:
 
 
 def read_pressed(session: Session) -> list[str]:
-    """Return the names of the buttons that are pressed, after the cost of reading them."""
+    """Return the names of the pressed buttons. Charges the cost of a read."""
     session.command()
     session.charge(session.sim.spec.profile.attribute_read_ns)
     return [name for name in BUTTONS if name in session.pressed]
 
 
 def evdev_module(session: Session) -> types.ModuleType:
-    """Return a module `evdev` that has the brick's buttons as its only device."""
+    """Return a module `evdev` whose only device is the brick's buttons."""
     module = types.ModuleType("evdev", "The input devices of the brick: its buttons.")
     codes = {f"KEY_{name.upper()}": code for name, code in KEY_CODES.items()}
 
@@ -105,7 +105,7 @@ def evdev_module(session: Session) -> types.ModuleType:
 
 
 def patch_button_module(session: Session, module: types.ModuleType) -> None:
-    """Finish `ev3dev2.button` after its import: its device file, and waiting by looking every `POLL_NS`."""
+    """Patch `ev3dev2.button` after its import: its device file, and waiting by polling every `POLL_NS`."""
     button: Any = module
 
     def ioctl(_file: object, _request: int, state: MutableSequence[int]) -> int:
@@ -126,7 +126,7 @@ def _polling_wait(session: Session) -> Callable[..., bool]:
     between_ns = max(0, POLL_NS - session.sim.spec.profile.attribute_read_ns)
 
     def wait(self: Any, to_press: str | list[str], to_release: str | list[str], timeout_ms: float | None) -> bool:
-        """Wait until all of `to_press` are pressed and none of `to_release` is; False once the time is up."""
+        """Block until all of `to_press` are pressed and none of `to_release` is; return False after a timeout."""
         wanted = {to_press} if isinstance(to_press, str) else set(to_press)
         unwanted = {to_release} if isinstance(to_release, str) else set(to_release)
         until = None if timeout_ms is None else session.now + round(timeout_ms * MS)

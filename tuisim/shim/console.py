@@ -1,4 +1,4 @@
-"""The text screen: what the library prints there, and the programs that set its font and size."""
+"""The text screen: output of the library, and the programs that set its font and size."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from tuisim.shim.session import Session
 from tuisim.shim.text_grid import TextGrid
 
 FONT_WIDTH, FONT_HEIGHT = 12, 24
-"""Pixels of a letter of the font that the library begins with."""
+"""Size in pixels of a character of the library's initial font."""
 USUAL_WIDTH = 8
-"""Of fonts that are named after their height only."""
+"""Width of fonts that are named by their height only."""
 
 _FONT = re.compile(r"(?:\w+-[A-Za-z]+|default)(\d+)(?:x(\d+))?(?:\.psf)?(?:\.gz)?")
 
 
 def font_size(name: str) -> tuple[int, int] | None:
-    """Return width and height in pixels of a font's letters, by its name.
+    """Return width and height in pixels of a font's characters, by the font's name.
 
     Args:
-        name: A character set, a face and one or two numbers, such as `Lat15-TerminusBold24x12`,
-            `Lat15-TomThumb4x6` or `Lat15-VGA16`: letters are never wider than high.
+        name: Character set, face and one or two numbers, such as `Lat15-TerminusBold24x12`,
+            `Lat15-TomThumb4x6` or `Lat15-VGA16`: characters are never wider than high.
 
     Returns:
-        None for a name that is no font's, or a size that does not fit the screen.
+        None if the name is not a font, or the size does not fit the screen.
     """
     found = _FONT.fullmatch(name)
     if found is None:
@@ -40,11 +40,11 @@ def font_size(name: str) -> tuple[int, int] | None:
 
 
 class Terminal:
-    """Takes what the library prints, and does what commands for the screen say.
+    """Prints the library's text on the screen and runs the screen commands.
 
     Args:
         session: The program's clock.
-        screen: Where the text is seen.
+        screen: Displays the text.
     """
 
     def __init__(self, session: Session, screen: Screen) -> None:
@@ -52,15 +52,15 @@ class Terminal:
         self._grid = TextGrid(DISPLAY_WIDTH // FONT_WIDTH, DISPLAY_HEIGHT // FONT_HEIGHT)
 
     def print(self, text: str, end: str = "\n") -> None:
-        """Write on the screen; stands in for the library's `print`."""
-        # Counted also where it costs nothing.
+        """Write on the screen; replaces the library's `print`."""
+        # Counted even if it costs nothing.
         self._session.command()
         self._session.charge(self._session.sim.spec.profile.attribute_read_ns)
         self._grid.write(text + end)
         self._show()
 
     def set_font(self, name: str) -> str:
-        """Take another font, and with it another size; return what is wrong, nothing if it was taken."""
+        """Set the font, and with it the screen size; return an error message, or an empty string."""
         size = font_size(name)
         if size is None:
             return f"setfont: cannot find the font {name!r}"
@@ -69,13 +69,13 @@ class Terminal:
         return ""
 
     def clear(self) -> None:
-        """Wipe the screen; the next letter goes to its top left corner."""
+        """Clear the screen and move the cursor to its top left corner."""
         self._grid.write("\x1b[2J\x1b[H")
         self._show()
 
     @property
     def size(self) -> str:
-        """Rows and columns, as `stty size` tells them."""
+        """Rows and columns, in the format of `stty size`."""
         return f"{self._grid.rows} {self._grid.columns}\n"
 
     def _show(self) -> None:
@@ -83,6 +83,6 @@ class Terminal:
 
 
 def patch_console_module(module: types.ModuleType, terminal: Terminal) -> None:
-    """Finish `ev3dev2.console` after its import: it prints on the brick's screen, not into the output."""
+    """Patch `ev3dev2.console` after its import: it prints on the brick's screen, not to the program's output."""
     console: Any = module
     rebind(console.Console, print=terminal.print)

@@ -1,4 +1,4 @@
-"""Simulated device folders: named attributes that the library reads and writes as text."""
+"""Simulated device folders: named attributes, which the library reads and writes as text."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NumberWriter = Callable[[int], None]
 
 
 class _Writers(dict[str, Writer]):
-    """Functions by attribute; one that is not there fails as a driver does."""
+    """Writers by attribute; a missing one raises the driver's error."""
 
     def __init__(self, writers: Mapping[str, Writer], readable: Collection[str]) -> None:
         super().__init__(writers)
@@ -25,7 +25,7 @@ class _Writers(dict[str, Writer]):
 
 
 class _NumberWriters(dict[str, NumberWriter]):
-    """The same for whole numbers; an attribute that takes text only is given the number as text."""
+    """The same for integers; an attribute that accepts only text gets the number as text."""
 
     def __init__(self, number_writers: Mapping[str, NumberWriter], writers: Mapping[str, Writer]) -> None:
         super().__init__(number_writers)
@@ -37,14 +37,14 @@ class _NumberWriters(dict[str, NumberWriter]):
 
 
 class SimDevice:
-    """One device: attributes as functions.
+    """One device whose attributes are functions.
 
     Args:
         session: Charged for each read.
-        readers: By attribute, a function that gives its present value.
-        writers: By attribute, a function that takes the text written.
-        costs: By attribute, its cost in ns where it differs from the common one.
-        number_writers: By attribute, a function that takes the whole number written.
+        readers: Functions that return the current value, by attribute.
+        writers: Functions that accept the written text, by attribute.
+        costs: Cost of a read in ns, by attribute, if it differs from the default.
+        number_writers: Functions that accept a written integer, by attribute.
     """
 
     def __init__(
@@ -58,19 +58,19 @@ class SimDevice:
         self.session = session
         self.readers = dict(readers)
         self.writers = _Writers(writers, self.readers)
-        """By attribute, what sets it from text; a driver's OSError for one that cannot be set."""
+        """Setters from text, by attribute; one that cannot be set raises the driver's OSError."""
         self.number_writers = _NumberWriters(number_writers or {}, self.writers)
-        """By attribute, what sets it to a whole number without the way through text."""
+        """Setters from an integer, by attribute, without conversion to text."""
         for name, write_number in self.number_writers.items():
             self.writers[name] = partial(_write_whole, write_number)
         self._costs = dict(costs or {})
         self._common_cost = session.sim.spec.profile.attribute_read_ns
 
     def read(self, name: str) -> object:
-        """Return an attribute's value, after its cost.
+        """Return an attribute's value. Charges its cost.
 
         Raises:
-            OSError: ENOENT for an attribute the device does not have, EACCES for a write-only one.
+            OSError: ENOENT if the device has no such attribute, EACCES if it is write-only.
         """
         reader = self.readers.get(name)
         if reader is None:
@@ -86,7 +86,7 @@ class SimDevice:
         """Set an attribute.
 
         Raises:
-            OSError: ENOENT or EACCES as for `read`, EINVAL for a value the driver refuses.
+            OSError: ENOENT or EACCES as for `read`, EINVAL if the driver rejects the value.
         """
         self.writers[name](text)
 
@@ -100,17 +100,17 @@ def _write_whole(write: NumberWriter, text: str) -> None:
 
 
 class Brick:
-    """All devices by path, such as `/sys/class/tacho-motor/motor0`."""
+    """All devices, by path, such as `/sys/class/tacho-motor/motor0`."""
 
     def __init__(self) -> None:
         self.by_path: dict[str, SimDevice] = {}
 
     def add(self, class_name: str, name: str, device: SimDevice) -> None:
-        """Plug a device in."""
+        """Add a device."""
         self.by_path[f"/sys/class/{class_name}/{name}"] = device
 
     def names(self, class_path: str) -> Iterator[str]:
-        """Yield the devices of one class, as a listing of its folder would."""
+        """Yield the names of the devices of one class, like a listing of its folder."""
         prefix = class_path.rstrip("/") + "/"
         for path in self.by_path:
             if path.startswith(prefix):
@@ -118,5 +118,5 @@ class Brick:
 
 
 def refuse(text: str) -> OSError:
-    """Return the error of a driver that does not take a value."""
+    """Return the error of a driver that rejects a value."""
     return OSError(errno.EINVAL, f"invalid value {text!r}")

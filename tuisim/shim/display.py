@@ -1,4 +1,4 @@
-"""The display: the memory that the library copies its picture into."""
+"""The display: the frame buffer into which the library copies its image."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
 
 BITS_A_PIXEL = 32
-"""As the driver of the brick's display says it; the display itself is black and white."""
+"""As the driver reports it; the display itself is black and white."""
 LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
 WHITE, DARK_BELOW = 255, 128
-"""Greys below the second one are dark."""
+"""Greys below `DARK_BELOW` are dark."""
 TRUE_COLOR = 2
-"""The kernel's number for pixels of red, green and blue."""
+"""The kernel's visual type for red, green and blue pixels."""
 NO_FILE = -1
-"""In place of the descriptor of the device file."""
+"""Replaces the descriptor of the device file."""
 
 
 class FrameBuffer(mmap.mmap):
-    """The memory of the display: what is written there is seen.
+    """The memory of the display: bytes written there are displayed.
 
     Each pixel has four bytes: unused, red, green, blue.
     """
 
     def __new__(cls, _session: Session, _screen: Screen) -> FrameBuffer:
-        """Take fresh memory, not a file."""
+        """Allocate anonymous memory instead of mapping a file."""
         return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
 
     def __init__(self, session: Session, screen: Screen) -> None:
@@ -40,9 +40,9 @@ class FrameBuffer(mmap.mmap):
         super().__setitem__(slice(None), bytes([WHITE]) * len(self))
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        """Write bytes, and show them after the time that this takes on the brick."""
+        """Write bytes and display them. Charges the time of an update on the brick."""
         super().__setitem__(key, value)
-        # Counted also where it costs nothing.
+        # Counted even if it costs nothing.
         self.session.command()
         self.session.charge(self.session.sim.spec.profile.display_update_ns)
         pixels = self[:]
@@ -52,10 +52,10 @@ class FrameBuffer(mmap.mmap):
 
 
 def picture_of(pixels: bytes) -> bytes:
-    """Return the picture in the display's memory, one bit a pixel, as `datalog.face.Face` has it.
+    """Return the image in the display's memory, one bit per pixel, in the format of `runs.brick_state`.
 
     Args:
-        pixels: Four bytes each; the display shows the green one.
+        pixels: Four bytes per pixel; the display shows the green one.
     """
     from PIL import Image
 
@@ -64,7 +64,7 @@ def picture_of(pixels: bytes) -> bytes:
 
 
 def patch_display_module(session: Session, module: types.ModuleType, screen: Screen) -> None:
-    """Finish `ev3dev2.display` after its import: a frame buffer without a device file."""
+    """Patch `ev3dev2.display` after its import: a frame buffer without a device file."""
     display: Any = module
     memory = display.FbMem
 
@@ -96,7 +96,7 @@ def patch_display_module(session: Session, module: types.ModuleType, screen: Scr
 
 
 def _use_the_bricks_font(display: Any) -> None:
-    """Write text without a named font as the Pillow on the brick does."""
+    """Draw text without a named font in the default font of the brick's Pillow."""
     make = display.Display.__init__
 
     @wraps(make)

@@ -1,7 +1,7 @@
-"""Fonts by name: those that the brick has, drawn from Pillow's own where their files are missing.
+"""Fonts by name: those of the brick, drawn from Pillow's own font if their files are missing.
 
-The published library has no font files. What stands in for one has its size, its weight, its
-slant and, where all its letters are of one width, that width; the shapes are another font's.
+The published library has no font files. A replacement has the size, weight and slant of the
+original and, for monospaced fonts, its character width; the shapes are those of another font.
 """
 
 from __future__ import annotations
@@ -43,36 +43,36 @@ _CELLS: Mapping[str, Mapping[int, int]] = {
     "tech": {14: 8},
     "term": {14: 8},
 }
-"""Width of every letter in pixels, by family and size; the letters of other families have widths of their own."""
+"""Width of every character in pixels, by family and size; the other families are proportional."""
 
 _LETTERS = tuple(chr(code) for code in (*range(32, 127), *range(160, 256)))
 _FINE = 6
-"""Letters are drawn so many times larger first."""
+"""Factor by which glyphs are drawn larger before they are reduced."""
 _BOLDER = 0.035
-"""Bold strokes reach so much further to each side, in parts of the size."""
+"""Extra width of bold strokes to each side, relative to the size."""
 _SLANT = 0.2
 _DARK_FROM = {8: 64, 10: 80, 12: 96}
-"""A pixel is dark from this grey on, of 255, by size: thin strokes would be lost in small letters."""
+"""A pixel is dark from this grey of 255 on, by size: otherwise small letters would lose thin strokes."""
 _DARK_FROM_USUALLY = 120
 _BOLD_DARKER = 24
 
 _PLAIN_CELL_PX = (6, 11)
-"""Letters of Pillow's plain font."""
+"""Size of a character of Pillow's plain font."""
 _PLAIN_BASE_PX, _PLAIN_CAPITAL_PX = 9, 6
-"""Its base line from the top, and the height of its capitals."""
+"""Its baseline from the top, and the height of its capitals."""
 _CAPITAL = 0.7
-"""Height of capitals in parts of the size."""
+"""Height of capitals relative to the size."""
 
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """What is known of a font by its name."""
+    """Properties of a font that its name contains."""
 
     size_px: int
     bold: bool
     slanted: bool
     cell_px: int | None
-    """Width of every letter; None if each has its own."""
+    """Width of every character; None for a proportional font."""
 
 
 FACES: Mapping[str, Face] = {
@@ -83,22 +83,22 @@ FACES: Mapping[str, Face] = {
     for style in styles
     for size in sizes
 }
-"""The fonts of the brick."""
+"""The brick's fonts."""
 
 
 @cache
 def plain_font() -> ImageFont:
-    """Return the font that the Pillow on the brick writes with if none is named, whatever Pillow this is."""
+    """Return the default font of the brick's Pillow, for any version of Pillow."""
     from PIL import ImageFont
 
-    # Newer ones write with a smooth font, whose grey edges a black and white display tears apart.
+    # Newer versions default to a smooth font, whose grey edges look ragged on a black and white display.
     plain: Any = getattr(ImageFont, "load_default_imagefont", ImageFont.load_default)
     found: ImageFont.ImageFont = plain()
     return found
 
 
 def patch_fonts_module(module: types.ModuleType) -> None:
-    """Finish `ev3dev2.fonts` after its import: every font of the brick can be loaded."""
+    """Patch `ev3dev2.fonts` after its import so that every font of the brick can be loaded."""
     fonts: Any = module
     available, load = fonts.available, fonts.load
     said: list[str] = []
@@ -125,7 +125,7 @@ def patch_fonts_module(module: types.ModuleType) -> None:
 
 @cache
 def drawn(face: Face) -> ImageFont:
-    """Return a font of a face, drawn from the one that comes with Pillow."""
+    """Return a font for a face, drawn from the font that comes with Pillow."""
     from PIL import ImageFont
     from PIL.FontFile import FontFile
 
@@ -136,9 +136,9 @@ def drawn(face: Face) -> ImageFont:
         picture, left_px, width_px = _letter(large, letter, face)
         box = picture.getbbox() or (0, 0, 1, 1)
         ink = picture.crop(box)
-        # What lies beside the way of the pen would be cut off.
+        # Ink to the left of the pen would be cut off.
         x = max(0, min(box[0] + left_px, width_px - ink.width))
-        # Places count from the pen on the base line, y down.
+        # Coordinates are relative to the pen on the baseline, y down.
         place = (x, box[1] - face.size_px, x + ink.width, box[3] - face.size_px)
         file.glyph[ord(letter)] = ((width_px, 0), place, (0, 0, *ink.size), ink)
     file.compile()
@@ -155,10 +155,10 @@ def drawn(face: Face) -> ImageFont:
 
 
 def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int, int]:
-    """Draw a letter, its base line `size_px` below the picture's top.
+    """Draw a letter with its baseline `size_px` below the top of the image.
 
     Returns:
-        The picture, where its left edge is beside the pen, and how far the pen moves on.
+        The image, its left edge relative to the pen, and the advance of the pen.
     """
     from PIL import Image, ImageDraw
 
@@ -177,7 +177,7 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
         plain = _plain_letter(letter, times * _FINE)
         image.paste(plain, (margin_px * _FINE, base - round(_PLAIN_BASE_PX * times * _FINE)))
     if face.slanted:
-        # About half the height of a capital, so that as little as can be hangs over on either side.
+        # About half the height of a capital, so that the slant overhangs little on either side.
         still = base * (1 - _CAPITAL / 2)
         image = image.transform(image.size, Image.Transform.AFFINE, (1, _SLANT, -_SLANT * still, 0, 1, 0))
         own_px += round(_SLANT * _CAPITAL * face.size_px / 2)
@@ -191,7 +191,7 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
 
 
 def _plain_letter(letter: str, times: float) -> Picture:
-    """Return a letter of the plain font, enlarged: the other font has none with accents."""
+    """Return an enlarged letter of the plain font: the other font has no accented letters."""
     from PIL import Image, ImageDraw
 
     image = Image.new("L", _PLAIN_CELL_PX)

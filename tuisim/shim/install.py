@@ -1,4 +1,4 @@
-"""Hooks the library's modules as the program imports them."""
+"""Patches the library's modules when the program imports them."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ Finish = Callable[[types.ModuleType], None]
 
 
 class FinishingFinder:
-    """Lets a function finish a module right after its import.
+    """Calls a function on a module right after its import.
 
     Args:
-        finishers: By module name.
-        is_own: Says of a file whether it is the program's: a module beside it may have any name.
+        finishers: Functions by module name.
+        is_own: Whether a file belongs to the program: such a module may have any name.
     """
 
     def __init__(self, finishers: Mapping[str, Finish], is_own: Callable[[str], bool]) -> None:
@@ -39,7 +39,7 @@ class FinishingFinder:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
     ) -> importlib.machinery.ModuleSpec | None:
-        """Find the module as usual, with the finisher after its loader."""
+        """Find the module as usual and wrap its loader."""
         finish = self._finishers.get(fullname)
         if finish is None:
             return None
@@ -57,7 +57,7 @@ class FinishingFinder:
 
 
 def finish_imports(finishers: Mapping[str, Finish], is_own: Callable[[str], bool]) -> None:
-    """Let functions finish modules, by name, right after their import; now, if they have been imported already."""
+    """Call functions on modules, by name, right after their import; at once if already imported."""
     for name, finish in finishers.items():
         if (there := sys.modules.get(name)) is not None:
             finish(there)
@@ -67,13 +67,13 @@ def finish_imports(finishers: Mapping[str, Finish], is_own: Callable[[str], bool
 def install(
     session: Session, more_finishers: Mapping[str, Finish], replace: Replace, is_own: Callable[[str], bool]
 ) -> None:
-    """Prepare `import ev3dev2` for the program.
+    """Prepare the program's `import ev3dev2`.
 
     Args:
         session: Clock and simulation.
-        more_finishers: Finishers of other modules, by name.
-        replace: Lets a function of a module do something else.
-        is_own: Says of a file whether it is the program's.
+        more_finishers: Functions for other modules, by name.
+        replace: Replaces a function of a module.
+        is_own: Whether a file belongs to the program.
     """
     brick, colors = build_brick(session)
     screen = Screen(session)

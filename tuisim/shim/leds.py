@@ -1,6 +1,6 @@
-"""The brick's four lights, as the kernel's generic driver has them, and the library's animations on them.
+"""The brick's four LEDs, as the kernel's generic driver exposes them, and the library's animations.
 
-A light whose trigger is `timer` blinks by itself in simulated time, in a thread that does nothing else.
+An LED whose trigger is `timer` blinks in simulated time, in a thread of its own.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
 
 LED_CLASS = "leds"
-"""The kernel's class of lights."""
+"""The kernel's class of LEDs."""
 MAX_BRIGHTNESS = 255
 TRIGGERS = ("none", "timer", "default-on")
 BLINK_MS = 500
-"""How long a blinking light is on, and off, until it is told otherwise."""
+"""Default duration of the on and off phases of blinking."""
 STOP_POLL_NS = MS
-"""How often stopping an animation looks whether it is over."""
+"""Interval at which stopping an animation checks whether it is over."""
 
 
 def led_name(name: str) -> str:
-    """Return the kernel's name of a light, such as `led0:red:brick-status`.
+    """Return the kernel's name of an LED, such as `led0:red:brick-status`.
 
     Args:
         name: One of `LED_NAMES`.
@@ -44,10 +44,10 @@ def led_name(name: str) -> str:
 
 
 class Lights:
-    """All lights together, and what is written down about them.
+    """All LEDs, and the record of their changes.
 
     Args:
-        session: Takes the rows.
+        session: Receives the rows.
     """
 
     def __init__(self, session: Session) -> None:
@@ -59,7 +59,7 @@ class Lights:
         return {name: light.shining for name, light in self.lights.items()}
 
     def show(self) -> None:
-        """Write down how bright the lights are, if that is different from before."""
+        """Record the brightness of the LEDs if it has changed."""
         brightness = self._brightness()
         if brightness != self._shown:
             self._shown = brightness
@@ -67,25 +67,25 @@ class Lights:
 
 
 class Light:
-    """One light.
+    """One LED.
 
     Args:
-        lights: Told of each change.
-        green: Whether it shines when the program starts.
+        lights: Notified of each change.
+        green: Whether the LED is on when the program starts.
     """
 
     def __init__(self, lights: Lights, green: bool) -> None:
         self._lights = lights
         self.shining = MAX_BRIGHTNESS if green else 0
-        """Its brightness at this moment."""
+        """Current brightness."""
         self._trigger = "default-on" if green else "none"
         self._blink_brightness = 0
         self._delays_ms = {"delay_on": 0, "delay_off": 0}
         self._blink = 0
-        """Which blinking is meant; the thread of an earlier one ends."""
+        """Number of the current blinking; threads of earlier ones end."""
 
     def device(self) -> SimDevice:
-        """Return it as the library's device."""
+        """Return the device that the library reads and writes."""
         return SimDevice(
             self._lights.session,
             {
@@ -121,7 +121,7 @@ class Light:
                 self._shine(value)
             return
         if not value:
-            # Dark is the end of whatever let it shine.
+            # Brightness 0 also turns the trigger off.
             self._trigger = "none"
         self._shine(value)
 
@@ -163,7 +163,7 @@ class Light:
             self._shine(self._blink_brightness if on_ms else 0)
 
     def _keep_blinking(self, blink: int) -> None:
-        # A lock that nobody gives back waits without passing for a line of the program that lets time pass.
+        # A lock that is never released: waiting on it does not count as a program line that spends time.
         alarm = _thread.allocate_lock()
         alarm.acquire()
         lit = True
@@ -174,11 +174,11 @@ class Light:
 
 
 def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
-    """Finish `ev3dev2.led` after its import: its files, its threads, and waiting for them to end."""
+    """Patch `ev3dev2.led` after its import: its files, its threads, and waiting for their end."""
     led: Any = module
     numbers = count(1)
     running: dict[int, int] = {}
-    """By number of an animation, the thread it runs in."""
+    """Thread of each animation, by its number."""
 
     def start_new_thread(function: Callable[..., None], arguments: tuple[Any, ...]) -> int:
         number = next(numbers)
@@ -194,15 +194,15 @@ def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -
         return number
 
     def animate_stop(self: Any) -> None:
-        """Let the animation end, and wait until it has."""
+        """End the animation and block until it has ended."""
         number = self.animate_thread_id
-        # A flashing animation turns the lights off through here itself: it must not wait for its own end.
+        # A flashing animation calls this from its own thread to turn the LEDs off: it must not wait for itself.
         if number is None or running.get(number) == _thread.get_ident():
             return
         self.animate_thread_stop = True
         while number in running:
             session.spend(STOP_POLL_NS)
-        # One that ended with an error has not said so.
+        # An animation that ended with an error has not reset these.
         self.animate_thread_id, self.animate_thread_stop = None, False
 
     rebind(led.Led, os=_files_of(brick))
@@ -213,7 +213,7 @@ def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -
 
 
 def _mend_trigger(led_class: Any) -> None:
-    """Let a light tell its trigger; the library takes the one thing that it found for two."""
+    """Fix reading an LED's trigger: the library takes the one match that it found for two."""
 
     @wraps(led_class.trigger.fget)
     def get_trigger(self: Any) -> str:
@@ -223,7 +223,7 @@ def _mend_trigger(led_class: Any) -> None:
 
 
 def _files_of(brick: Brick) -> types.SimpleNamespace:
-    """Return what the library uses of `os`, to look for attributes of a light that come and go."""
+    """Return the parts of `os` that the library uses to check for the temporary attributes of an LED."""
 
     def exists(path: str) -> bool:
         folder, _, name = path.rpartition("/")

@@ -1,4 +1,4 @@
-"""Connects the genuine library to the simulated devices: replaces what touches the kernel."""
+"""Connects the genuine library to the simulated devices: replaces its kernel access."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from tuisim.shim.session import Session
 
 
 class OpenAttribute:
-    """An attribute as an open file, for the few places where the library wants one."""
+    """An attribute as an open file, for the few places where the library needs one."""
 
     def __init__(self, brick: Brick, path: str, name: str) -> None:
         self._device, self._name = brick.by_path[path], name
 
     def seek(self, _position: int) -> None:
-        """Every read begins at the start anyway."""
+        """Do nothing: every read starts at the beginning."""
 
     def flush(self) -> None:
-        """Writes act at once."""
+        """Do nothing: writes take effect at once."""
 
     def read(self, _size: int = -1) -> bytes:
         """Return the attribute's value."""
@@ -39,19 +39,19 @@ class OpenAttribute:
 
 
 class Patience:
-    """What the library waits for, which its poll alone does not tell."""
+    """What the library waits for, which its call of `poll` alone does not show."""
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
-        """Above 0 while it polls only to look again whether a motor still moves."""
+        """Above 0 while it polls only to check again whether a motor moves."""
 
     def patient(self, function: Callable[..., bool]) -> Callable[..., bool]:
-        """Return `wait_until_not_moving` so that it is known to wait for nothing else."""
+        """Wrap `wait_until_not_moving` so that polls inside it are known to wait for nothing else."""
 
         @wraps(function)
         def wait_until_not_moving(motor: Any, timeout: float | None = None) -> bool:
             if timeout is not None:
-                # Then the library also looks at the time after each poll.
+                # With a timeout the library also checks the time after each poll.
                 return function(motor, timeout)
             self.until_motors_stop += 1
             try:
@@ -63,21 +63,21 @@ class Patience:
 
 
 class MotorPoll:
-    """Stands in for `select.poll` in the library: waits for a motor in simulated time."""
+    """Replaces `select.poll` in the library: waits for a motor in simulated time."""
 
     def __init__(self, session: Session, patience: Patience) -> None:
         self._session, self._patience = session, patience
 
     def register(self, _file: OpenAttribute, _events: int = 0) -> None:
-        """Any motor that changes ends the wait; the library looks at its own again."""
+        """Do nothing: any motor that changes ends the wait, and the library checks its own motor again."""
 
     def poll(self, timeout_ms: float | None = None) -> list[Any]:
-        """Wait until a motor ends a move, at most so long."""
+        """Block until a motor ends a move or the timeout is over."""
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
         sim = self._session.sim
-        # One that is told to stand never ends its move: it is noticed as stalled by looking again.
-        told_to_stand = any(motor.mode and not motor.aim_dps for motor in (sim.left, sim.right, *sim.others))
-        self._session.wait_for_motor(timeout_ns, again=self._patience.until_motors_stop > 0 and not told_to_stand)
+        # A running motor with target speed 0 never ends its move: repeated polling lets it count as stalled.
+        target_zero = any(motor.mode and not motor.aim_dps for motor in (sim.left, sim.right, *sim.others))
+        self._session.wait_for_motor(timeout_ns, again=self._patience.until_motors_stop > 0 and not target_zero)
         return []
 
 
@@ -97,14 +97,14 @@ def connect(session: Session, brick: Brick) -> None:
 
 
 def _in_place_of(original: Callable[..., Any], replacement: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a copy of `replacement` with the name and signature of what it replaces."""
+    """Return a copy of `replacement` with the name and signature of `original`."""
     code: Any = replacement
     copy = types.FunctionType(code.__code__, code.__globals__, original.__name__, None, code.__closure__)
     return wraps(original)(copy)
 
 
 def _patch_look_up(session: Session, library: Any) -> None:
-    """Let the error about a device that is not there also say what is."""
+    """Extend the error about a missing device by a list of the devices that exist."""
     look_up = library.Device.__init__
 
     @wraps(look_up)
@@ -133,7 +133,7 @@ def _device_lister(brick: Brick) -> Callable[..., Iterator[str]]:
 
 
 def _matches(value: str, pattern: str | list[str]) -> bool:
-    # The library matches parts of the text, so that both outA and ev3-ports:outA find the port.
+    # The library matches substrings, so that both outA and ev3-ports:outA find the port.
     return any(part in value for part in pattern) if isinstance(pattern, list) else pattern in value
 
 
@@ -181,7 +181,7 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
 
 
 def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` with the library's own look-ups inside it costing nothing."""
+    """Return `function` with the library's own look-ups inside it free of charge."""
 
     @wraps(function)
     def wrapper(*args: Any, **kwargs: Any) -> Any:
@@ -195,7 +195,7 @@ def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[.
 
 
 def _set_directly(motor_class: Any, brick: Brick) -> None:
-    """Shorten the way of the two attributes that a control loop sets in every turn."""
+    """Shorten the path of the two attributes that a control loop sets in every iteration."""
     devices = brick.by_path
 
     def set_speed(self: Any, value: Any) -> None:
@@ -216,7 +216,7 @@ def _set_directly(motor_class: Any, brick: Brick) -> None:
 
 
 def patch_motor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
-    """Finish `ev3dev2.motor` after its import."""
+    """Patch `ev3dev2.motor` after its import."""
     motor: Any = module
     _set_directly(motor.Motor, brick)
     patience = Patience()
@@ -229,7 +229,7 @@ def patch_motor_module(session: Session, module: types.ModuleType, brick: Brick)
 
 
 def patch_sensor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
-    """Finish `ev3dev2.sensor` after its import: looking up or setting the mode costs nothing."""
+    """Patch `ev3dev2.sensor` after its import: reading or setting the mode costs nothing."""
     devices = brick.by_path
     sensor: Any = module
 

@@ -1,7 +1,7 @@
-"""Gives the methods of a library class other globals, while its module keeps its own.
+"""Gives the methods of a library class other globals without changing its module.
 
-A program that imports everything from such a module also gets what the module itself has
-imported, such as `os`: that must stay what it is.
+A program that does `from module import *` also gets the names that the module itself has
+imported, such as `os`: those must not change.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from typing import Any
 
 
 def rebind(changed: type[Any], **names: object) -> None:
-    """Let all methods and properties of a class see other things under some global names.
+    """Replace global names for all methods and properties of a class.
 
     Args:
-        changed: The class.
-        names: What they see, by name.
+        changed: The class to patch.
+        names: Replacements, by global name.
     """
     for name, part in list(vars(changed).items()):
         match part:

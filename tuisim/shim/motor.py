@@ -1,4 +1,4 @@
-"""Tacho motors: set points, commands and state, as the kernel driver has them."""
+"""Tacho motors: set points, commands and state, as the kernel driver exposes them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MAX_SET_POINT = 2**31 - 1
 
 @dataclass(frozen=True, slots=True)
 class MotorKind:
-    """What the driver knows of one kind of motor."""
+    """The driver's constants for one kind of motor."""
 
     driver_name: str
     max_speed_dps: int
@@ -47,7 +47,7 @@ class TachoMotor:
     Args:
         session: Clock and simulation.
         motor: The simulated motor.
-        port: Such as `outB`.
+        port: Name of the port, such as `outB`.
         kind: One of `KINDS`.
     """
 
@@ -58,8 +58,8 @@ class TachoMotor:
         self._port = port
         self._numbers: dict[str, int] = {}
         self._direct = False
-        self._stands_tick = 0
-        """With speed 0 asked for, the tick at which the motor comes to stand."""
+        self._standstill_tick = 0
+        """Tick at which a motor with target speed 0 comes to a stop."""
         self._set_defaults()
 
     def _set_defaults(self) -> None:
@@ -73,7 +73,7 @@ class TachoMotor:
         self._last_goal: float | None = None
         self._holding = False
         self._ramps = False
-        """Whether a ramp set point slows changes of speed down."""
+        """Whether a ramp set point limits changes of speed."""
 
     def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""
@@ -130,14 +130,14 @@ class TachoMotor:
         return round(self._motor.moving_dps) * self._sign
 
     def state(self) -> str:
-        """Return the state flags, blank-separated, in the driver's order."""
+        """Return the state flags, separated by spaces, in the driver's order."""
         motor = self._motor
         if motor.mode == STOPPED:
             return "holding" if self._holding else ""
         sim = self._session.sim
         if motor.blocked_ticks >= sim.stall_ticks:
             return "running overloaded stalled"
-        if motor.target_dps == 0.0 and sim.tick >= self._stands_tick + sim.stall_ticks:
+        if motor.target_dps == 0.0 and sim.tick >= self._standstill_tick + sim.stall_ticks:
             return "running stalled"
         return "running ramping" if motor.speed_dps != motor.target_dps else "running"
 
@@ -162,7 +162,7 @@ class TachoMotor:
         self._direct = text == "run-direct"
         speed = self._numbers["speed_sp"] * self._sign
         motor = self._motor
-        # The stop action in force at the start of a move applies at its end.
+        # The stop action at the start of a move applies at its end.
         self._holding = self._stop_action == "hold"
         if text == "run-forever":
             motor.run(float(speed))
@@ -185,23 +185,23 @@ class TachoMotor:
         self._begun()
 
     def _begun(self) -> None:
-        """See to what hardly any move needs: ramps, and a motor that is told to stand."""
+        """Handle the rare cases of a move: ramps, and target speed 0."""
         if self._ramps or self._motor.target_dps == 0.0:
             self._ramp()
 
     def _stop(self) -> None:
-        """Stop, slowing down first where a ramp is asked for."""
+        """Stop, decelerating first if a ramp is set."""
         self._last_goal = None
         motor, sim, down = self._motor, self._session.sim, self._ramp_dps2("ramp_down_sp")
         if not down or not motor.moving_dps:
             motor.stop()
             return
         if motor.mode == TIMED and motor.target_dps == 0.0:
-            # It is slowing down already.
+            # It is decelerating already.
             return
         motor.slowest_ramp_dps2 = down
-        self._stands_tick = sim.tick + math.ceil(abs(motor.speed_dps) / motor.ramp_step)
-        motor.run_until(0.0, self._stands_tick)
+        self._standstill_tick = sim.tick + math.ceil(abs(motor.speed_dps) / motor.ramp_step)
+        motor.run_until(0.0, self._standstill_tick)
         motor.slowest_ramp_dps2 = down
 
     def _run_direct(self) -> None:
@@ -221,12 +221,12 @@ class TachoMotor:
         self._begun()
 
     def _ramp_dps2(self, name: str) -> float:
-        """The change of speed that a ramp set point allows, 0 for none."""
+        """Return the acceleration that a ramp set point allows, 0 for no ramp."""
         ramp_ms = self._numbers[name]
         return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms else 0.0
 
     def _ramp(self) -> None:
-        """Hand the ramp set points to the motor, and note when one that is told to stand stands."""
+        """Pass the ramp set points to the motor, and compute when a motor with target speed 0 stops."""
         motor, sim = self._motor, self._session.sim
         if self._numbers["ramp_up_sp"] or self._numbers["ramp_down_sp"]:
             faster = abs(motor.target_dps) > abs(motor.speed_dps)
@@ -235,7 +235,7 @@ class TachoMotor:
                 motor.approach_dps2 = self._ramp_dps2("ramp_down_sp")
         if motor.target_dps == 0.0:
             step = motor.ramp_step
-            self._stands_tick = sim.tick + (math.ceil(abs(motor.speed_dps) / step) if step else 0)
+            self._standstill_tick = sim.tick + (math.ceil(abs(motor.speed_dps) / step) if step else 0)
 
     def _run_absolute(self, speed: float) -> None:
         goal = float(self._numbers["position_sp"] * self._sign)

@@ -1,7 +1,7 @@
-"""The brick's eight ports, and what is plugged into them.
+"""The brick's eight ports, and what is connected to them.
 
-A port can be told its mode and device as far as that fits what is plugged in. What would take
-the device away, or put another one there, needs hands: it is refused by name.
+Mode and device of a port can be set as far as they match the connected device. A setting that
+would disconnect or exchange the device is refused with a message that names it.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from tuisim.shim.session import Session
 PORT_CLASS = "lego-port"
 """The kernel's class of ports."""
 AUTO = "auto"
-"""The mode in which a port finds out by itself what is plugged in."""
+"""The mode in which a port detects the connected device by itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class PortKind:
-    """What ports of one side of the brick have in common."""
+    """Common properties of the input or the output ports."""
 
     driver_name: str
     modes: tuple[str, ...]
     empty: str
-    """The status while nothing is plugged in."""
+    """The status while nothing is connected."""
 
 
 INPUT = PortKind(
@@ -42,15 +42,15 @@ OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "r
 
 @dataclass(frozen=True, slots=True)
 class Plugged:
-    """What is plugged into a port."""
+    """The device that is connected to a port."""
 
     driver_name: str
     mode: str
-    """The mode of the port that it needs."""
+    """The port mode it needs."""
 
 
 def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
-    """Return what is on the robot's ports, by their short names such as `in1`."""
+    """Return the devices on the robot's ports, by short name such as `in1`."""
     found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in robot.motors}
     for kind, sensor in mounted(robot):
         found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
@@ -62,8 +62,8 @@ class LegoPort:
 
     Args:
         session: Clock and simulation.
-        port: Its short name, such as `in1`.
-        plugged: What is plugged in.
+        port: Short name, such as `in1`.
+        plugged: The connected device.
     """
 
     def __init__(self, session: Session, port: str, plugged: Plugged | None) -> None:
@@ -72,7 +72,7 @@ class LegoPort:
         self._mode = AUTO
 
     def device(self) -> SimDevice:
-        """Return it as the library's device."""
+        """Return the device that the library reads and writes."""
         return SimDevice(
             self._session,
             {

@@ -1,10 +1,10 @@
-"""The battery: a rechargeable one whose voltage falls with what the brick and its wheels draw.
+"""The battery: a rechargeable one whose voltage depends on its charge and the current.
 
-The open voltage falls in a straight line from `FULL_V` to `EMPTY_V` over the capacity; under
-a current it is lower by that current times the inner resistance. The brick draws `BRICK_A` all
+The open-circuit voltage falls linearly from `FULL_V` to `EMPTY_V` over the capacity; a current
+lowers it by that current times the internal resistance. The brick draws `BRICK_A` all
 the time, a running motor `RUNNING_A` and `SPEED_A` more at full speed, a blocked one `BLOCKED_A`.
-What was drawn before is the sum over the recorded ticks, so only the driving motors count there.
-The same world at the same tick has the same voltage, however often it was measured.
+The charge drawn is the sum over the recorded ticks, so only the wheel motors count there.
+The same world at the same tick has the same voltage, no matter how often it was measured.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tuisim.shim.devices import SimDevice
 from tuisim.shim.session import Session
 
 POWER_CLASS, BATTERY = "power_supply", "lego-ev3-battery"
-"""Class and name of the battery, as the kernel has them."""
+"""Class and name of the battery, by their kernel names."""
 
 FULL_V, EMPTY_V = 8.1, 6.0
 MAX_DESIGN_V, MIN_DESIGN_V = 8.4, 6.0
@@ -28,7 +28,7 @@ S_PER_H = 3600
 
 
 class Battery:
-    """The battery of a run.
+    """The battery of one run.
 
     Args:
         session: Clock and simulation.
@@ -39,10 +39,10 @@ class Battery:
         self._max_dps = session.sim.spec.profile.max_speed_dps
         self._records = 0
         self._drawn_as = 0.0
-        """Ampere seconds drawn in the records so far."""
+        """Ampere seconds drawn in the records summed up to now."""
 
     def device(self) -> SimDevice:
-        """Return it as the library's device."""
+        """Return the device that the library reads and writes."""
         return SimDevice(
             self._session,
             {
@@ -58,7 +58,7 @@ class Battery:
         )
 
     def current_a(self) -> float:
-        """Return the current at this moment."""
+        """Return the present current."""
         sim = self._session.sim
         return BRICK_A + sum(self._motor_a(motor) for motor in (sim.left, sim.right, *sim.others))
 
@@ -73,7 +73,7 @@ class Battery:
         return RUNNING_A + SPEED_A * abs(speed_dps) / self._max_dps
 
     def voltage_v(self) -> float:
-        """Return the voltage at this moment."""
+        """Return the present voltage."""
         used = self._taken_as() / S_PER_H / CAPACITY_AH
         return max(EMPTY_V, FULL_V - (FULL_V - EMPTY_V) * used) - INNER_OHM * self.current_a()
 

@@ -1,11 +1,11 @@
-"""What the course adds to the library's classes: the `robolab` overlay.
+"""The course's additions to the library's classes: the `robolab` overlay.
 
 | in ColorSensor | value |
 | --- | --- |
-| reflected_light_intensity | int(red), 0 … 255, where the profile says so (the library: 0 … 100) |
+| reflected_light_intensity | int(red), 0 … 255, if the profile says so (the library: 0 … 100) |
 | reflected_light_intensity_pc | 100 · int(red) / 255 |
 | full_reflected_light_intensity | 100 · (int(red) + int(green) + int(blue)) / 765 |
-| red, green, blue | whole channels, 0 … 255, where the profile says so (the library: 0 … 1020, 300 on white) |
+| red, green, blue | channels as integers, 0 … 255, if the profile says so (the library: 0 … 1020, 300 on white) |
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, 
 
     color_sensor.reflected_light_intensity_pc = property(red_percent)
     color_sensor.full_reflected_light_intensity = property(mean_percent)
-    # The library's constructor reads the angle to remember where it began.
+    # The library's constructor reads the initial angle.
     lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)
 
 
@@ -66,9 +66,9 @@ def glue_module(session: Session) -> types.ModuleType:
         return plain(seconds) if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM else seconds
 
     def pyState() -> dict[str, list[Any]]:
-        """Return all answers of a notebook's responder so far, oldest first; without one there are none.
+        """Return all answers of a notebook's responder, oldest first; empty without a responder.
 
-        It has answered every line printed for it by now, and no simulated time passes meanwhile.
+        The responder has answered every printed line by then. No simulated time passes.
         """
         return {"messages": session.messages()}
 

@@ -1,4 +1,4 @@
-"""The brick's one screen, that pictures and text take turns on."""
+"""The brick's screen, which images and text share."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from tuisim.shim.session import Session
 
 
 class Screen:
-    """Writes down what the screen shows, each time it changes.
+    """Records the contents of the screen each time they change.
 
     Args:
-        session: Takes the rows.
+        session: Receives the rows.
     """
 
     def __init__(self, session: Session) -> None:
@@ -17,11 +17,11 @@ class Screen:
         self._shown: tuple[str, int] | None = None
 
     def show(self, row: str, stream: int) -> None:
-        """Show a picture or a text; the same again is not written down.
+        """Show an image or a text; unchanged contents are not recorded again.
 
         Args:
-            row: As `datalog.face` makes it.
-            stream: `DISPLAY` or `CONSOLE` of `datalog.records`.
+            row: In the format of `runs.brick_state`.
+            stream: `DISPLAY` or `CONSOLE` of `runs.records`.
         """
         if (row, stream) != self._shown:
             self._shown = (row, stream)

@@ -1,4 +1,4 @@
-"""What the shim needs to know of the session that runs the program."""
+"""The shim's view of the session that runs the program."""
 
 from __future__ import annotations
 
@@ -16,35 +16,35 @@ class Session(Protocol):
     now: int
     """Simulated ns since the start."""
     free: int
-    """Above 0 while calls cost nothing: the library's own look-ups, constructors, the prelude."""
+    """Above 0 while calls are free of charge: the library's own look-ups, constructors, the prelude."""
 
     pressed: frozenset[str]
-    """The brick's buttons that are held down, as the library names them."""
+    """The pressed buttons of the brick, by their names in the library."""
 
     @property
     def field(self) -> Field:
-        """The mat as it is now."""
+        """The mat in its current state."""
 
     def spend(self, duration_ns: int) -> None:
-        """Let time pass, whatever it costs."""
+        """Let simulated time pass, even where calls are free."""
 
     def charge(self, cost_ns: int) -> None:
-        """Let the stated cost of a call pass, unless calls are free now."""
+        """Let the time of a call pass, unless calls are free."""
 
     def command(self) -> None:
-        """Count a call that costs nothing, so that no loop of them stands still for ever."""
+        """Count a call without a cost, so that no loop of such calls runs forever without time passing."""
 
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
-        """Wait until a motor ends a move, at most so long; `again`: the caller then just waits again."""
+        """Block until a motor ends a move or the timeout is over; `again`: the caller then just waits again."""
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
-        """Show what is heard; the program goes on after `wait_ns`. The others are as in `protocol.Spoke`."""
+        """Record a sound and block for `wait_ns`. The other arguments are as in `protocol.Spoke`."""
 
     def messages(self) -> list[Any]:
-        """Return what the host's responder has said so far; it is asked first, and no time passes meanwhile."""
+        """Return all answers of the host's responder; waits for pending ones, without simulated time passing."""
 
     def show(self, row: str, stream: int) -> None:
-        """Write down what the brick shows; `stream` is one of `records`, `row` as `datalog.face` makes it."""
+        """Record what the brick shows; `stream` is one of `records`, `row` has the format of `runs.brick_state`."""
 
     def aside(self, work: Callable[[], None]) -> None:
-        """Let something be done while the program goes on."""
+        """Run `work` in the background while the program continues."""

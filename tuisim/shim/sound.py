@@ -1,4 +1,4 @@
-"""Sound: the library's commands to the loudspeaker are shown, and take the time that they sound."""
+"""Sound: the library's commands to the loudspeaker are shown, and take as long as they sound."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from tuisim.shim.tones import Heard, Tone, heard_of, song_of
 
 LOUDEST = 100
 CHANNEL = "Playback"
-"""The mixer's only channel on the brick."""
+"""The only mixer channel of the brick."""
 SHORTEST_TURN_NS = 100 * MS
-"""A sound that is played for ever begins anew not sooner than this: the player has to start."""
+"""Shortest period of a sound that repeats forever: the player has to start."""
 NO_PID = 1 << 22
-"""No process of this computer has such a number, or a higher one (Linux: PID_MAX_LIMIT)."""
+"""No process of this computer has this or a higher number (Linux: PID_MAX_LIMIT)."""
 _KILLED, _TERMINATED = -9, -15
 
 
 class PlayedSound:
-    """Stands in for the process that plays a sound while the program goes on.
+    """Represents the process that plays a sound while the program continues.
 
     Args:
         session: The program's clock.
-        command: What is played.
-        length_ns: How long it sounds.
+        command: The command that plays it.
+        length_ns: Duration of the sound.
     """
 
     stdin = stdout = stderr = None
@@ -41,17 +41,17 @@ class PlayedSound:
         self._session, self._until = session, session.now + length_ns
 
     def poll(self) -> int | None:
-        """Return the exit status, None while it sounds."""
+        """Return the exit status; None while it plays."""
         self._session.command()
         if self.returncode is None and self._session.now >= self._until:
             self.returncode = 0
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
-        """Wait for the end and return the exit status.
+        """Block until the sound ends; return the exit status.
 
         Raises:
-            subprocess.TimeoutExpired: it sounds for longer than `timeout` seconds.
+            subprocess.TimeoutExpired: it plays for longer than `timeout` seconds.
         """
         if self.returncode is None:
             rest_ns = max(self._until - self._session.now, 0)
@@ -64,16 +64,16 @@ class PlayedSound:
         return self.poll() or 0
 
     def communicate(self, input: bytes | None = None, timeout: float | None = None) -> tuple[bytes, bytes]:  # noqa: A002
-        """Wait for the end; there is no output."""
+        """Block until the sound ends; there is no output."""
         self.wait(timeout)
         return b"", b""
 
     def kill(self) -> None:
-        """End it."""
+        """End the sound."""
         self._end(_KILLED)
 
     def terminate(self) -> None:
-        """End it."""
+        """End the sound."""
         self._end(_TERMINATED)
 
     def _end(self, status: int) -> None:
@@ -82,7 +82,7 @@ class PlayedSound:
 
 
 class Mixer:
-    """What sets the volume and tells it: `amixer`."""
+    """The volume, as `amixer` sets and reports it."""
 
     def __init__(self) -> None:
         self._volumes: dict[str, int] = {}
@@ -92,34 +92,34 @@ class Mixer:
         return self._volumes.get(channel or CHANNEL, LOUDEST)
 
     def do(self, words: Sequence[str]) -> str:
-        """Do what `amixer` with these arguments does, and return what it prints.
+        """Run `amixer` with these arguments and return its output.
 
         Args:
-            words: `set CHANNEL VOLUME%`, `get CHANNEL`, `scontrols`, or nothing for all there is.
+            words: `set CHANNEL VOLUME%`, `get CHANNEL`, `scontrols`, or none for all controls.
 
         Raises:
-            ValueError: they are others.
+            ValueError: other arguments.
         """
         match words:
             case ["set" | "sset", *channel, level] if (percent := level.rstrip("%")).lstrip("-").isdigit():
                 self._volumes[" ".join(channel)] = min(max(int(percent), 0), LOUDEST)
-                return self._told(" ".join(channel))
+                return self._control_text(" ".join(channel))
             case ["get" | "sget", *channel] if channel:
-                return self._told(" ".join(channel))
+                return self._control_text(" ".join(channel))
             case ["scontrols"]:
                 return f"Simple mixer control '{CHANNEL}',0\n"
             case []:
-                return self._told(CHANNEL)
+                return self._control_text(CHANNEL)
         raise ValueError(f"{' '.join(words)!r} is not simulated: set CHANNEL VOLUME%, get CHANNEL or scontrols")
 
-    def _told(self, channel: str) -> str:
+    def _control_text(self, channel: str) -> str:
         return (
             f"Simple mixer control '{channel}',0\n  Mono: Playback {self.volume(channel)} [{self.volume(channel)}%]\n"
         )
 
 
 class Loudspeaker:
-    """Gives sounds to the session.
+    """Passes sounds to the session.
 
     Args:
         session: The program's clock.
@@ -128,17 +128,17 @@ class Loudspeaker:
     def __init__(self, session: Session) -> None:
         self._session = session
         self.song: list[Tone] | None = None
-        """Collects the tones of a song while the library goes through its notes."""
+        """Collects the tones of a song while the library plays its notes."""
 
     def play(self, heard: Heard, wait_ns: int) -> None:
-        """Let a sound be heard, and let so much time pass."""
+        """Play a sound and let `wait_ns` pass."""
         self._session.speak(heard.text, wait_ns, heard.tones_row, heard.file)
 
     def rest(self, seconds: float) -> None:
-        """Be silent: the library's `sleep`, with which it does nothing else.
+        """Pause silently; replaces the library's `sleep`.
 
         Raises:
-            ValueError: for less than no time, as `sleep` says it.
+            ValueError: `seconds` is negative, with the message of `sleep`.
         """
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")
@@ -147,7 +147,7 @@ class Loudspeaker:
 
 
 def patch_sound_module(session: Session, module: types.ModuleType, mixer: Mixer) -> None:
-    """Finish `ev3dev2.sound` after its import."""
+    """Patch `ev3dev2.sound` after its import."""
     sound: Any = module
     speaker = Loudspeaker(session)
     rebind(sound.Sound, sleep=speaker.rest)
@@ -166,7 +166,7 @@ def _patch_playing(session: Session, sound: Any, speaker: Loudspeaker) -> None:
         if play_type not in sound.Sound.PLAY_TYPES:
             give_command(self, command, play_type)
         if not mended:
-            # The library splits a command at each bar before it looks at quotes.
+            # The library splits a command at each | before it handles quotes.
             for part in command.split("|"):
                 shlex.split(part)
         heard = heard_of(command)
@@ -186,12 +186,12 @@ def _patch_playing(session: Session, sound: Any, speaker: Loudspeaker) -> None:
 
 
 def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
-    """Let a song be one sound, with the library's own reading of its notes."""
+    """Play a song as one sound; the library itself still parses its notes."""
     read_song = sound_class.play_song
 
     @wraps(read_song)
     def play_song(self: Any, song: Any, *args: Any, **kwargs: Any) -> Any:
-        # All notes first: one that is still to be computed could let other threads play meanwhile.
+        # All notes first: computing one later could let other threads play in between.
         notes = list(song)
         speaker.song = []
         try:
@@ -199,7 +199,7 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
         finally:
             tones, speaker.song = speaker.song, None
             if tones:
-                # Also when a later note is wrong: those before it were heard.
+                # Also if a later note is invalid: those before it were played.
                 heard = song_of(tones)
                 speaker.play(heard, heard.length_ns)
 
@@ -207,7 +207,7 @@ def _patch_songs(sound_class: Any, speaker: Loudspeaker) -> None:
 
 
 def _mend(sound_class: Any, mixer: Mixer) -> None:
-    """Put right what course programs need: the volume can be read, and any text can be said."""
+    """Fix what course programs need: the volume can be read, and any text can be spoken."""
     say = sound_class.speak
 
     @wraps(sound_class.get_volume)

@@ -1,4 +1,4 @@
-"""A grid of letters that understands the control codes which the library writes."""
+"""A character grid that interprets the control codes which the library writes."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import re
 from tuisim.runs.brick_state import TextScreen
 
 BLANK = (" ", False)
-"""A cell: letter, and whether it is in reverse video."""
+"""A cell: character, and whether it is in reverse video."""
 
 _PARTS = re.compile(r"\x1b\[\??([-\d;]*)([A-Za-z])|([^\x1b])|\x1b", re.DOTALL)
 
 
 class TextGrid:
-    """The Linux console as far as the library uses it.
+    """The subset of the Linux console that the library uses.
 
     Args:
-        columns: Letters a row.
+        columns: Characters per row.
         rows: Number of rows.
     """
 
@@ -24,18 +24,18 @@ class TextGrid:
         self.columns, self.rows = columns, rows
         self._cells = [[BLANK] * columns for _ in range(rows)]
         self._column = self._row = 0
-        """Where the next letter goes, from 0; one column too far until the next letter wraps."""
+        """Cursor position from 0; one column beyond the last until the next character wraps."""
         self._inverse = False
 
     def resize(self, columns: int, rows: int) -> None:
-        """Take another size; what still fits stays."""
+        """Change the size; content that still fits is kept."""
         self.columns, self.rows = columns, rows
         wide = [(row + [BLANK] * columns)[:columns] for row in self._cells[:rows]]
         self._cells = wide + [[BLANK] * columns for _ in range(rows - len(wide))]
         self._move(self._column, self._row)
 
     def write(self, text: str) -> None:
-        """Write letters and obey control codes; codes that are not known are left out."""
+        """Write characters and interpret control codes; unknown codes are ignored."""
         for part in _PARTS.finditer(text):
             numbers, code, letter = part.groups()
             if code:
@@ -44,7 +44,7 @@ class TextGrid:
                 self._put(letter)
 
     def screen(self) -> TextScreen:
-        """Return what is seen."""
+        """Return the visible text."""
         spans = []
         for number, row in enumerate(self._cells):
             start = None
@@ -62,7 +62,7 @@ class TextGrid:
         first = numbers[0]
         match code:
             case "H":
-                # Places before the first one are taken for the first one.
+                # Positions below 1 count as 1.
                 column = numbers[1] if len(numbers) > 1 else 1
                 self._move(column - 1, first - 1)
             case "J" if first == 2:

@@ -1,4 +1,4 @@
-"""What is heard: the brick's commands for sound (`beep`, `aplay`, `espeak`) in words, time and tones."""
+"""Sounds: the brick's sound commands (`beep`, `aplay`, `espeak`) as text, duration and tones."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from dataclasses import dataclass
 from tuisim.core.profile import MS
 
 BEEP_HZ, BEEP_MS, REPEAT_PAUSE_MS = 440.0, 200.0, 100.0
-"""What `beep` takes where nothing is said."""
+"""Defaults of `beep`."""
 HIGHEST_HZ = 20_000.0
-"""`beep` refuses what is above."""
+"""`beep` rejects higher frequencies."""
 MOST_REPETITIONS = 10_000
-"""Each is listed."""
+"""Limit, because each repetition is listed."""
 WORDS_PER_MINUTE = 175
-"""What `espeak` takes where nothing is said; the library says 130."""
+"""Default of `espeak`; the library passes 130."""
 SLOWEST_WPM, FASTEST_WPM = 80, 450
-"""The limits of `espeak`."""
+"""Limits of `espeak`."""
 NAMED_TONES = 4
-"""More tones than this are only counted."""
+"""Tones beyond this number are only counted."""
 
 _TO_SPEAKER = " | /usr/bin/aplay -q"
 
@@ -35,11 +35,11 @@ class Tone:
     """0 is silence."""
     length_ms: float
     pause_ms: float = 0.0
-    """Silence after it."""
+    """Silence after the tone."""
 
     @property
     def total_ms(self) -> float:
-        """Length with the pause."""
+        """Duration including the pause."""
         return self.length_ms + self.pause_ms
 
 
@@ -48,24 +48,24 @@ class Heard:
     """One sound."""
 
     text: str
-    """In words; in brackets unless it is speech."""
+    """Description; in brackets unless it is speech."""
     length_ns: int
     tones: tuple[Tone, ...] = ()
     """Empty for speech."""
     file: str = ""
-    """Whole path of a sound file."""
+    """Absolute path of a sound file."""
     refused: bool = False
-    """Whether nothing is heard: the command is wrong, or the file."""
+    """Whether it is silent because the command or the file is invalid."""
 
     @property
     def tones_row(self) -> str:
-        """The tones as in `protocol.Spoke`."""
+        """The tones in the format of `protocol.Spoke`."""
         rows = [[_plain(tone.frequency_hz), _plain(tone.length_ms), _plain(tone.pause_ms)] for tone in self.tones]
         return json.dumps(rows) if rows else ""
 
 
 def heard_of(command: str) -> Heard:
-    """Return what a sound command sounds like.
+    """Return the sound of a command.
 
     Raises:
         ValueError: a quote in it is not closed.
@@ -81,7 +81,7 @@ def heard_of(command: str) -> Heard:
 
 
 def song_of(tones: Sequence[Tone]) -> Heard:
-    """Return the sound of a whole song; silent tones are its rests."""
+    """Return the sound of a whole song; silent tones are rests."""
     count = sum(tone.frequency_hz > 0 for tone in tones)
     length_ns = _total_ns(tones)
     notes = "1 note" if count == 1 else f"{count} notes"
@@ -95,7 +95,7 @@ def parse_beep(words: Sequence[str]) -> list[Tone]:
         words: Its arguments: -f Hz, -l ms, -r repetitions, -d ms between them, -D ms after each, -n for another tone.
 
     Raises:
-        ValueError: `beep` would refuse them.
+        ValueError: `beep` would reject the arguments.
     """
     import getopt
 
@@ -135,11 +135,11 @@ def _repeated(note: dict[str, float]) -> list[Tone]:
 
 
 def beep_heard(words: Sequence[str]) -> Heard:
-    """Return what `beep` with these arguments sounds like."""
+    """Return the sound of `beep` with these arguments."""
     try:
         tones = parse_beep(words)
     except ValueError as error:
-        # The real one writes how it is used to where nobody reads it, and makes no sound.
+        # The real program prints its usage where nobody reads it, and makes no sound.
         return Heard(f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),), refused=True)
     if not words:
         text = "[beep]"
@@ -154,11 +154,11 @@ def beep_heard(words: Sequence[str]) -> Heard:
 
 
 def file_heard(path: str, folder: str = "") -> Heard:
-    """Return what a sound file sounds like.
+    """Return the sound of a sound file.
 
     Args:
-        path: The file, as the program names it.
-        folder: Where a relative path begins; by default where the program is.
+        path: The path that the program gave.
+        folder: Base of a relative path; by default the program's working directory.
     """
     import wave
 
@@ -167,18 +167,18 @@ def file_heard(path: str, folder: str = "") -> Heard:
         with wave.open(place, "rb") as file:
             seconds = file.getnframes() / file.getframerate()
     except (wave.Error, EOFError, OSError, ZeroDivisionError) as error:
-        # As above: the real player fails where nobody sees it.
+        # As above: the error message of the real player is not visible.
         return Heard(f"[cannot play {path}: {str(error) or 'it is cut off'}]", 0, (Tone(0.0, 0.0),), refused=True)
     tones = (Tone(0.0, seconds * 1000),)
     return Heard(f"[plays {path}, {seconds:.1f} s]", _total_ns(tones), tones, os.path.abspath(place))
 
 
 def speech_heard(text: str, words_a_minute: str = "") -> Heard:
-    """Return what a text sounds like.
+    """Return the sound of a spoken text.
 
     Args:
-        text: What is said.
-        words_a_minute: As it is given to `espeak`; it takes its own pace where that is no number.
+        text: The text.
+        words_a_minute: Argument for `espeak`; its default applies if that is not a number.
     """
     try:
         speed = min(max(int(words_a_minute), SLOWEST_WPM), FASTEST_WPM)
@@ -193,7 +193,7 @@ def _speech(text: str, words: list[str]) -> Heard:
     try:
         options = dict(getopt.gnu_getopt(words, "a:s:v:p:g:k:l:b:f:w:z", ["stdout"])[0])
     except getopt.GetoptError:
-        # How it sounds is not known then, but it is said all the same.
+        # The options are unknown then, but the text is spoken.
         options = {}
     return speech_heard(text, options.get("-s", ""))
 
@@ -203,5 +203,5 @@ def _total_ns(tones: Sequence[Tone]) -> int:
 
 
 def _plain(number: float) -> float:
-    """Return a whole number as one, so that it is written without a point."""
+    """Return a whole number as int, so that it is written without a decimal point."""
     return int(number) if number == int(number) else number

@@ -1,4 +1,4 @@
-"""Parts of the library and of Python that the simulated brick does not have: each says so by its name."""
+"""Parts of the library and of Python that the simulated brick does not have; each raises an error with its name."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ REFUSED: Mapping[str, Mapping[str, str]] = {
         "WebControlledTank": "a program has no network; for driving by hand use RemoteControlledTank or the buttons",
     },
 }
-"""By module, the classes that cannot be made, and what to use in their place."""
+"""Classes that cannot be instantiated and their alternatives, by module."""
 
 _THREADS = "the simulated brick has one process; use threading"
 _IN_CONTEXT = (
     "Array", "Barrier", "BoundedSemaphore", "Condition", "Event", "JoinableQueue", "Lock", "Manager", "Pipe", "Pool",
     "Queue", "RLock", "RawArray", "RawValue", "Semaphore", "SimpleQueue", "Value",
 )  # fmt: skip
-"""What `multiprocessing` makes for processes: some of it would start them, the rest would wait for them for ever."""
+"""Members of `multiprocessing` for processes: some would start a process, the others would block forever."""
 
 
 def refuse_contexts(module: Any) -> None:
-    """Refuse what `multiprocessing` gives to processes, after the import of its contexts."""
+    """Refuse the process API of `multiprocessing`; called after the import of its contexts."""
     base = module.BaseContext
     genuine = {name: getattr(base, name) for name in _IN_CONTEXT}
     module.ThreadContext = type("ThreadContext", (base,), {**genuine, "_name": "fork"})
@@ -39,7 +39,7 @@ def refuse_contexts(module: Any) -> None:
 
 
 def keep_thread_pool(module: types.ModuleType) -> None:
-    """Let the pool of threads have what is refused to processes, after the import of `multiprocessing.pool`."""
+    """Let `ThreadPool` use what is refused for processes; called after the import of `multiprocessing.pool`."""
     contexts: Any = sys.modules["multiprocessing.context"]
     pool, context = module.Pool, contexts.ThreadContext()
 
@@ -50,17 +50,17 @@ def keep_thread_pool(module: types.ModuleType) -> None:
 
 
 def refuse_process(module: types.ModuleType) -> None:
-    """Refuse processes, after the import of `multiprocessing.process`."""
+    """Refuse processes; called after the import of `multiprocessing.process`."""
     module.BaseProcess.__init__ = _refusal("multiprocessing.Process", _hint("Process"))
 
 
 def refuse_shared_memory(module: types.ModuleType) -> None:
-    """Refuse memory that processes share, after the import of `multiprocessing.shared_memory`."""
+    """Refuse memory shared by processes; called after the import of `multiprocessing.shared_memory`."""
     module.SharedMemory.__init__ = _refusal("multiprocessing.shared_memory.SharedMemory", _THREADS)
 
 
 def refuse_process_pool(module: types.ModuleType) -> None:
-    """Refuse the pool of processes, after the import of `concurrent.futures.process`."""
+    """Refuse the process pool; called after the import of `concurrent.futures.process`."""
     name = "ProcessPoolExecutor"
     getattr(module, name).__init__ = _refusal(f"concurrent.futures.{name}", f"{_THREADS}, or ThreadPoolExecutor")
 
@@ -86,7 +86,7 @@ PROCESSES = {
     "multiprocessing.process": refuse_process,
     "multiprocessing.shared_memory": refuse_shared_memory,
 }
-"""By module, what refuses the parts of it that would start processes of this computer."""
+"""Functions that refuse the parts of a module that would start processes on this computer."""
 
 
 def refuse_classes(module: types.ModuleType) -> None:

@@ -1,1 +1,1 @@
-"""Sensors as the kernel driver has them."""
+"""Sensors as the kernel driver exposes them."""

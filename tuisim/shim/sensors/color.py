@@ -1,4 +1,4 @@
-"""Lego sensors as the kernel driver has them: what they have in common, and the colour sensor."""
+"""LEGO sensors as the kernel driver exposes them: the base class, and the colour sensor."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tuisim.shim.devices import SimDevice, Writer, refuse
 from tuisim.shim.session import Session
 
 RAW_WHITE = 300
-"""What the raw channels give on white; the library scales by it until it is calibrated."""
+"""Value of the raw channels on white; the library scales by it until it is calibrated."""
 
 
 FORMS = {"s8": "b", "s16": "h"}
-"""Formats of binary values, by the driver's name and by that of `struct`."""
+"""Formats of binary values: the driver's names and those of `struct`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +35,14 @@ class Mode:
 
 
 def _no_commands(_text: str = "") -> NoReturn:
-    """Fail as the driver of a sensor without commands does."""
+    """Raise the driver's error for a sensor without commands."""
     raise OSError(errno.EOPNOTSUPP, "this sensor has no commands")
 
 
 class LegoSensor:
     """A sensor on an input port.
 
-    Reading `value0` takes a new measurement and costs its time; `value1` and the following
+    Reading `value0` takes a new measurement and costs its time; `value1` and the following ones
     read directly after it belong to the same measurement and cost nothing.
     """
 
@@ -57,7 +57,7 @@ class LegoSensor:
         self._next_free = (-1, -1)
 
     def writers(self) -> dict[str, Writer]:
-        """Return what takes the text written to each attribute."""
+        """Return the functions that accept text written to each attribute."""
         return {"mode": self.set_mode, "command": _no_commands}
 
     def device(self) -> SimDevice:
@@ -75,7 +75,7 @@ class LegoSensor:
             "bin_data_format": lambda: self.modes[self.mode].form,
             "bin_data": self._binary,
         }
-        # Values charge for themselves: only the first of a measurement costs.
+        # Values charge by themselves: only the first of a measurement costs time.
         costs = {"bin_data": 0}
         for n in range(8):
             readers[f"value{n}"] = partial(self._value, n)
@@ -89,7 +89,7 @@ class LegoSensor:
         self.mode = text
 
     def measure(self, mode: str) -> tuple[int, ...]:
-        """Take one measurement in a mode, after its cost."""
+        """Take one measurement in a mode. Charges its cost."""
         chosen = self.modes[mode]
         session = self._session
         if not session.free:
@@ -111,7 +111,7 @@ class LegoSensor:
 
 
 class ColorDevice(LegoSensor):
-    """A colour sensor, with the readings that the course's overlay uses."""
+    """A colour sensor, with the additional readings of the course's overlay."""
 
     def __init__(self, session: Session, spec: ColorSensorSpec) -> None:
         profile = session.sim.spec.profile
@@ -121,7 +121,7 @@ class ColorDevice(LegoSensor):
             return (self.channels()[0] * 100 // color.WHITE,)
 
         def raw() -> tuple[int, int, int]:
-            # The library gives int(raw * 255 / 300): rounding up here returns the whole channel exactly.
+            # The library computes int(raw * 255 / 300): rounding up here restores the channel exactly.
             red, green, blue = self.channels()
             return -(-red * RAW_WHITE // 255), -(-green * RAW_WHITE // 255), -(-blue * RAW_WHITE // 255)
 
@@ -143,7 +143,7 @@ class ColorDevice(LegoSensor):
         self._seen_tick, self._seen_actions = -1, -1
 
     def channels(self) -> tuple[int, int, int]:
-        """Return the whole channels that the sensor sees now, free of charge; measured once a tick."""
+        """Return the channels as integers, free of charge; measured once per tick."""
         sim = self._session.sim
         if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
@@ -155,7 +155,7 @@ class ColorDevice(LegoSensor):
         return self._seen
 
     def read(self, mode: str) -> tuple[int, int, int]:
-        """Switch to a mode and return the whole channels, after the cost of a reading."""
+        """Switch to a mode and return the channels as integers. Charges the cost of a reading."""
         self.mode = mode
         session = self._session
         if not session.free:

@@ -1,4 +1,4 @@
-"""Ultrasonic, gyro, touch and infrared sensors: their modes and values, as the kernel driver has them."""
+"""Ultrasonic, gyro, touch and infrared sensors: modes and values, as the kernel driver exposes them."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from tuisim.shim.sensors.color import LegoSensor, Mode
 from tuisim.shim.session import Session
 
 MAX_TENTHS_INCH = 1003
-"""What the sensor gives in inches when no echo returns."""
+"""Reading in inches when no echo returns."""
 MAX_RATE_DPS = 440
-"""The gyro measures no faster turn."""
+"""Highest rate that the gyro measures."""
 
 
 def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[LegoSensor]) -> LegoSensor:
@@ -23,7 +23,7 @@ def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[L
     Args:
         session: Clock and simulation.
         spec: The sensor.
-        others: The robot's sensors, itself among them; it hears those that ping. They may become more later.
+        others: The robot's sensors, including this one; it hears those that ping. More may be added later.
     """
     sim = session.sim
     read, period = sim.spec.profile.ultrasonic_read_ns, sim.spec.profile.ultrasonic_period_ticks
@@ -54,7 +54,7 @@ def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[L
 
 
 class GyroDevice(LegoSensor):
-    """A gyro; it shows 0 again after a calibration."""
+    """A gyro; a calibration resets it to 0."""
 
     def __init__(self, session: Session, spec: GyroSpec) -> None:
         sim = session.sim
@@ -79,11 +79,11 @@ class GyroDevice(LegoSensor):
         super().__init__(session, spec.port, SENSORS["gyro"].driver_name, modes, "GYRO-ANG")
 
     def writers(self) -> dict[str, Writer]:
-        """Return also the attribute through which it is reset."""
+        """Return also the attribute that resets the sensor."""
         return super().writers() | {"direct": lambda _text: self._session.sim.reset_gyro()}
 
     def set_mode(self, text: str) -> None:
-        """Switch the mode; one that ends a calibration sets the angle to 0."""
+        """Switch the mode; a switch that ends a calibration resets the angle to 0."""
         calibrated = self.mode == "GYRO-CAL" != text
         super().set_mode(text)
         if calibrated:

@@ -1,4 +1,4 @@
-"""The brick's commands for text screen and sound, and the shell that carries out lines of them.
+"""The brick's commands for text screen and sound, and the shell that runs lines of them.
 
 To add a command: its function, and a line in `COMMANDS`.
 """
@@ -19,21 +19,21 @@ from tuisim.shim.tones import Heard, beep_heard, file_heard, speech_heard
 
 FAILED = 1
 NEEDS_INPUT = -1
-"""Yielded by a line of commands in place of a time: it goes on when its standard input is complete."""
+"""Yielded instead of a time by a line that continues when its standard input is complete."""
 
 Steps = Generator[int, None, int]
-"""A line of commands at work: yields the ns that each sound takes before it goes on, and returns its exit status."""
+"""A running line of commands: yields the ns that each sound takes, and returns its exit status."""
 
 Sink = Callable[[bytes], None]
-"""Takes what a command writes."""
+"""Receives the output of a command."""
 
 PLAIN_FONT = "default8x16"
-"""What `setfont` takes where nothing is said."""
+"""Default font of `setfont`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Flow:
-    """What goes through a pipe."""
+    """The data in a pipe."""
 
     data: bytes = b""
     sound: Heard | None = None
@@ -42,21 +42,21 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """How a command is called."""
+    """One invocation of a command."""
 
     words: Sequence[str]
-    """Its arguments."""
+    """The arguments."""
     given: Flow
-    """Its standard input."""
+    """The standard input."""
     folder: str
-    """Files are found from here; empty for where the program is."""
+    """Base of relative paths; empty for the program's working directory."""
     in_shell: bool
-    """Whether a shell calls it, which has commands of its own."""
+    """Whether a shell runs it, which has built-in commands."""
 
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a command did."""
+    """Outcome of a command."""
 
     status: int = 0
     output: Flow = Flow()
@@ -65,31 +65,31 @@ class Result:
 
 
 def own_output(data: bytes) -> None:
-    """Write where the program's prints go, also while it has put another stream in place of its own."""
+    """Write to the program's real standard output, even if the program has replaced the stream."""
     assert sys.__stdout__ is not None
     sys.__stdout__.write(data.decode("utf-8", "replace"))
 
 
 def own_errors(data: bytes) -> None:
-    """Write where the program's error text goes."""
+    """Write to the program's real standard error."""
     assert sys.__stderr__ is not None
     sys.__stderr__.write(data.decode("utf-8", "replace"))
 
 
 @dataclass(slots=True)
 class Streams:
-    """Where the commands of one process read and write."""
+    """Standard streams of one process."""
 
     output: Sink = own_output
     errors: Sink = own_errors
     given: Flow | None = Flow()
     """The standard input; None until it is complete."""
     sound: Heard | None = None
-    """Speech as sound that has come to the end of the standard output."""
+    """Speech as sound that has arrived at the standard output."""
 
 
 class Shell:
-    """Carries out lines of commands.
+    """Runs lines of commands.
 
     Args:
         session: The program's clock.
@@ -101,11 +101,11 @@ class Shell:
         self.session, self.terminal, self.mixer = session, terminal, mixer
 
     def line(self, text: str, streams: Streams, folder: str = "") -> Steps:
-        """Carry out a line as a shell does it."""
+        """Run a line as a shell does."""
         try:
             jobs = read_line(text)
         except NotUnderstood as error:
-            _tell(f"sh: {error}", streams.errors, error.status)
+            _write_error(f"sh: {error}", streams.errors, error.status)
             return error.status
         status = 0
         for job in jobs:
@@ -116,7 +116,7 @@ class Shell:
         return status
 
     def program(self, words: Sequence[str], streams: Streams, folder: str) -> Steps:
-        """Carry out one command without a shell."""
+        """Run one command without a shell."""
         return (yield from self._pipeline(Pipeline((Call(tuple(words)),)), streams, folder, in_shell=False))
 
     def _job(self, job: Job, streams: Streams, folder: str) -> Steps:
@@ -138,13 +138,13 @@ class Shell:
             result = self._result(Use(call.words[1:], flow, folder, in_shell), call.words[0])
             if result.errors:
                 sink = streams.output if call.joined else _nowhere if call.silent_errors else streams.errors
-                _tell(result.errors, sink, result.status)
+                _write_error(result.errors, sink, result.status)
             flow, heard = Flow() if call.silent else result.output, (*heard, *result.heard)
         if flow.data:
             streams.output(flow.data)
         streams.sound = flow.sound or streams.sound
         if flow.sound is not None and streams.output is own_output:
-            _tell("espeak: --stdout is simulated only on its way to aplay", streams.errors, FAILED)
+            _write_error("espeak: --stdout is simulated only on its way to aplay", streams.errors, FAILED)
         for one in heard:
             self.session.speak(one.text, 0, one.tones_row, one.file)
             yield one.length_ns
@@ -160,8 +160,8 @@ class Shell:
         return command(self, use)
 
 
-def _tell(text: str, sink: Sink, status: int) -> None:
-    """Write error text; that something is not simulated is seen in any case."""
+def _write_error(text: str, sink: Sink, status: int) -> None:
+    """Write error text; a message that something is not simulated is always shown."""
     line = f"{text}\n".encode("utf-8", "surrogateescape")
     sink(line)
     if status == NOT_THERE and sink not in (own_errors, own_output):
@@ -169,22 +169,22 @@ def _tell(text: str, sink: Sink, status: int) -> None:
 
 
 def _nowhere(_data: bytes) -> None:
-    """Throw away what is written."""
+    """Discard output."""
 
 
 class Running:
-    """Commands at work while the program goes on.
+    """Commands that run in the background.
 
     Args:
         session: The program's clock.
-        steps: What they do.
-        several: Whether something is left to be done after the first sound, so that it must not wait to be looked at.
+        steps: The commands.
+        several: Whether more follows the first sound, so that progress must not depend on calls of `poll`.
     """
 
     def __init__(self, session: Session, steps: Steps, several: bool = False) -> None:
         self._session, self._steps = session, steps
         self.status: int | None = None
-        """Exit status, None while they are at work."""
+        """Exit status; None while they run."""
         self._due = session.now
         self._busy = False
         self.hungry = False
@@ -194,7 +194,7 @@ class Running:
             session.aside(self._finish)
 
     def go_on(self) -> None:
-        """Do what is due by now."""
+        """Run what is due."""
         while self.status is None and not self._busy and self._session.now >= self._due:
             self._busy = True
             try:
@@ -210,7 +210,7 @@ class Running:
             self._due = self._session.now + wait_ns
 
     def wait(self, limit_ns: int | None = None) -> bool:
-        """Wait for the end, at most so long; return whether it has come."""
+        """Block until the end or the limit; return whether they have ended."""
         until = None if limit_ns is None else self._session.now + limit_ns
         self.go_on()
         while self.status is None:
@@ -223,7 +223,7 @@ class Running:
         return True
 
     def end(self, status: int) -> None:
-        """End them; what is heard already goes on to its end."""
+        """End the commands; a sound that has started plays to its end."""
         if self.status is None:
             self.status = status
 
@@ -248,7 +248,7 @@ def _clear(shell: Shell, _use: Use) -> Result:
 def _stty(shell: Shell, use: Use) -> Result:
     if list(use.words) == ["size"]:
         return Result(output=Flow(shell.terminal.size.encode()))
-    # Whether keys are echoed and the like: the brick's buttons write nothing on this screen.
+    # Settings such as echo have no effect: the brick's buttons write nothing on this screen.
     return Result()
 
 
@@ -262,7 +262,7 @@ def _amixer(shell: Shell, use: Use) -> Result:
 
 
 def _echo(_shell: Shell, use: Use) -> Result:
-    """The shell's own reads escapes and knows -n; the program of that name reads them with -e."""
+    """The shell's built-in interprets escapes and knows -n; the program of that name interprets them with -e."""
     words, end, escapes = list(use.words), "\n", use.in_shell
     options = "n" if use.in_shell else "neE"
     while words and len(words[0]) > 1 and words[0][0] == "-" and set(words[0][1:]) <= set(options):
@@ -324,11 +324,11 @@ _OPTIONS = {
     "espeak": ("a:s:v:p:g:k:l:b:f:w:mqxXz", ["stdin", "stdout"]),
     "aplay": ("D:qt:c:f:r:d:s:MNvi", ["quiet"]),
 }
-"""Options of the commands that read their standard input if nothing else is named, as `getopt` takes them."""
+"""Options of the commands that read standard input by default, in `getopt` format."""
 
 
 def _sorted_out(name: str, words: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Return options and other words; an option that is not known hides no word."""
+    """Split words into options and arguments; an unknown option is treated as an argument."""
     import getopt
 
     try:
@@ -351,4 +351,4 @@ COMMANDS: Mapping[str, Callable[[Shell, Use], Result]] = {
     "setfont": _setfont, "clear": _clear, "beep": _beep, "echo": _echo, "espeak": _espeak, "aplay": _aplay,
     "amixer": _amixer, "stty": _stty,
 }  # fmt: skip
-"""What the brick can do, by name."""
+"""The commands of the brick, by name."""

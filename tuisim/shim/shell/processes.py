@@ -1,4 +1,4 @@
-"""`os.system`, `os.popen` and `subprocess`: they reach the commands of the brick, nothing of this computer."""
+"""`os.system`, `os.popen` and `subprocess`: they run the commands of the brick, nothing on this computer."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from tuisim.shim.shell.commands import Flow, Running, Shell, Sink, Steps, Stream
 from tuisim.shim.sound import NO_PID
 
 Replace = Callable[[types.ModuleType, str, Callable[..., Any]], None]
-"""Lets a function of a module, by its name, do something else."""
+"""Replaces a function of a module, by its name."""
 EXIT_SHIFT = 8
-"""Bits before the exit status in what `os.system` returns."""
+"""Bits below the exit status in the result of `os.system`."""
 
 
 class OutPipe(io.RawIOBase):
-    """What a process writes; who reads it waits for the end of the process.
+    """Output of a process; reading blocks until the process ends.
 
     Args:
         process: The process.
@@ -35,15 +35,15 @@ class OutPipe(io.RawIOBase):
         self.sound_taken = False
 
     def take(self, data: bytes) -> None:
-        """Take what the process has written."""
+        """Append output of the process."""
         self._data += data
 
     def readable(self) -> bool:
-        """Always."""
+        """Return True."""
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Give what comes next; nothing is the end."""
+        """Read into a buffer; 0 bytes is the end."""
         self.process.wait()
         if self.process.streams.sound is not None and not self.sound_taken:
             self.sound_taken = True
@@ -54,13 +54,13 @@ class OutPipe(io.RawIOBase):
         return size
 
     def flow(self) -> Flow:
-        """Take everything."""
+        """Read everything."""
         self.sound_taken = True
         return Flow(self.readall(), self.process.streams.sound)
 
 
 class InPipe(io.RawIOBase):
-    """What a process reads; it gets it when the pipe is closed.
+    """Input of a process; it is delivered when the pipe is closed.
 
     Args:
         process: The process.
@@ -70,16 +70,16 @@ class InPipe(io.RawIOBase):
         self._process, self._data = process, bytearray()
 
     def writable(self) -> bool:
-        """Always."""
+        """Return True."""
         return True
 
     def write(self, data: Any) -> int:
-        """Take bytes."""
+        """Append bytes."""
         self._data += bytes(data)
         return len(data)
 
     def close(self) -> None:
-        """Let the process have what was written."""
+        """Deliver the input to the process."""
         if not self.closed:
             super().close()
             self._process.streams.given = Flow(bytes(self._data))
@@ -87,9 +87,9 @@ class InPipe(io.RawIOBase):
 
 
 class Process:
-    """Stands in for `subprocess.Popen`; its arguments and methods are as there.
+    """Replaces `subprocess.Popen`, with the same arguments and methods.
 
-    `system` is given by `patch_processes`, in a class made for the run.
+    `patch_processes` sets `system` in a subclass made for the run.
     """
 
     system: System
@@ -129,15 +129,15 @@ class Process:
         system.processes[self.pid] = self
 
     def _opened(self, pipe: Any) -> Any:
-        """Return a pipe as the program wants it: for bytes or for text."""
+        """Wrap a pipe for bytes or text, as the program requested."""
         return io.TextIOWrapper(pipe, self.encoding or "utf-8", self.errors) if self.text_mode else pipe
 
     def __class_getitem__(cls, item: Any) -> types.GenericAlias:
-        """As for the real class, in annotations."""
+        """Support annotations like the real class."""
         return types.GenericAlias(cls, item)
 
     def __repr__(self) -> str:
-        """As of the real class."""
+        """Return the same text as the real class."""
         return f"<Popen: returncode: {self.returncode} args: {self.args!r}>"
 
     def __enter__(self) -> Process:
@@ -152,34 +152,34 @@ class Process:
         self.wait()
 
     def poll(self) -> int | None:
-        """Return the exit status, None while it is at work."""
+        """Return the exit status; None while the process runs."""
         self.system.session.command()
         self.running.go_on()
-        return self._looked()
+        return self._current_status()
 
-    def _looked(self) -> int | None:
+    def _current_status(self) -> int | None:
         if self.returncode is None:
             self.returncode = self.running.status
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
-        """Wait for the end and return the exit status.
+        """Block until the process ends; return the exit status.
 
         Raises:
             subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
         """
         if self.streams.given is None and self.running.hungry:
-            # The real one would wait for ever for what nobody writes while the program waits.
+            # The real one would wait forever for input that nobody writes while the program waits.
             assert self.stdin is not None
             self.stdin.close()
         if not self.running.wait(None if timeout is None else max(int(timeout * 1000 * MS), 0)):
             raise self.system.module.TimeoutExpired(self.args, timeout)
-        status = self._looked()
+        status = self._current_status()
         assert status is not None
         return status
 
     def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:  # noqa: A002
-        """Give it its input, wait for the end, and return what it has written.
+        """Send input, block until the process ends, and return its output.
 
         Raises:
             subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
@@ -193,22 +193,22 @@ class Process:
         return read[0], read[1]
 
     def send_signal(self, sig: int) -> None:
-        """End it, whatever the signal is."""
+        """End the process, whatever the signal is."""
         if self.poll() is None:
             self.running.end(-sig)
-            self._looked()
+            self._current_status()
 
     def terminate(self) -> None:
-        """End it."""
+        """End the process."""
         self.send_signal(signal.SIGTERM)
 
     def kill(self) -> None:
-        """End it."""
+        """End the process."""
         self.send_signal(signal.SIGKILL)
 
 
 class System:
-    """Everything that the processes of a run share.
+    """State shared by all processes of a run.
 
     Args:
         session: The program's clock.
@@ -218,20 +218,20 @@ class System:
     def __init__(self, session: Session, shell: Shell) -> None:
         self.session, self.shell = session, shell
         self.module: Any = None
-        """`subprocess`, once it is imported."""
+        """The module `subprocess`, once it is imported."""
         self.processes: dict[int, Process] = {}
         self.pids = count(NO_PID + 1)
 
     def patch_os(self, replace: Replace) -> None:
-        """Replace the calls of `os` that processes are started and ended with."""
+        """Replace the functions of `os` that start and end processes."""
         group_of = os.getpgid
 
         def getpgid(pid: int) -> int:
-            # Each is in a group of its own.
+            # Each process has its own group.
             return pid if pid in self.processes else group_of(pid)
 
         def system(command: Any) -> int:
-            # Returns as the kernel tells how a process ended.
+            # Returns the kernel's wait status.
             self.session.command()
             running = Running(self.session, self.shell.line(os.fsdecode(command), Streams()))
             running.wait()
@@ -252,13 +252,13 @@ class System:
         return send
 
     def finish_subprocess(self, module: types.ModuleType) -> None:
-        """Finish `subprocess` after its import: everything in it builds on this class."""
+        """Patch `subprocess` after its import: everything in it builds on `Popen`."""
         self.module = module
         vars(module)["Popen"] = type("Popen", (Process,), {"system": self, "__module__": "subprocess"})
 
 
 def finish_asyncio(module: types.ModuleType) -> None:
-    """Refuse the processes of `asyncio`, after the import of its event loop."""
+    """Refuse processes of `asyncio`; called after the import of its event loop."""
 
     async def refuse(*_args: object, **_kwargs: object) -> NoReturn:
         hint = "use subprocess.run, or os.system for commands of the brick"
@@ -269,7 +269,7 @@ def finish_asyncio(module: types.ModuleType) -> None:
 
 
 def _steps(shell: Shell, args: Any, in_shell: bool, streams: Streams, folder: str) -> tuple[Steps, bool]:
-    """Return what a process does, and whether that may be several commands."""
+    """Return what a process runs, and whether that may be several commands."""
     words = [os.fsdecode(word) for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)]
     if in_shell:
         return shell.line(words[0], streams, folder), True
@@ -277,7 +277,7 @@ def _steps(shell: Shell, args: Any, in_shell: bool, streams: Streams, folder: st
 
 
 def _given(source: Any) -> Flow:
-    """Return the standard input of a process: nothing, a file, or what another process writes."""
+    """Return the standard input of a process: nothing, a file, or the output of another process."""
     if source is None or (isinstance(source, int) and source < 0):
         return Flow()
     raw = getattr(getattr(source, "buffer", source), "raw", source)
@@ -291,7 +291,7 @@ def _given(source: Any) -> Flow:
 
 
 def _sink(target: Any, own: Sink) -> Sink:
-    """Return what writes to where a process is to write."""
+    """Return a function that writes to the target of an output stream."""
     if target is None:
         return own
     if isinstance(target, int):
@@ -300,7 +300,7 @@ def _sink(target: Any, own: Sink) -> Sink:
         target.flush()
         number = target.fileno()
         return lambda data: _write_all(number, data)
-    # The program's own streams have no number.
+    # The program's own streams have no descriptor here.
     return own if own is own_errors or getattr(target, "name", "") != "<stderr>" else own_errors
 
 

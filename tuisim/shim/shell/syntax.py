@@ -1,4 +1,4 @@
-"""A command line as the brick's shell reads it: words, pipes, and what joins them."""
+"""The syntax of the brick's shell: words, pipes and operators."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 NULL_FILE = "/dev/null"
 NOT_THERE, NOT_SHELL = 127, 2
-"""Exit status of a shell for what is not there, and for what it cannot read."""
+"""Exit status of a shell for a missing command, and for a syntax error."""
 
 _PARTS = re.compile(
     r"""(?P<blank>[ \t]+|\\\n)
@@ -18,15 +18,15 @@ _PARTS = re.compile(
 )
 _REDIRECTION = re.compile(r"(?P<stream>[12]?)>>?[ \t]*(?:/dev/null(?=[\s;&|]|$)|(?P<joined>&[12]))|<[ \t]*/dev/null")
 _UNKNOWN = {"$": "variables", "`": "commands in words", "(": "groups", ")": "groups", "<": "files", ">": "files"}
-"""What a shell makes of a character, where the brick's does not."""
+"""Meaning of characters in a real shell that the brick's shell does not support."""
 
 
 class NotUnderstood(Exception):
-    """A command line that the brick's shell does not take.
+    """A command line that the brick's shell rejects.
 
     Args:
-        message: Why not.
-        status: Its exit status then.
+        message: The reason.
+        status: The shell's exit status.
     """
 
     def __init__(self, message: str, status: int = NOT_THERE) -> None:
@@ -40,36 +40,36 @@ class Call:
 
     words: tuple[str, ...]
     silent: bool = False
-    """What it writes to the standard output is thrown away."""
+    """Whether standard output is discarded."""
     silent_errors: bool = False
-    """The same for its error text."""
+    """Whether standard error is discarded."""
     joined: bool = False
-    """Its error text goes where its output goes."""
+    """Whether standard error is redirected to standard output."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pipeline:
-    """Commands of which each reads what the one before has written."""
+    """Commands connected by pipes."""
 
     calls: tuple[Call, ...]
     joint: str = ""
-    """What stands before it: `&&`, `||`, or nothing."""
+    """The operator before it: `&&`, `||`, or empty."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Pipelines that run one after another, each if the one before went as its joint wants it."""
+    """Pipelines that run in sequence, each depending on its operator and the exit status before it."""
 
     pipelines: tuple[Pipeline, ...]
     aside: bool = False
-    """Whether the shell goes on at once (`&`)."""
+    """Whether the shell does not wait for it (`&`)."""
 
 
 def read_line(text: str) -> tuple[Job, ...]:
     """Return the jobs of a command line.
 
     Raises:
-        NotUnderstood: a quote is not closed, a command is missing, or it has what the brick's shell does not know.
+        NotUnderstood: a quote is not closed, a command is missing, or the syntax is not supported.
     """
     jobs: list[Job] = []
     pipelines: list[Pipeline] = []
@@ -103,7 +103,7 @@ def _parts(text: str) -> list[tuple[str, str, re.Match[str] | None]]:
     found: list[tuple[str, str, re.Match[str] | None]] = []
     at = 0
     while at < len(text):
-        # A digit belongs to a redirection only where a word could begin.
+        # A digit belongs to a redirection only at the start of a word.
         begins = not found or found[-1][0] != "word" or text[at - 1] in " \t"
         redirection = _REDIRECTION.match(text, at) if begins or text[at] in "<>" else None
         if redirection is not None:
@@ -123,7 +123,7 @@ def _parts(text: str) -> list[tuple[str, str, re.Match[str] | None]]:
 
 
 def _complaint(rest: str) -> NotUnderstood:
-    """What is wrong with the rest of a line, whose beginning is no part of one."""
+    """Return the error for the rest of a line that does not start with a valid token."""
     inside = re.search(r"(?<!\\)[`$]", rest) if rest[0] == '"' else re.match(r"[`$()<>]", rest)
     if inside is not None:
         return NotUnderstood(f"{rest[inside.start() :][:20]!r}: {_UNKNOWN[inside[0]]} are not simulated")
@@ -136,7 +136,7 @@ def _call(words: list[str], redirected: list[re.Match[str]]) -> Call:
         if one[0].startswith("<"):
             continue
         if one["joined"] == "&1" and one["stream"] == "2":
-            # As it is now: `2>&1 >/dev/null` leaves the error text where the output went before.
+            # In order: `2>&1 >/dev/null` keeps standard error where the output went before.
             call["joined"], call["silent_errors"] = not call["silent"], call["silent"]
         elif one["joined"]:
             raise NotUnderstood(f"{one[0]!r}: only 2>&1 and {NULL_FILE} are simulated")
