@@ -1,4 +1,4 @@
-"""The command line: arguments in, errors to exit codes, nothing else.
+"""The command line: parses arguments, calls a command, turns errors into exit codes.
 
 To add a command: write its file in `commands/`, and add a line to `COMMANDS`.
 """
@@ -20,40 +20,40 @@ from tuisim.config.options import ARGUMENTS_FOLLOW, SwitchParser
 from tuisim.errors import ConfigError, HostError, TuisimError, printable
 
 COMMANDS: Mapping[str, str] = {
-    "open": "open the app (also without this word)",
+    "open": "open the app (the default command)",
     "run": "run programs without the app",
     "runs": "list, show, export or remove stored runs",
-    "log": "analyse logs: figures, bands, events, signals",
-    "analyse": "look at logs: table, chart, bands, notes",
+    "log": "analyse logs: statistics, bands, events, signals",
+    "analyse": "explore logs in the app: table, chart, bands, notes",
     "backgrounds": "list the mats",
-    "robots": "list the robots, or show one as a file",
-    "obstacles": "list the obstacles, or show some as a file",
+    "robots": "list the robots, or print one as a file",
+    "obstacles": "list the sets of obstacles, or print one as a file",
     "programs": "list the example programs",
-    "profiles": "list the profiles, what each call costs and why",
-    "kernel": "add the Jupyter kernel in which a course's notebooks run as they are",
+    "profiles": "list the profiles and the simulated time of each call",
+    "kernel": "install the Jupyter kernel that runs a course's notebooks unchanged",
 }
-"""Every command and what it does."""
+"""Every command and its help line."""
 
 _FOR_PROGRAMS = ("open", "run")
-"""Commands that start a program, which may be given arguments."""
+"""Commands that pass the words after `--` to the program."""
 
 LEAST_OPEN_FILES = 64
-"""What the app, a run and its libraries have open at once, with some room."""
+"""Open files that the app, a run and their libraries need, with some margin."""
 
 EXIT_OUR_MISTAKE = 70
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
-"""What a shell shows for a program that SIGINT or SIGPIPE has ended."""
+"""The exit codes of a program that was ended by SIGINT or SIGPIPE."""
 
 
 class _HelpFormatter(RawDescriptionHelpFormatter):
-    """Help in two columns, one line a switch where there is room."""
+    """Help in two columns, wide enough for one line per switch."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, max_help_position=36)
 
 
 def _parser(command: str) -> SwitchParser:
-    """The parser of one command; that of `open` also introduces the others."""
+    """Return the parser of one command; the help of `open` also lists the others."""
     if command == "open":
         listing = "\n".join(f"  tuisim {name:<12} {what}" for name, what in COMMANDS.items())
         parser = SwitchParser(
@@ -61,13 +61,13 @@ def _parser(command: str) -> SwitchParser:
             usage="tuisim [WORLD.toml] [PROGRAM] [switches] [-- ARGUMENTS]\n       tuisim COMMAND …",
             description="A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.",
             epilog=f"commands (each has its own --help):\n{listing}\n\n"
-            "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, holds switches too.\n"
-            "Those given here win over a world file, and that wins over the magic line.",
+            "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, can also hold switches.\n"
+            "The command line takes precedence over a world file, the world file over the magic line.",
             formatter_class=_HelpFormatter,
             allow_abbrev=False,
         )
         parser.add_programs("words")
-        parser.add_argument("--run", metavar="RUN", help="a stored run, to look back at: see `tuisim runs`")
+        parser.add_argument("--run", metavar="RUN", help="open a stored run, see `tuisim runs`")
         parser.add_argument("--version", action="version", version=f"tuisim {__version__}")
         parser.add_switches()
         return parser
@@ -93,7 +93,7 @@ def _open(arguments: Namespace) -> int:
     else:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        raise ConfigError("the app needs a terminal", "use `tuisim run PROGRAM` where there is none")
+        raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
     from tuisim.app.app import run_app
     from tuisim.app.start_options import AppSettings
 
@@ -124,7 +124,7 @@ def _analyse(arguments: Namespace) -> int:
 
     what = asked(arguments)
     if not sys.stdout.isatty():
-        raise ConfigError("the analyser needs a terminal", "use `tuisim log` where there is none")
+        raise ConfigError("the analyser needs a terminal", "without one, use `tuisim log`")
     from tuisim.analysis.source import LogRequest
     from tuisim.app.analyser.app import run_analyser
     from tuisim.logs.reader import STDIN
@@ -139,11 +139,11 @@ def _analyse(arguments: Namespace) -> int:
 
 
 def _keys_from_terminal() -> None:
-    """Let the log come from the standard input as it was, and the keys from the terminal."""
+    """Read the log from the original standard input, and keys from the terminal."""
     try:
         terminal = os.open("/dev/tty", os.O_RDWR)
     except OSError as error:
-        raise ConfigError("there is no terminal to take keys from", "name a file instead of -") from error
+        raise ConfigError("there is no terminal to read keys from", "name a file instead of -") from error
     sys.stdin = os.fdopen(os.dup(0))
     os.dup2(terminal, 0)
     os.close(terminal)
@@ -151,7 +151,7 @@ def _keys_from_terminal() -> None:
 
 @contextmanager
 def _drawing_on_stdout() -> Iterator[None]:
-    """Let stderr be the terminal of stdout for a while: Textual draws there, also if it was sent to a file."""
+    """Redirect stderr to the terminal of stdout: Textual draws on stderr, which may be redirected to a file."""
     stderr = os.dup(2)
     os.dup2(1, 2)
     try:
@@ -162,18 +162,18 @@ def _drawing_on_stdout() -> Iterator[None]:
 
 
 def _check_command(word: str) -> None:
-    """Tell a misspelt command from a program."""
+    """Raise ConfigError if a word looks like a misspelt command and is not a program."""
     close = get_close_matches(word, COMMANDS, 1)
     if not close or "." in word:
         return
     from tuisim.commands.resolve import find_program
 
     if not find_program(word).exists():
-        raise ConfigError(f"{word}: there is no such command or program", f"did you mean `tuisim {close[0]}`?")
+        raise ConfigError(f"{word}: no such command or program", f"did you mean `tuisim {close[0]}`?")
 
 
 def _check_open_files() -> None:
-    """Complain where the shell allows so few open files that something would fail half way."""
+    """Raise HostError if the shell's limit of open files is too low; raise the soft limit if it can be raised."""
     import resource
 
     allowed, most = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -191,7 +191,7 @@ def _dispatch(words: Sequence[str]) -> int:
     command, rest = (words[0], words[1:]) if words and words[0] in COMMANDS else ("open", words)
     if words and command != words[0]:
         _check_command(words[0])
-    # Intermixed, because switches may stand between two programs.
+    # Intermixed, because switches may appear between two programs.
     given, ours = None, list(rest)
     if command in _FOR_PROGRAMS and ARGUMENTS_FOLLOW in ours:
         at = ours.index(ARGUMENTS_FOLLOW)
@@ -210,12 +210,12 @@ def _dispatch(words: Sequence[str]) -> int:
 
 
 def _silence_stdout() -> None:
-    """Keep the interpreter from complaining about a closed pipe when it flushes at its end."""
+    """Prevent an error about a closed pipe when the interpreter flushes stdout at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _flushed() -> bool:
-    """Write what is still to be written; say so if that is not possible."""
+    """Flush stdout; print an error and return False if that fails."""
     try:
         sys.stdout.flush()
     except BrokenPipeError:
@@ -233,11 +233,11 @@ def run_command(words: Sequence[str]) -> int:
     Args:
         words: The command line without the program's own name.
     """
-    # A shell may close them: then nobody reads what is written.
-    sys.stdout = sys.stdout or Path(os.devnull).open("w")  # noqa: SIM115 - lasts as long as the process
+    # A shell may close them; the output is then discarded.
+    sys.stdout = sys.stdout or Path(os.devnull).open("w")  # noqa: SIM115 - open until the process ends
     sys.stderr = sys.stderr or Path(os.devnull).open("w")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
-        # A terminal without UTF-8 must not turn a program's output into an error of ours.
+        # Output that the terminal cannot encode must not raise.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     try:
@@ -251,7 +251,7 @@ def run_command(words: Sequence[str]) -> int:
         return EXIT_BROKEN_PIPE
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
-    # A mistake of ours is no news to the user beyond one line; whoever mends it asks for more.
+    # A bug in tuisim: one line for the user, the traceback on request.
     except Exception as error:
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EIO):
             _silence_stdout()
@@ -260,5 +260,5 @@ def run_command(words: Sequence[str]) -> int:
         if os.environ.get("TUISIM_DEBUG"):
             raise
         text = printable(f"{type(error).__name__}: {error}")
-        print(f"tuisim: a mistake in tuisim itself: {text} (TUISIM_DEBUG=1 shows where)", file=sys.stderr)
+        print(f"tuisim: internal error: {text} (TUISIM_DEBUG=1 shows the traceback)", file=sys.stderr)
         return EXIT_OUR_MISTAKE

@@ -73,9 +73,9 @@ def test_the_program_finds_its_arguments(folder: Path, here: Command, words: str
         ("p.py p.py -- A", "tuisim: --: arguments go to one program (got 2)"),
         ("run -- A", "tuisim: --: arguments need a program (tuisim PROGRAM -- ARGUMENTS)"),
         ("-- A", "tuisim: --: arguments need a program (tuisim PROGRAM -- ARGUMENTS)"),
-        ("run cells.ipynb -- A", "tuisim: --: cells.ipynb is a notebook, whose cells take no arguments"),
-        ("open --run last -- A", "tuisim: --: a stored run has arguments of its own (leave them out)"),
-        ("none.toml -- A", "tuisim: --: none.toml names no program that could take arguments"),
+        ("run cells.ipynb -- A", "tuisim: --: cells.ipynb is a notebook; its cells take no arguments"),
+        ("open --run last -- A", "tuisim: --: a stored run has its own arguments (leave them out)"),
+        ("none.toml -- A", "tuisim: --: none.toml names no program to pass arguments to"),
     ],
 )
 def test_arguments_of_nobody_are_refused(folder: Path, here: Command, words: str, message: str) -> None:
@@ -179,7 +179,7 @@ def test_a_run_is_repeated_with_the_modules_that_it_had(
     change(stored)
     monkeypatch.chdir(stored.parent)
     done = here("runs", "rerun", "last")
-    assert (done.stdout, done.returncode) == ("equal to the last bit: recording, output, set-up\n", 0)
+    assert (done.stdout, done.returncode) == ("bit-identical: recording, output, settings\n", 0)
 
 
 def test_a_branch_has_the_arguments_and_modules_of_its_run(stored: Path) -> None:

@@ -15,7 +15,7 @@ BAD = {
     "misspelt example": ("run log_grey", "log_grey: there is no such program (did you mean log_greys?)"),
     "misspelt example's file": ("run log_gery.py", "did you mean log_greys.py?"),
     "file like a command": ("log.py", "log.py: there is no such program"),
-    "misspelt command": ("anlyse last", "anlyse: there is no such command or program (did you mean `tuisim analyse`?)"),
+    "misspelt command": ("anlyse last", "anlyse: no such command or program (did you mean `tuisim analyse`?)"),
     "misspelt command's help": ("rnu --help", "did you mean `tuisim run`?"),
     "second program missing": ("run prog.py nope.py", "nope.py: there is no such program"),
     "no program": ("run", "no program is named (tuisim run PROGRAM…)"),

@@ -207,7 +207,7 @@ def test_our_own_mistake_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: py
     monkeypatch.setattr("tuisim.cli._dispatch", fail)
     monkeypatch.delenv("TUISIM_DEBUG", raising=False)
     assert run_command([]) == 70
-    said = "tuisim: a mistake in tuisim itself: ValueError: first line second line (TUISIM_DEBUG=1 shows where)\n"
+    said = "tuisim: internal error: ValueError: first line second line (TUISIM_DEBUG=1 shows the traceback)\n"
     assert capsys.readouterr().err == said
 
 

@@ -193,7 +193,7 @@ def test_folder_that_is_deleted_in_mid_run_is_told_in_one_line(endless: Path, ho
     done = here("run", endless, "--speed", "1", "--export", "a.csv")
     deleting.join()
     assert done.returncode == 2
-    assert done.stderr == "tuisim: endless.py: nothing of run 1 is kept: its folder was deleted while it ran\n"
+    assert done.stderr == "tuisim: endless.py: run 1 was not stored: its folder was deleted while it ran\n"
     assert not list(home.glob("runs/*"))
     assert RunStore().runs() == []
 

@@ -38,7 +38,7 @@ def test_a_kernel_is_added_listed_and_removed(place: str, here: Command, tmp_pat
     assert str(folder) in here("kernel", *words).stdout
     assert here("kernel", "remove", *words).stdout == f"kernel 'tuisim' removed from {folder}\n"
     assert not folder.exists()
-    assert here("kernel", *words).stdout == "no kernel of tuisim is installed; `tuisim kernel install` adds one\n"
+    assert here("kernel", *words).stdout == "no tuisim kernel is installed; `tuisim kernel install` adds one\n"
 
 
 def test_a_kernel_may_have_a_name_of_its_own(here: Command) -> None:
@@ -60,13 +60,13 @@ def foreign(prefix: Path) -> None:
     ("words", "told"),
     [
         pytest.param("instal", "kernel: no such action 'instal' (did you mean install", id="action"),
-        pytest.param("remove", "--name: no kernel 'tuisim' of tuisim is installed", id="none"),
-        pytest.param("install --name a/b", "--name: may have small letters, digits and . _ - only", id="name"),
+        pytest.param("remove", "--name: no tuisim kernel 'tuisim' is installed", id="none"),
+        pytest.param("install --name a/b", "--name: may contain only lower-case letters, digits and . _ -", id="name"),
         pytest.param("install --user --sys-prefix", "not allowed with argument --user", id="two places"),
         pytest.param("install --prefix file", "kernel.json: cannot be written: ", id="no folder"),
-        pytest.param("install --prefix prefix --name other", "--name: 'other' is another kernel already", id="other's"),
-        pytest.param("remove --prefix prefix --name other", "no kernel 'other' of tuisim is installed", id="not ours"),
-        pytest.param("install --json", "--json: only the list can be JSON", id="json"),
+        pytest.param("install --prefix prefix --name other", "--name: 'other' already names another", id="other's"),
+        pytest.param("remove --prefix prefix --name other", "no tuisim kernel 'other' is installed", id="not ours"),
+        pytest.param("install --json", "--json: is for `list` only", id="json"),
     ],
 )
 def test_what_is_wrong_is_told(words: str, told: str, here: Command, tmp_path: Path, prefix: Path) -> None:

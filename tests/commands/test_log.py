@@ -118,7 +118,7 @@ BAD = {
     "a column in it": (("calc", "{log}", "--expression", "lft"), "no column 'lft'"),
     "an even width": (("average", "{log}", "--width", "4"), "odd"),
     "no period": (("resample", "{log}", "--period", "0"), "above 0"),
-    "no numbers": (("derive", "{words}"), "no column of numbers (its columns are time, said)"),
+    "no numbers": (("derive", "{words}"), "no numeric column (its columns are time, said)"),
     "a name too long for the file system": (("summary", "x" * 300 + ".csv"), "File name too long"),
     "no such format": (("export", "{log}", "--out", "x.xls"), "unknown format"),
     "no robot": (("reckon", "{log}"), "robot"),

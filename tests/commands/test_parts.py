@@ -135,7 +135,7 @@ BAD = {
     "no such motor port": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
     "no such port": ("[infrared]\nport = 'in9'", "no such port 'in9'"),
     "no such key": ("[touch_sensors.nose]\nport = 'in1'\ndepth = 3", "touch_sensors.nose.depth: no such key"),
-    "no name": ("[ultrasonics.'2nd one']\nport = 'in1'", "is no name for a sensor"),
+    "no name": ("[ultrasonics.'2nd one']\nport = 'in1'", "is not a valid sensor name"),
 }
 
 

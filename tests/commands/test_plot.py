@@ -102,9 +102,9 @@ BAD = {
     "two against one": (("--variable", "left", "--variable", "right", "--against", "x_mm"), "got 2"),
     "a size": (("--size", "big"), "width and height, 20x8 to 1000x500"),
     "a size of no picture": (("--size", "10x10", "--out", "x.png"), "200x150 to 6000x6000"),
-    "time that runs back": (("--from", "5", "--to", "1"), "--from comes before --to"),
-    "no number": (("--from", "nan"), "nothing lies between"),
-    "nothing then": (("--from", "50", "--to", "60"), "they lie between 0 s and 9.9 s"),
+    "time that runs back": (("--from", "5", "--to", "1"), "--from must be less than --to"),
+    "no number": (("--from", "nan"), "no range from"),
+    "nothing then": (("--from", "50", "--to", "60"), "they are between 0 s and 9.9 s"),
     "as JSON": (("--json",), "does not take --json"),
     "an option of another": (("--width", "3"), "does not take --width"),
 }

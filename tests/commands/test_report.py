@@ -199,7 +199,7 @@ BAD = {
     "no such format": (("{log}", "--out", "x.pdf"), "a report ends in .html"),
     "no such folder": (("{log}", "--out", "gone/x.html"), "there is no folder gone"),
     "no such variable": (("{log}", "--variable", "up"), "no variable 'up'"),
-    "no numbers": (("{words}",), "no column of numbers"),
+    "no numbers": (("{words}",), "no numeric column"),
     "telemetry of two": (("1", "2", "--telemetry"), "takes one run"),
     "columns of a run": (("1", "--time", "x"), "are for files"),
     "as JSON": (("{log}", "--json"), "does not take --json"),

@@ -148,7 +148,7 @@ def test_the_catalogue_goes_before_files(here: Path) -> None:
         pytest.param("./nowhere", "nowhere: cannot be read: No such file", id="missing, no suffix"),
         pytest.param("mats/", "mats: is a folder", id="folder"),
         pytest.param("maze.png/x.png", "x.png: cannot be read: Not a directory", id="file for a folder"),
-        pytest.param("a\0b.png", "is no file name", id="null character"),
+        pytest.param("a\0b.png", "is not a file name", id="null character"),
         pytest.param("x" * 300 + ".png", "File name too long", id="long name"),
         pytest.param("~nobody-of-that-name/x.png", "no such folder|cannot be read", id="no such home"),
     ],

@@ -203,7 +203,7 @@ SAVED_ROBOT = {
         ({"ultrasonic": {"x": 0, "y": 10, "angle": 5}}, {"ultrasonic_mm": 1.0}),
         (
             {"colour": 3, "gyro": {"enabled": True, "drift": 2}, "pen": {"cap": 1}},
-            {"notes": "old.json: left aside what means nothing here: pen.cap, gyro.drift, colour"},
+            {"notes": "old.json: ignored unknown keys: pen.cap, gyro.drift, colour"},
         ),
     ],
     ids=["whole", "box", "no noises", "null weight", "empty weight", "no ultrasonic noise", "unknown keys"],

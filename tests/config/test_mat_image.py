@@ -76,17 +76,17 @@ BAD = [
     pytest.param(a_loop, "Too many levels of symbolic links", id="symlink loop"),
     pytest.param(a_pipe, "is not a regular file", id="pipe"),
     pytest.param(holding(b""), "is empty", id="empty"),
-    pytest.param(holding(b"hello"), "is not a picture", id="text"),
-    pytest.param(holding(bytes(range(256)) * 40), "is not a picture", id="binary rubbish"),
-    pytest.param(holding(b"\x89PNG\r\n\x1a\n" + bytes(40)), "is not a picture", id="broken header"),
-    pytest.param(holding(WHOLE[: len(WHOLE) // 2]), "can be read whole: .*truncated", id="truncated PNG"),
-    pytest.param(holding(WHOLE[:60]), "is not a picture", id="hardly begun"),
-    pytest.param(holding(PHOTO[: len(PHOTO) // 2]), "can be read whole", id="truncated JPEG"),
-    pytest.param(holding(png(0, 10)), "is not a picture|has no pixels", id="no width"),
+    pytest.param(holding(b"hello"), "is not a readable image", id="text"),
+    pytest.param(holding(bytes(range(256)) * 40), "is not a readable image", id="binary rubbish"),
+    pytest.param(holding(b"\x89PNG\r\n\x1a\n" + bytes(40)), "is not a readable image", id="broken header"),
+    pytest.param(holding(WHOLE[: len(WHOLE) // 2]), "is a damaged image: .*truncated", id="truncated PNG"),
+    pytest.param(holding(WHOLE[:60]), "is a damaged image", id="hardly begun"),
+    pytest.param(holding(PHOTO[: len(PHOTO) // 2]), "is a damaged image", id="truncated JPEG"),
+    pytest.param(holding(png(0, 10)), "is not a readable image|has no pixels", id="no width"),
     pytest.param(holding(BOMB), "is too large.* 40", id="60,000 × 60,000"),
     pytest.param(holding(png(12_000, 10_000)), "12,000 × 10,000 pixels are 120 megapixels", id="120 megapixels"),
-    pytest.param(holding(png(40_001, 1000)), "40,001 × 1,000 .* allowed are 40", id="just too large"),
-    pytest.param(holding(png(50, 50, depth=3)), "is not a picture", id="impossible depth"),
+    pytest.param(holding(png(40_001, 1000)), "40,001 × 1,000 .* the limit is 40", id="just too large"),
+    pytest.param(holding(png(50, 50, depth=3)), "is not a readable image", id="impossible depth"),
 ]
 
 
@@ -164,7 +164,7 @@ def test_a_file_that_may_not_be_read(tmp_path: Path) -> None:
 def test_a_file_too_large_to_read(tmp_path: Path) -> None:
     with (tmp_path / "mat.tiff").open("wb") as stream:
         stream.truncate(257_000_000)
-    with pytest.raises(BackgroundError, match="257 MB, allowed are 256"):
+    with pytest.raises(BackgroundError, match="257 MB, the limit is 256"):
         mat_image.read_file(tmp_path / "mat.tiff")
 
 

@@ -132,14 +132,12 @@ def test_the_switch_works_in_a_magic_line_from_the_programs_folder(here: Command
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        pytest.param(
-            "-b FLL_2018_Into_Orbit", "put it as FLL2018.jpg or FLL_2018_Into_Orbit.png into {own}", id="none"
-        ),
+        pytest.param("-b FLL_2018_Into_Orbit", "save it as FLL2018.jpg or FLL_2018_Into_Orbit.png in {own}", id="none"),
         pytest.param("-b FLL_2018_into_orbit", "did you mean FLL_2018_Into_Orbit?", id="a wrong name"),
         pytest.param("-b maz --mats pics", "did you mean maze?", id="a wrong name of one's own"),
         pytest.param("-b maze --mats nowhere", "nowhere: --mats: there is no such folder", id="no folder"),
         pytest.param("-b maze --mats p.py", "p.py: cannot be read: Not a directory", id="a file"),
-        pytest.param("-b text --mats pics", "text.png: is not a picture that can be read", id="no picture"),
+        pytest.param("-b text --mats pics", "text.png: is not a readable image", id="no picture"),
     ],
 )
 def test_what_is_not_there_is_told(words: str, told: str, here: Command, own: Path, tmp_path: Path) -> None:
@@ -162,10 +160,7 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
         ["Testcard", "FuBK_testcard_vectorized.png", "2215", "×", "1073,", "not", "2362", "×", "1143"],
         ["FLL_2018_Into_Orbit", "FLL2018.jpg", "2362", "×", "1143"],
     ]
-    assert (
-        f"3 pictures copied to {own}" in done.stderr
-        and "left aside, as no mat is called so: holiday.png" in done.stderr
-    )
+    assert f"3 images copied to {own}" in done.stderr and "skipped, not named like a mat: holiday.png" in done.stderr
     assert (own / "_loop.png").read_bytes() == (tmp_path / "old" / "_loop.png").read_bytes()
     rows = {one["name"]: one["picture"] for one in json.loads(here("backgrounds", "--json").stdout)}
     assert (rows["Loop"], rows["FLL_2019_City_Shaper"]) == (str(own / "_loop.png"), None)
@@ -177,8 +172,8 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
     [
         pytest.param("nowhere", "nowhere: cannot be read: No such file", id="missing"),
         pytest.param("p.py", "p.py: cannot be read: Not a directory", id="a file"),
-        pytest.param("empty", "holds no picture of a mat of the catalogue (such as _loop.png", id="empty"),
-        pytest.param("broken", "_square.png: is not a picture that can be read", id="no picture"),
+        pytest.param("empty", "has no image of a mat of the catalogue (such as _loop.png", id="empty"),
+        pytest.param("broken", "_square.png: is not a readable image", id="no picture"),
     ],
 )
 def test_a_folder_without_originals_changes_nothing(

@@ -95,4 +95,4 @@ def test_unknown_keys_are_noted_once_in_the_shell(here: Command, tmp_path: Path)
     (tmp_path / "p.py").write_text("print('ran')")
     done = here("run", "p.py", "-r", "mine.json")
     assert (done.returncode, done.stdout) == (0, "ran\n")
-    assert done.stderr.count("left aside what means nothing here: owner") == 1
+    assert done.stderr.count("ignored unknown keys: owner") == 1

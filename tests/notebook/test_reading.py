@@ -92,7 +92,7 @@ def test_a_cell_with_a_variable_of_the_notebook_is_skipped(here: Command, tmp_pa
     assert done.returncode == 0
     assert done.stdout.splitlines()[0] == "Colour: 100.0"
     assert [line.split()[:2] for line in done.stdout.splitlines()[2:]] == [["lesson.ipynb#2", "finished"]]
-    notes = ["lesson.ipynb#1 is skipped: only the notebook knows $_x",
+    notes = ["lesson.ipynb#1 is skipped: $_x is defined only in the notebook",
              f"{lesson}, cell 3: only the notebook knows {{x + 300}}, which is left out"]  # fmt: skip
     assert done.stderr.splitlines()[:2] == [f"tuisim: {note}" for note in notes]
 
@@ -130,7 +130,7 @@ def test_json_stands_alone_on_stdout_also_for_all_cells(here: Command, tmp_path:
     # A list would be no answer to one that wants data.
     done = here("run", lesson, "--json")
     assert (done.returncode, done.stdout) == (2, "")
-    assert "has 3 program cells, and none is named (--all, or " in done.stderr
+    assert "has 3 program cells; name one (--all, or " in done.stderr
 
 
 @pytest.mark.slow

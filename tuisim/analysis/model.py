@@ -55,7 +55,7 @@ class Model:
         self.traces = LogTraces(subject.log)
         ticked = self.traces.ticked()
         if self.log.rows and not ticked:
-            raise LogError("no column of numbers", "there is nothing to draw", file=self.log.title)
+            raise LogError("no numeric column", "there is nothing to draw", file=self.log.title)
         self.selected: str = ticked[0].name if ticked else ""
         """Variable whose samples the cursor goes along."""
         self.row: int = 0

@@ -1,4 +1,4 @@
-"""What the shell commands do: one file a command, loaded when it is called.
+"""The shell commands: one file per command, imported when the command is called.
 
 Each has `add_arguments(parser)` and `execute(arguments) -> exit code`.
 """

@@ -1,4 +1,4 @@
-"""`tuisim analyse`: a log on the screen. What the words mean; the screen itself is started by `cli`."""
+"""`tuisim analyse`: the arguments of the analyser; `cli` starts it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tuisim.errors import ConfigError
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """A file, or runs."""
+    """The log to open: a file, or runs."""
 
     file: str
     """Empty for runs."""
@@ -24,19 +24,19 @@ def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim analyse`."""
     parser.usage = "tuisim analyse [RUN…|FILE|-] [options]"
     parser.epilog = (
-        "A RUN is its number, its id, or `last` (also if none is named); several are laid over each other.\n"
+        "A RUN is given by its number, its id, or `last` (the default); several are drawn in one chart.\n"
         "A FILE is CSV, Parquet, JSONL, Arrow or text with lines such as `Colour: 98.8`; - is the standard input."
     )
     parser.add_argument("words", nargs="*", metavar="LOG", help="runs, a file, or -")
-    parser.add_argument("--telemetry", action="store_true", help="every tick of a run instead of its samples")
+    parser.add_argument("--telemetry", action="store_true", help="use the telemetry of a run instead of its samples")
     add_columns(parser)
 
 
 def asked(arguments: Namespace) -> Asked:
-    """Return what the words name.
+    """Return the file or the runs that the arguments name.
 
     Raises:
-        ConfigError: a file among others.
+        ConfigError: a file together with another log.
     """
     words = arguments.words or ["last"]
     files = [word for word in words if is_file(word)]

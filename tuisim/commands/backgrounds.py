@@ -1,4 +1,4 @@
-"""`tuisim backgrounds`: the mats."""
+"""`tuisim backgrounds`: lists the mats, imports images."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from tuisim.errors import listed
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim backgrounds`."""
-    parser.add_argument("--json", action="store_true", help="as JSON")
-    parser.add_argument("--mats", metavar="FOLDER", help="a further folder with mats of your own")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--mats", metavar="FOLDER", help="another folder of your own mats")
     parser.add_argument(
-        "--use-originals", metavar="FOLDER", help="copy the pictures of the browser simulator from there, to use them"
+        "--use-originals", metavar="FOLDER", help="import the browser simulator's mat images from this folder"
     )
 
 
 def execute(arguments: Namespace) -> int:
-    """Print every mat with its start pose, or import pictures.
+    """Print every mat with its start pose, or import images.
 
     Raises:
-        BackgroundError: a folder or a picture in it is wrong.
+        BackgroundError: a folder or an image in it is wrong.
     """
     if arguments.use_originals is not None:
         taken, left = import_originals(Path(arguments.use_originals).expanduser())
@@ -43,7 +43,7 @@ def execute(arguments: Namespace) -> int:
         echo_lines(table(("NAME", "START x, y, heading", "SHOWS"), rows))
         if any(map(_is_missing, found)):
             echo()
-            echo(f"Pictures of your own go into {own_folder()}")
+            echo(f"Put your own images into {own_folder()}")
     return 0
 
 
@@ -53,7 +53,7 @@ def _is_missing(mat: Background) -> bool:
 
 def _shows(mat: Background) -> str:
     if _is_missing(mat):
-        return f"{mat.title} (without a picture: bring {mat.original})"
+        return f"{mat.title} (no image: supply {mat.original})"
     return f"{mat.title} (your {mat.image.name})" if mat.is_own and mat.original else mat.title
 
 
@@ -70,9 +70,9 @@ def _tell_taken(taken: Sequence[Taken], left: Sequence[str], *, as_json: bool) -
     else:
         rows = [(one.name, one.file, _size(one)) for one in taken]
         echo_lines(table(("MAT", "PICTURE", "PIXELS"), rows))
-    echo_error(f"{len(taken)} picture{'s' * (len(taken) != 1)} copied to {own_folder()}; remove one there to undo it")
+    echo_error(f"{len(taken)} image{'s' * (len(taken) != 1)} copied to {own_folder()}; remove one there to undo it")
     if left:
-        echo_error(f"left aside, as no mat is called so: {listed(left)}")
+        echo_error(f"skipped, not named like a mat: {listed(left)}")
 
 
 def _size(one: Taken) -> str:

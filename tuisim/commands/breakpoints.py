@@ -1,4 +1,4 @@
-"""`tuisim run --break …`: prints what a program is doing where a break holds it, then lets it go on or ends it."""
+"""`tuisim run --break …`: reports the state of the program at each breakpoint, then resumes or stops it."""
 
 from __future__ import annotations
 
@@ -25,48 +25,48 @@ GO, STOP = "go", "stop"
 
 @dataclass(frozen=True, slots=True)
 class BreakOptions:
-    """What `--break` and its companions ask for."""
+    """The values of `--break`, `--watch` and `--break-then`."""
 
     breaks: tuple[str, ...]
     watches: tuple[str, ...]
     stops: bool
-    """Whether the first break ends the run."""
+    """Whether the first breakpoint ends the run."""
 
 
 def add_break_arguments(parser: SwitchParser) -> None:
     """Declare `--break`, `--watch` and `--break-then`."""
-    add = parser.add_argument_group("breaks").add_argument
+    add = parser.add_argument_group("breakpoints").add_argument
     add("--break", dest="breaks", action="append", default=[], metavar="TEXT",
-        help="tell on stderr where the run is when this is met: 12, 12 if x > 3, left.red%% < 10, "
+        help="set a breakpoint, reported on stderr: 12, 12 if x > 3, left.red%% < 10, "
         "left.color changes, ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; "
         "may be repeated")  # fmt: skip
     add("--watch", dest="watches", action="append", default=[], metavar="EXPR",
-        help="an expression to tell at each break; may be repeated")  # fmt: skip
+        help="an expression to evaluate at each breakpoint; may be repeated")  # fmt: skip
     add("--break-then", choices=(GO, STOP), default=GO, metavar=f"{GO}|{STOP}",
-        help="what follows a break (go); stop ends with exit code 3")  # fmt: skip
+        help="what to do after a breakpoint (go); stop ends the run with exit code 3")  # fmt: skip
 
 
 def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]) -> None:
-    """Check breaks and watches before anything is run.
+    """Check breakpoints and watches before anything is run.
 
     Raises:
-        ConfigError: a text is no break, or not one for the robot of one of the programs; a watch is no expression,
-            or there is no break at which it would be told.
+        ConfigError: a text is not a breakpoint, or not valid for a program's robot; a watch is not an expression,
+            or there are watches without breakpoints.
     """
     for one in prepared:
         parse_breakpoints(texts, one.spec.robot)
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:
-        raise ConfigError("is told at breaks only", "give one with --break, such as --break 'time 1'", key="watch")
+        raise ConfigError("needs a breakpoint", "add one with --break, such as --break 'time 1'", key="watch")
 
 
 class BreakTeller:
-    """Tells the breaks of one run.
+    """Reports the breakpoints of one run on stderr.
 
     Args:
         handle: The run.
-        options: What is asked for.
+        options: Breakpoints, watches, and whether to stop.
     """
 
     def __init__(self, handle: RunHandle, options: BreakOptions) -> None:
@@ -74,10 +74,10 @@ class BreakTeller:
         self._held: Paused | None = None
         self._source = source_lines(handle.program.text)
         self.stopped = False
-        """Whether a break has ended the run."""
+        """Whether a breakpoint has ended the run."""
 
     def take(self, event: Message) -> None:
-        """Take an event of the run: ask for its state where it holds, and tell it."""
+        """Handle an event of the run: inspect it when it pauses, then report and resume or stop it."""
         match event:
             case Paused():
                 self._held = event
@@ -96,7 +96,7 @@ class BreakTeller:
             self._handle.send(Resume())
 
     def _told(self, held: Paused, looked: Inspected) -> list[str]:
-        """Return the lines that say where the run is and what it is doing."""
+        """Return the lines of the report: position, variables, watches, what the program waits for."""
         name = held.file or self._handle.program.path or self._handle.program.name
         value = f" ({held.value})" if held.value else ""
         thread = f", thread {held.thread}" if len(looked.threads) > 1 else ""

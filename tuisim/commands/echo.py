@@ -1,7 +1,7 @@
-"""What the shell commands write in lines of their own; nothing else in `commands` prints.
+"""Output of the shell commands; no other module in `commands` prints.
 
-Names, messages and rows come from programs, files and the store, and may hold what a terminal would obey. Only what
-a running program prints is passed on as it is, by `follow`.
+Names, messages and rows come from programs, files and the store, and may contain terminal control sequences, which
+are removed. Only the output of a running program is passed on unchanged, by `relay`.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ def echo_lines(text: str) -> None:
 
 
 def echo_json(data: Any, *, flush: bool = False) -> None:
-    """Write data to stdout as one line of JSON, which escapes what a terminal would obey."""
+    """Write data to stdout as one line of JSON, with control characters escaped."""
     with aside(sys.stdout):
         print(_json(data), flush=flush)
 
 
 def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> None:
-    """Write one JSON object to stdout: a list under a key, item by item as they come, then what else it holds."""
+    """Write one JSON object to stdout: a list under a key, streamed item by item, then the other keys."""
     with aside(sys.stdout):
         sys.stdout.write(f'{{"{key}": [')
         for number, item in enumerate(items):
@@ -61,15 +61,15 @@ def echo_error_lines(text: str) -> None:
 
 
 def echo_chart(text: str) -> None:
-    """Write a chart to stdout, whose colours are commands to the terminal; it holds no text that was not looked at."""
+    """Write a chart with its colour codes to stdout; its texts must already be printable."""
     with aside(sys.stdout):
         sys.stdout.write(text)
 
 
 class CsvOut:
-    """Standard output as a file of CSV: to the last byte in a pipe, without commands to a terminal on one."""
+    """A text file that writes CSV to stdout: unchanged to a pipe, without control characters to a terminal."""
 
     def write(self, text: str) -> None:
-        """Write lines."""
+        """Write text."""
         with aside(sys.stdout):
             sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)

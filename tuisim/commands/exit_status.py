@@ -1,4 +1,4 @@
-"""How a run ended, for the shell: exit code, last-state line, JSON object."""
+"""The end of a run as an exit code, a status line or a JSON object."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from tuisim.runs.samples import counts_of
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
 EXIT_BROKEN_PIPE = 141
-"""What a shell shows for a program that SIGPIPE has ended."""
+"""The exit code of a program that was ended by SIGPIPE."""
 SIGNALLED = 128
-"""Exit codes above it mean that somebody wants no more, and so no further program either."""
+"""Exit codes above this come from a signal; no further program is then run."""
 LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit", "disk_full"})
-"""The ends of a run that a limit brought about."""
+"""Ends of a run that are caused by a limit."""
 
 
 def exit_code_of(ended: Ended | RunEnd) -> int:
@@ -28,11 +28,11 @@ def exit_code_of(ended: Ended | RunEnd) -> int:
 
 
 def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
-    """Return a stored run as plain data: what it was, how it ended, where the robot is, what it logged.
+    """Return a stored run as a JSON-compatible dict: its settings, its end, the robot's pose, counts of its log.
 
     Args:
         run: The run.
-        most_bytes: Lines and samples of a longer output are not counted: they are None.
+        most_bytes: `lines` and `samples` are None, not counted, if the output is longer than this.
     """
     last = run.telemetry.last()
     end = run.end
@@ -64,7 +64,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
 
 
 def last_state(facts: dict[str, Any]) -> str:
-    """Return the line that a run ends with, from what `describe` returned."""
+    """Return the status line of a run, from the result of `describe`."""
     state = facts["state"].replace("_", " ")
     what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
     samples = "" if facts["samples"] is None else f"{facts['samples']} sample{'s' * (facts['samples'] != 1)} · "
@@ -76,12 +76,12 @@ def last_state(facts: dict[str, Any]) -> str:
 
 
 def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
-    """Print how a run ended: the program's own traceback and the last state on stderr, or JSON on stdout."""
+    """Print the end of a run: traceback and status line on stderr, or JSON on stdout."""
     facts = describe(run)
     if facts["error"] and not any(row.stream == STDERR for row in run.output.rows()):
         echo_error_lines(facts["error"].rstrip("\n"))
     if facts["error"].rstrip("\n").endswith(NO_ANSWER):
-        echo_error("`tuisim run` asks nobody: give each answer with --input TEXT, or run the program in the app.")
+        echo_error("`tuisim run` is not interactive: give each answer with --input TEXT, or use the app.")
     if as_json:
         echo_json({**facts, "exit_code": exit_code}, flush=True)
     else:

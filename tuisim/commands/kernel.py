@@ -1,4 +1,4 @@
-"""`tuisim kernel`: the Jupyter kernel in which the notebooks of a course run as they are."""
+"""`tuisim kernel`: installs, lists and removes the Jupyter kernel that runs a course's notebooks unchanged."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _VALID_NAME = re.compile(r"[a-z0-9_-][a-z0-9._-]*")
 
 
 class Action(StrEnum):
-    """What there is to do."""
+    """The actions of `tuisim kernel`."""
 
     LIST = "list"
     INSTALL = "install"
@@ -41,12 +41,12 @@ class Action(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class InstalledKernel:
-    """One of our kernels, as Jupyter finds it."""
+    """An installed tuisim kernel."""
 
     name: str
     display_name: str
     python: str
-    """The interpreter that runs it."""
+    """The path of its interpreter."""
     folder: str
 
 
@@ -58,20 +58,20 @@ def add_arguments(parser: SwitchParser) -> None:
         "       tuisim kernel remove [--user|--sys-prefix|--prefix P] [--name N]"
     )
     parser.description = (
-        f"Add the kernel {DISPLAY_NAME!r} to Jupyter: every magic is there, and the modules that a course's cells\n"
-        "import mean tuisim, so that no cell needs to be changed."
+        f"Install the kernel {DISPLAY_NAME!r} in Jupyter. It has every magic and the modules that a course's cells\n"
+        "import, so notebooks run unchanged."
     )
     parser.add_argument("action", nargs="?", default=Action.LIST, metavar="|".join(Action), help="what to do")
-    place = parser.add_mutually_exclusive_group()
-    place.add_argument("--user", action="store_true", help="for this user (unless said otherwise)")
-    place.add_argument("--sys-prefix", action="store_true", help="for the Python environment that tuisim is in")
-    place.add_argument("--prefix", metavar="P", help="in P/share/jupyter/kernels")
-    parser.add_argument("--name", metavar="N", help=f"how Jupyter calls the kernel ({KERNEL_NAME})")
-    parser.add_argument("--json", action="store_true", help="as JSON")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--user", action="store_true", help="for this user (the default)")
+    where.add_argument("--sys-prefix", action="store_true", help="in the Python environment of tuisim")
+    where.add_argument("--prefix", metavar="P", help="in P/share/jupyter/kernels")
+    parser.add_argument("--name", metavar="N", help=f"name of the kernel in Jupyter ({KERNEL_NAME})")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def execute(arguments: Namespace) -> int:
-    """Do what `action` says.
+    """Run the action.
 
     Raises:
         ConfigError: no such action, ipykernel is missing, or a kernel cannot be written or found.
@@ -80,32 +80,32 @@ def execute(arguments: Namespace) -> int:
         raise ConfigError(f"no such action {arguments.action!r}", nearest(arguments.action, Action), key="kernel")
     action, name = Action(arguments.action), arguments.name
     if arguments.json and action is not Action.LIST:
-        raise ConfigError("only the list can be JSON", "leave it out", key="--json")
+        raise ConfigError("is for `list` only", "leave it out", key="--json")
     if name is not None and not _VALID_NAME.fullmatch(name):
-        raise ConfigError(f"may have small letters, digits and . _ - only, got {name!r}", key="--name")
+        raise ConfigError(f"may contain only lower-case letters, digits and . _ -, got {name!r}", key="--name")
     manager = _manager()
-    place = _place(manager, arguments)
-    looked = manager.kernel_dirs if place is None else [place]
+    folder = _folder_of(manager, arguments)
+    folders = manager.kernel_dirs if folder is None else [folder]
     match action:
         case Action.LIST:
-            _list([kernel for kernel in _kernels(looked) if name in (None, kernel.name)], as_json=arguments.json)
+            _list([kernel for kernel in _kernels(folders) if name in (None, kernel.name)], as_json=arguments.json)
         case Action.INSTALL:
-            _install(manager, Path(place or manager.user_kernel_dir), name or KERNEL_NAME)
+            _install(manager, Path(folder or manager.user_kernel_dir), name or KERNEL_NAME)
         case Action.REMOVE:
-            _remove(looked, name or KERNEL_NAME)
+            _remove(folders, name or KERNEL_NAME)
         case _:
             assert_never(action)
     return 0
 
 
 def _manager() -> KernelSpecManager:
-    """What knows Jupyter's folders.
+    """Return Jupyter's manager of kernel folders.
 
     Raises:
         ConfigError: ipykernel is not installed.
     """
     try:
-        # Without it there would be nothing to start.
+        # The kernel itself.
         import ipykernel  # noqa: F401
         from jupyter_client.kernelspec import KernelSpecManager
     except ModuleNotFoundError as error:
@@ -114,8 +114,8 @@ def _manager() -> KernelSpecManager:
     return KernelSpecManager()
 
 
-def _place(manager: KernelSpecManager, arguments: Namespace) -> str | None:
-    """The folder of kernels that the switches mean, None if they say nothing."""
+def _folder_of(manager: KernelSpecManager, arguments: Namespace) -> str | None:
+    """Return the kernel folder chosen by the switches, None if none is chosen."""
     prefix = sys.prefix if arguments.sys_prefix else arguments.prefix
     if prefix is not None:
         return str(Path(os.path.abspath(os.path.expanduser(prefix)), "share", "jupyter", "kernels"))
@@ -123,7 +123,7 @@ def _place(manager: KernelSpecManager, arguments: Namespace) -> str | None:
 
 
 def _kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
-    """Yield those of our kernels that are in folders of kernels."""
+    """Yield the tuisim kernels in these kernel folders."""
     for folder in dict.fromkeys(folders):
         for file in sorted(Path(folder).glob(f"*/{_SPEC_FILE}")):
             spec = _read(file)
@@ -132,11 +132,11 @@ def _kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
 
 
 def _read(file: Path) -> dict[str, Any] | None:
-    """Return what describes one of our kernels, None if a file is not ours."""
+    """Return the kernel spec in a file, None if it is not a tuisim kernel's."""
     try:
         spec = json.loads(file.read_bytes())
         ours = EXTENSION in spec["argv"] and isinstance(spec["display_name"], str)
-    # Others write into these folders too, whatever they like.
+    # Other programs write here, so the file may hold anything.
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     return dict(spec) if ours else None
@@ -146,10 +146,10 @@ def _list(kernels: Sequence[InstalledKernel], *, as_json: bool) -> None:
     if as_json:
         echo_json([asdict(kernel) for kernel in kernels])
     elif not kernels:
-        echo("no kernel of tuisim is installed; `tuisim kernel install` adds one")
+        echo("no tuisim kernel is installed; `tuisim kernel install` adds one")
     else:
         rows = [
-            (k.name, k.display_name, k.python + ("" if Path(k.python).exists() else " (is gone)"), k.folder)
+            (k.name, k.display_name, k.python + ("" if Path(k.python).exists() else " (missing)"), k.folder)
             for k in kernels
         ]
         echo_lines(table(("NAME", "KERNEL", "PYTHON", "FOLDER"), rows))
@@ -161,8 +161,8 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
     folder = place / name
     file = folder / _SPEC_FILE
     if file.exists() and _read(file) is None:
-        raise ConfigError(f"{name!r} is another kernel already, in {folder}", "choose another name", key="--name")
-    # As ipykernel installs its own: the debugger cannot look into frozen modules.
+        raise ConfigError(f"{name!r} already names another kernel, in {folder}", "choose another name", key="--name")
+    # As in ipykernel's own spec: the debugger cannot step into frozen modules.
     spec = get_kernel_dict(extra_arguments=["--ext", EXTENSION], python_arguments=["-Xfrozen_modules=off"])
     spec["display_name"] = DISPLAY_NAME
     try:
@@ -173,15 +173,15 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
         raise ConfigError(f"cannot be written: {error.strerror or error}", file=str(file)) from None
     echo(f"kernel {DISPLAY_NAME!r} installed in {folder}")
     if str(place) not in manager.kernel_dirs:
-        echo(f"Jupyter looks there with JUPYTER_PATH={place.parent}, or if it is installed below {place.parents[2]}")
+        echo(f"Jupyter finds it there with JUPYTER_PATH={place.parent}, or if installed below {place.parents[2]}")
 
 
 def _remove(places: Sequence[str], name: str) -> None:
     found = [kernel for kernel in _kernels(places) if kernel.name == name]
     if not found:
         hint = "see `tuisim kernel list`" if len(places) > 1 else f"looked in {places[0]}"
-        raise ConfigError(f"no kernel {name!r} of tuisim is installed", hint, key="--name")
-    # The one that Jupyter starts; another one of that name, in a place that comes later, is next.
+        raise ConfigError(f"no tuisim kernel {name!r} is installed", hint, key="--name")
+    # Only the first, which Jupyter starts; others of that name come later on its path.
     folder = Path(found[0].folder)
     try:
         folder.unlink() if folder.is_symlink() else shutil.rmtree(folder)

@@ -27,7 +27,7 @@ class Subcommand:
 
     does: str
     path: str
-    """Module in `commands/logs`, and function; imported when it is asked for."""
+    """MODULE:FUNCTION in `commands/logs`; imported on use."""
     options: tuple[str, ...] = ()
     """Its options besides `COMMON`, from `OPTIONS`."""
 
@@ -38,42 +38,42 @@ class Subcommand:
 
 
 SUBCOMMANDS: Mapping[str, Subcommand] = {
-    "summary": Subcommand("count, extremes, mean, spread, quantiles of each variable", "figures:summary"),
+    "summary": Subcommand("count, min, max, mean, std and quantiles of each variable", "figures:summary"),
     "bands": Subcommand("plateaus: level, name, times, width", "figures:bands"),
     "events": Subcommand("where a variable crosses --at", "figures:events", ("at", "hysteresis")),
-    "derive": Subcommand("slope, in units a second", "signals:derive"),
+    "derive": Subcommand("derivative, in units per second", "signals:derive"),
     "integrate": Subcommand("integral, in units times seconds", "signals:integrate", ("between",)),
-    "average": Subcommand("mean of --width samples around each", "signals:average", ("width",)),
-    "resample": Subcommand("all variables every --period seconds", "signals:even", ("period", "between")),
-    "calc": Subcommand("--expression over the columns", "signals:calculate", ("expression",)),
-    "reckon": Subcommand("dead reckoning from the wheels, and its error", "signals:reckon"),
-    "diff": Subcommand("where two runs part; exit code 1 if they do", "diff:diff"),
+    "average": Subcommand("centred rolling mean of --width samples", "signals:average", ("width",)),
+    "resample": Subcommand("resample all variables every --period seconds", "signals:even", ("period", "between")),
+    "calc": Subcommand("evaluate --expression over the columns", "signals:calculate", ("expression",)),
+    "reckon": Subcommand("dead reckoning from the wheel encoders, and its error", "signals:reckon"),
+    "diff": Subcommand("where two runs differ; exit code 1 if they do", "diff:diff"),
     "export": Subcommand("the log in another format", "signals:export"),
     "plot": Subcommand("the chart, as text, SVG or PNG", "plot:plot", _CHART),
     "report": Subcommand("program, world, chart, bands, statistics and notes on one page", "report:report"),
 }
-"""What `tuisim log` does, by name."""
+"""The subcommands of `tuisim log`, by name."""
 
 OPTIONS: Mapping[str, Mapping[str, Any]] = {
-    "at": {"type": float, "metavar": "VALUE", "help": "threshold of events"},
-    "hysteresis": {"type": float, "default": 0.0, "metavar": "VALUE", "help": "events: how far beyond counts"},
+    "at": {"type": float, "metavar": "VALUE", "help": "events: threshold"},
+    "hysteresis": {"type": float, "default": 0.0, "metavar": "VALUE", "help": "events: margin around the threshold"},
     "between": {
         "choices": ("hold", "linear"),
         "default": "hold",
         "metavar": "hold|linear",
-        "help": "what a signal is between samples (hold)",
+        "help": "interpolation between samples (hold)",
     },
-    "width": {"type": int, "default": 5, "metavar": "N", "help": "samples of an average, odd"},
-    "period": {"type": float, "metavar": "S", "help": "seconds between rows of resample"},
-    "expression": {"default": "", "metavar": "TEXT", "help": "such as '(left + right) / 2', see README"},
-    "facets": {"action": "store_true", "default": False, "help": "plot: a chart for each variable"},
+    "width": {"type": int, "default": 5, "metavar": "N", "help": "average: window in samples, odd (5)"},
+    "period": {"type": float, "metavar": "S", "help": "resample: seconds between rows"},
+    "expression": {"default": "", "metavar": "TEXT", "help": "calc: such as '(left + right) / 2', see README"},
+    "facets": {"action": "store_true", "default": False, "help": "plot: one chart per variable"},
     "marks": {"action": "store_true", "default": False, "help": "plot: points instead of lines"},
     "from": {"type": float, "metavar": "S", "help": "plot: first second shown"},
     "to": {"type": float, "metavar": "S", "help": "plot: last second shown"},
-    "against": {"default": "", "metavar": "NAME", "help": "plot: over this variable or column, not time"},
-    "size": {"default": "", "metavar": "WxH", "help": "plot: in pixels, of text in characters"},
+    "against": {"default": "", "metavar": "NAME", "help": "plot: variable or column for the x axis, instead of time"},
+    "size": {"default": "", "metavar": "WxH", "help": "plot: in pixels; in characters for text"},
 }
-"""Options that only some subcommands take, by name: how they are declared."""
+"""Options of some subcommands only, by name, with their arguments for `add_argument`."""
 
 
 def add_arguments(parser: SwitchParser) -> None:
@@ -81,7 +81,7 @@ def add_arguments(parser: SwitchParser) -> None:
     parser.usage = "tuisim log SUBCOMMAND LOG… [options]"
     listing = "\n".join(f"  {name:<10} {entry.does}" for name, entry in SUBCOMMANDS.items())
     parser.description = (
-        "Analysis of logs. A LOG is a stored run (its number, its id, `last`), a CSV, Parquet, JSONL, Arrow or text\n"
+        "Analyse logs. A LOG is a stored run (its number, its id, `last`), a CSV, Parquet, JSONL, Arrow or text\n"
         "file, or - for the standard input.\n\nsubcommands:\n" + listing
     )
     parser.epilog = (
@@ -95,25 +95,25 @@ def add_arguments(parser: SwitchParser) -> None:
     parser.add_argument("action", metavar="SUBCOMMAND", help="what to do")
     parser.add_argument("words", nargs="*", metavar="LOG", help="runs, files or -")
     parser.add_argument(
-        "--variable", action="append", default=[], metavar="NAME", help="only this one; may be repeated"
+        "--variable", action="append", default=[], metavar="NAME", help="only this variable; may be repeated"
     )
-    parser.add_argument("--telemetry", action="store_true", help="every tick of a run instead of its samples")
+    parser.add_argument("--telemetry", action="store_true", help="use the telemetry of a run instead of its samples")
     add_columns(parser)
-    parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument(
         "--out",
         metavar="FILE",
-        help=f"write the result: {LISTED}; of plot .svg, .png, .txt; of report .html",
+        help=f"write the result to a file: {LISTED}; plot: .svg, .png, .txt; report: .html",
     )
     for option, declared in OPTIONS.items():
         parser.add_argument(f"--{option}", **declared)
 
 
 def execute(arguments: Namespace) -> int:
-    """Do what the subcommand says.
+    """Run the subcommand.
 
     Raises:
-        ConfigError: no such subcommand, or an option that it does not take.
+        ConfigError: no such subcommand, or an option that it does not have.
         LogError: a log cannot be read.
         ExportError: a file cannot be written.
     """

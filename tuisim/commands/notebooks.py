@@ -1,4 +1,4 @@
-"""Notebooks on the command line: their program cells as a list, and what became of all of them."""
+"""Notebooks on the command line: lists of their program cells, and tables of results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NOT_RUN = "not_run"
 
 
 def to_list(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProgram]:
-    """Return the programs of a notebook that is named without saying which; none if there is nothing to choose."""
+    """Return the programs of a notebook that is named without a cell; empty if there is only one."""
     if run_all or len(words) != 1 or not is_notebook(words[0]) or "#" in words[0]:
         return []
     programs = chosen_programs(words[0])
@@ -25,7 +25,7 @@ def to_list(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProg
 
 
 def print_list(word: str, programs: Sequence[NotebookProgram]) -> None:
-    """Print the programs of a notebook and how to name one."""
+    """Print the programs of a notebook, and how to run one."""
     rows = [(p.number, _titled(p), p.source.switches.get("background", ""), p.source.prelude) for p in programs]
     echo_lines(table(("cell", "title", "mat", "names"), rows))
     echo()
@@ -33,12 +33,12 @@ def print_list(word: str, programs: Sequence[NotebookProgram]) -> None:
 
 
 def _titled(program: NotebookProgram) -> str:
-    needs = f"(needs {program.unknown} of the notebook)" if program.unknown else ""
+    needs = f"(needs {program.unknown} from the notebook)" if program.unknown else ""
     return " ".join(filter(None, (program.title, needs)))
 
 
 def known_programs(word: str) -> list[NotebookProgram]:
-    """Return the programs that a word means, without those that run in the notebook only; notes on stderr tell which.
+    """Return the programs that a word names, without those that run only in the notebook; those are noted on stderr.
 
     Raises:
         ConfigError: there is no such notebook or program, or it runs in the notebook only.
@@ -50,10 +50,10 @@ def known_programs(word: str) -> list[NotebookProgram]:
 
 
 def known_programs_of(path: Path) -> list[NotebookProgram]:
-    """Return the programs of one of many notebooks, as `known_programs` does; there may be none.
+    """Return the programs of a notebook like `known_programs`, but possibly none.
 
     Raises:
-        ConfigError: it is no notebook, or a magic line in it is wrong.
+        ConfigError: it is not a notebook, or a magic line in it is wrong.
     """
     return _known(notebook_programs(path))
 
@@ -64,7 +64,7 @@ def _known(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
         for note in program.notes:
             echo_error(f"tuisim: {note}")
         if program.unknown:
-            echo_error(f"tuisim: {program.source.name} is skipped: only the notebook knows {program.unknown}")
+            echo_error(f"tuisim: {program.source.name} is skipped: {program.unknown} is defined only in the notebook")
         else:
             known.append(program)
     return known
@@ -75,27 +75,27 @@ class NotRun:
     """A program, or a whole notebook of a folder, that cannot be run."""
 
     label: str
-    """What it is called in the table."""
+    """Its name in the table."""
     error: ConfigError
 
     def report(self, *, as_json: bool) -> None:
-        """Tell why it is not run."""
+        """Print why it is not run."""
         if as_json:
             facts = {"program": self.label, "state": NOT_RUN, "error": str(self.error)}
             echo_json({**facts, "exit_code": exit_status.EXIT_BAD_OUTPUT}, flush=True)
         else:
-            echo_error(f"tuisim: {self.label} is not run: {self.error}")
+            echo_error(f"tuisim: {self.label} was not run: {self.error}")
 
 
 def check_folder(word: str, *, run_all: bool) -> list[Path]:
-    """Return the notebooks in the folder that a word names.
+    """Return the notebooks in a folder and its subfolders.
 
     Raises:
-        ConfigError: there are none, or nobody says that all of them are to be run.
+        ConfigError: there are none, or `--all` is missing.
     """
     found = notebooks_in(Path(word))
     if not found:
-        raise ConfigError("is a folder without notebooks", "name a program, or a folder that has some", file=word)
+        raise ConfigError("is a folder without notebooks", "name a program, or a folder with notebooks", file=word)
     if not run_all:
         hint = f"tuisim run {word} --all runs them all"
         raise ConfigError(f"is a folder of {len(found)} notebook{'s' * (len(found) > 1)}", hint, file=word)
@@ -103,10 +103,10 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
 
 
 def print_results(results: Sequence[tuple[str, StoredRun | None]]) -> None:
-    """Print one row a program: how it ended, samples, simulated time, run.
+    """Print a table with one row per program: state, samples, simulated time, run.
 
     Args:
-        results: What each is called, and its run; None for one that was not run.
+        results: Pairs of label and run; None for one that was not run.
     """
     rows = [_row(label, run) for label, run in results]
     echo_lines(table(("cell", "state", "samples", "time s", "run"), rows))

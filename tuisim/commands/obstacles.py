@@ -1,4 +1,4 @@
-"""`tuisim obstacles`: the sets of obstacles that have a name, or one set as a file."""
+"""`tuisim obstacles`: lists the named sets of obstacles, or prints one as a file."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from tuisim.config.presets import OBSTACLES
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim obstacles`."""
-    parser.description = "List the sets of obstacles, or print one as a file to start an own set from."
-    parser.add_argument("obstacles", nargs="?", metavar="NAME|FILE", help="print this one as TOML")
-    parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.description = "List the sets of obstacles, or print one as TOML to start your own from."
+    parser.add_argument("obstacles", nargs="?", metavar="NAME|FILE", help="print this set as TOML")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def execute(arguments: Namespace) -> int:

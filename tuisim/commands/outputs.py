@@ -1,4 +1,4 @@
-"""The files that a command is to write, checked before it begins."""
+"""Checks of a command's output files, before it starts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tuisim.logs.export import check_target
 
 
 def check_targets(targets: Iterable[str | Path]) -> None:
-    """Complain about files that cannot be written, and about one that is named twice.
+    """Raise if a file cannot be written, or is named twice.
 
     Raises:
         ConfigError: two of them are the same file.

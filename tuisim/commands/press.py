@@ -1,4 +1,4 @@
-"""`--press`: buttons of the brick that are pressed at stated times, without anybody there."""
+"""`--press`: buttons of the brick that are pressed at given times."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tuisim.protocol import BUTTONS, ScriptedAction, SetButtons
 
 FLAG = "--press"
 DEFAULT_PRESS_S = 0.1
-"""How long a button is held when nothing else is said."""
+"""The default duration of a press."""
 MAX_PRESS_S = 1e6
 
 
@@ -26,7 +26,7 @@ class Press:
 
 
 def parse_press(text: str) -> Press:
-    """Return the press that a text such as `enter@1.0-1.5` or `enter@1` describes.
+    """Parse a press such as `enter@1.0-1.5` or `enter@1`.
 
     Raises:
         ConfigError: there is no such button, or the times are wrong.
@@ -37,7 +37,7 @@ def parse_press(text: str) -> Press:
     if name not in BUTTONS:
         raise ConfigError(f"the brick has no button {name!r}", nearest(name, BUTTONS), key=FLAG)
     seconds = number(0.0, MAX_PRESS_S)
-    # A minus at the start is a sign, and no time is below 0.
+    # A leading minus is a sign; `number` rejects negative times.
     begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
     from_s = seconds(begin, FLAG)
     until_s = seconds(end, FLAG) if to else from_s + DEFAULT_PRESS_S
@@ -47,11 +47,11 @@ def parse_press(text: str) -> Press:
 
 
 def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[ScriptedAction, ...]:
-    """Return the changes of the buttons, in the order of their ticks.
+    """Return the changes of the button states, ordered by tick.
 
     Args:
-        presses: May overlap.
-        tick_hz: Ticks a second; a press lasts one tick at least.
+        presses: Presses; they may overlap.
+        tick_hz: Ticks per second; a press lasts at least one tick.
     """
     held = []
     for press in presses:

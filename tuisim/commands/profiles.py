@@ -1,4 +1,4 @@
-"""`tuisim profiles`: the rules of each kind of brick, what each call costs, and where the numbers come from."""
+"""`tuisim profiles`: prints the settings of each profile and their sources."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _APART = ("name", "title")
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim profiles`."""
-    parser.description = "List the profiles: what each call costs in simulated time, and where the numbers come from."
-    parser.add_argument("profiles", nargs="*", metavar="NAME|FILE", help="show these instead of all")
-    parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.description = "List the profiles: the simulated time of each call, and the source of each number."
+    parser.add_argument("profiles", nargs="*", metavar="NAME|FILE", help="show only these")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def execute(arguments: Namespace) -> int:
-    """Print profiles, one a column; costs in simulated milliseconds a call.
+    """Print profiles, one per column; costs in simulated milliseconds per call.
 
     Raises:
         ProfileError: there is no such profile, or its file is wrong.
@@ -38,7 +38,7 @@ def execute(arguments: Namespace) -> int:
         for key in profiles[0]
         if key not in _APART
     ]
-    echo_lines(table(("", *(profile["name"] for profile in profiles), "WHERE IT COMES FROM"), rows))
+    echo_lines(table(("", *(profile["name"] for profile in profiles), "SOURCE"), rows))
     return 0
 
 

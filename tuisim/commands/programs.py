@@ -1,4 +1,4 @@
-"""`tuisim programs`: the example programs."""
+"""`tuisim programs`: lists the example programs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tuisim.config.options import SwitchParser
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim programs`."""
-    parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def execute(arguments: Namespace) -> int:
@@ -22,5 +22,5 @@ def execute(arguments: Namespace) -> int:
         echo_json([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found])
     else:
         echo_lines(table(("NAME", "DOES"), [(one.name, one.title) for one in found]))
-        echo(f"They lie in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it.")
+        echo(f"They are in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it.")
     return 0

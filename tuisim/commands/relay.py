@@ -1,4 +1,4 @@
-"""Watches one headless run: passes on what it prints, stops it on ctrl-C."""
+"""Relays the output of one headless run; stops it on ctrl-C."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
 
 POLL_S = 0.05
-"""How long a printed line may wait before it is passed on."""
+"""The interval at which printed lines are relayed."""
 
 
 class Interrupts:
-    """Ctrl-C and SIGTERM, from the start of the first run until all is written that was asked for.
+    """Handles ctrl-C and SIGTERM, from the start of the first run until all exports are written.
 
-    The first one stops the run at hand, and no further one is begun; what has been logged is exported all the same.
-    A second one ends the command at once.
+    The first signal stops the current run, and no further run is started; logged data is still exported.
+    A second signal ends the command at once.
     """
 
     def __init__(self) -> None:
         self.exit_code = 0
-        """As a shell shows a program that the signal has ended; 0 while there was none."""
+        """128 + the signal's number; 0 if there was none."""
         self._handle: RunHandle | None = None
 
     def __enter__(self) -> Self:
-        self._before = {number: signal.signal(number, self._take) for number in (signal.SIGINT, signal.SIGTERM)}
+        self._before = {number: signal.signal(number, self._on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -41,12 +41,12 @@ class Interrupts:
             signal.signal(number, handler)
 
     def watch(self, handle: RunHandle) -> None:
-        """Take a run as the one at hand."""
+        """Make a run the one that a signal stops."""
         self._handle = handle
         if self.exit_code:
             handle.stop()
 
-    def _take(self, number: int, frame: FrameType | None) -> None:
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
         if self.exit_code:
             if self._handle is not None and self._handle.ended is None:
                 self._handle.kill()
@@ -57,13 +57,13 @@ class Interrupts:
 
 
 class Follower:
-    """Follows one run.
+    """Follows one run to its end.
 
     Args:
         handle: The run.
         out: Where its printed lines go; error text and speech go to stderr.
-        listen: Called with each event of the run, after what was printed before it.
-        tell: Called now and then, to say how far the run is.
+        listen: Called with each event of the run, after the output before it has been written.
+        tell: Called at each poll, to show progress.
     """
 
     def __init__(
@@ -78,12 +78,12 @@ class Follower:
         self._handle = handle
         self._out = out
         self.cut = 0
-        """The exit code that a closed stdout asks for, else 0."""
+        """The exit code for a closed stdout, else 0."""
         self.lost = ""
-        """Why printed lines could not be passed on, empty if they were."""
+        """Why printed lines could not be written; empty if they were."""
 
     def to_the_end(self) -> Ended:
-        """Wait until the run has ended, and return how."""
+        """Block until the run has ended, and return its end."""
         while True:
             events: list[Message] = []
             if self._listen is None:
@@ -101,14 +101,14 @@ class Follower:
                 return ended
 
     def _pass_on(self, rows: Iterable[OutputRow]) -> None:
-        """Write rows in the order in which they came, also where some go to stdout and some to stderr."""
+        """Write rows to stdout and stderr in their original order."""
         for to_stdout, group in groupby(rows, key=lambda row: row.stream == STDOUT):
             if to_stdout:
                 with aside(self._out):
                     self._write("".join(row.text + "\n" for row in group))
                 continue
             for row in group:
-                # What it prints is the program's affair, as in a shell; what it says stands in a line of ours.
+                # Printed text is passed on unchanged; speech becomes a line of tuisim's own.
                 if row.stream == STDERR:
                     with aside(sys.stderr):
                         sys.stderr.write(row.text + "\n")
@@ -125,5 +125,5 @@ class Follower:
             self.cut = EXIT_BROKEN_PIPE
             self._handle.stop()
         except OSError as error:
-            # The run and its recording are worth more than its echo here.
+            # The run goes on: its recording has every line.
             self.lost = f"cannot write to stdout: {error.strerror or error}"

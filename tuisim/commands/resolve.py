@@ -1,7 +1,7 @@
-"""From the words of a command line to what is run: program, settings, specification.
+"""Resolve the words of a command line into program, settings and run specification.
 
-The command line wins over the world file, the world file over the program's magic line, and that over
-the defaults.
+The command line takes precedence over the world file, the world file over the program's magic line, and the magic
+line over the defaults.
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 _OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors"})
-"""Fields of `Settings` that have nothing to do with what is run."""
+"""Fields of `Settings` that do not affect the run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """All that starting a run, or the app, needs."""
+    """Everything needed to start a run or the app."""
 
     program: Program | None
     settings: Settings
     spec: RunSpec
     world: WorldFile | None = None
     label: str = ""
-    """What it is called in a table; empty for the program's name."""
+    """Its name in a table; empty for the program's name."""
 
 
 def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
-    """Complain if the program's arguments belong to nobody.
+    """Check that the words after `--` belong to exactly one program.
 
     Args:
         words: Programs and worlds, as the user named them.
@@ -54,22 +54,22 @@ def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
     """
     programs = [word for word in words if not means_world(word)]
     if getattr(arguments, "run", None) is not None:
-        raise ConfigError("a stored run has arguments of its own", "leave them out", key=ARGUMENTS_FOLLOW)
+        raise ConfigError("a stored run has its own arguments", "leave them out", key=ARGUMENTS_FOLLOW)
     if len(programs) > 1:
         raise ConfigError("arguments go to one program", f"got {len(programs)}", key=ARGUMENTS_FOLLOW)
     if not programs and not any(map(means_world, words)) and not arguments.world:
         raise ConfigError("arguments need a program", "tuisim PROGRAM -- ARGUMENTS", key=ARGUMENTS_FOLLOW)
     if programs and os.path.isdir(programs[0]):
-        raise ConfigError(f"{programs[0]} is a folder, whose notebooks take no arguments", key=ARGUMENTS_FOLLOW)
+        raise ConfigError(f"{programs[0]} is a folder; notebooks take no arguments", key=ARGUMENTS_FOLLOW)
     if programs and is_notebook(programs[0]):
-        raise ConfigError(f"{programs[0]} is a notebook, whose cells take no arguments", key=ARGUMENTS_FOLLOW)
+        raise ConfigError(f"{programs[0]} is a notebook; its cells take no arguments", key=ARGUMENTS_FOLLOW)
 
 
 def find_program(word: str) -> Path:
-    """Return the file that a word means: a path, else the name of an example program; it may not be there.
+    """Return the file that a word names: a path, else an example program. The file may be missing.
 
     Raises:
-        ConfigError: nobody can tell whether it is there, such as with a name that is too long.
+        ConfigError: the path cannot be checked, for example because it is too long.
     """
     path = Path(word)
     try:
@@ -87,7 +87,7 @@ def find_program(word: str) -> Path:
 
 
 def _world(words: Sequence[str], arguments: Namespace) -> WorldFile | None:
-    """The world that is named, as a word or with the switch."""
+    """Load the world that is named as a word or with `--world`, if any."""
     switch = arguments.world
     named = [word for word in words if means_world(word)] + ([] if switch is None else [switch])
     if len(named) > 1:
@@ -100,7 +100,7 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -
     if word is None:
         if "arguments" in arguments:
             named = world.path if world else arguments.world
-            raise ConfigError(f"{named} names no program that could take arguments", key=ARGUMENTS_FOLLOW)
+            raise ConfigError(f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW)
         settings = settings_of(in_world, given(arguments))
         return Prepared(None, settings, _spec(settings), world)
     return _of_source(read_program(find_program(word)), world, arguments)
@@ -112,7 +112,7 @@ def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespac
 
 
 def _spec(settings: Settings) -> RunSpec:
-    """Return the run's specification; what there is to know of the robot's file is said on stderr."""
+    """Return the run specification; print warnings about the robot file on stderr."""
     robot = settings.robot if isinstance(settings.robot, RobotChoice) else choose_robot(settings.robot, "-r")
     for note in robot.notes:
         echo_error(f"note: {note}")
@@ -123,7 +123,7 @@ def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace)
     try:
         return _of_source(file, world, arguments)
     except ConfigError as error:
-        # A notebook has many: a mat or robot that there is not says in which of them.
+        # An error about a mat or robot must also name the cell.
         raise ConfigError(error.message, error.hint, file="" if error.file else file.name) from None
 
 
@@ -139,10 +139,10 @@ def _program(file: ProgramSource, settings: Settings) -> Program:
 
 
 def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
-    """Read what the app is opened with: nothing, a program, a world, or a program in a world.
+    """Prepare the app for nothing, a program, a world, or a program in a world.
 
     Args:
-        words: What the user named.
+        words: Programs and worlds, as the user named them.
         arguments: The parsed command line.
 
     Raises:
@@ -159,21 +159,21 @@ def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
 
 
 def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tuple[StoredRun, Prepared]:
-    """Read a stored run that the app is to show.
+    """Load a stored run for the app.
 
     Args:
-        run: Its number, its id or the start of it, its folder's path, or `last`.
-        words: What else the user named, which must be nothing.
+        run: Its number, its id or the start of its id, its folder's path, or `last`.
+        words: Other words of the command line; must be empty.
         arguments: The parsed command line.
 
     Raises:
-        ConfigError: a program, a world or a switch for one is named besides.
+        ConfigError: a program, a world or a switch of a run is given too.
         LogError: there is no such run, or it is damaged.
     """
     chosen = given(arguments)
     if words or arguments.world or (wrong := sorted(chosen.keys() - _OF_THE_APP)):
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
-        raise ConfigError(f"a stored run has a program and a world of its own, not {what}", "name one", key="--run")
+        raise ConfigError(f"a stored run has its own program and world: remove {what}", "name one", key="--run")
     stored = RunStore().load_run(Path(run) if "/" in run else run)
     program = stored.program
     opened = Program(
@@ -184,9 +184,9 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tupl
 
 
 def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared | NotRun]:
-    """Read programs to run one after another, all in the world that is named, if one is.
+    """Prepare programs to run one after another, all in the named world, if any.
 
-    What is wrong in one notebook of a folder does not keep the others from running.
+    An error in one notebook of a folder does not prevent the others from running.
 
     Args:
         words: Programs and at most one world, as the user named them.
@@ -214,7 +214,7 @@ def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared | 
 
 
 def _of_folder(word: str, world: WorldFile | None, arguments: Namespace) -> list[Prepared | NotRun]:
-    # What is wrong with the command line is not to be told for each cell.
+    # Errors of the command line are raised once, not for each cell.
     build_run_spec(settings_of(world.settings if world else {}, given(arguments)))
     found: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):
@@ -236,7 +236,7 @@ def _of_folder(word: str, world: WorldFile | None, arguments: Namespace) -> list
 
 
 def _checked(one: Prepared) -> Prepared:
-    """Read the picture of a mat of the user's own: a damaged one shows only then. The catalogue's are whole."""
+    """Read the image of a user's own mat, to detect a damaged file before the run."""
     if os.path.isabs(one.spec.world.background):
         field_files(one.spec)
     return one

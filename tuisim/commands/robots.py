@@ -1,4 +1,4 @@
-"""`tuisim robots`: the robots that have a name, or one robot as a file."""
+"""`tuisim robots`: lists the named robots, or prints one as a file."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from tuisim.core.spec import RobotSpec
 
 def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim robots`."""
-    parser.description = "List the robots, or print one as a file to start an own robot from."
-    parser.add_argument("robot", nargs="?", metavar="NAME|FILE", help="print this one as TOML")
-    parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.description = "List the robots, or print one as TOML to start your own from."
+    parser.add_argument("robot", nargs="?", metavar="NAME|FILE", help="print this robot as TOML")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def execute(arguments: Namespace) -> int:

@@ -30,23 +30,27 @@ def add_arguments(parser: SwitchParser) -> None:
     """Declare the arguments of `tuisim run`."""
     limit = number(0.001, MAX_TIME_LIMIT_S)
     parser.description = (
-        "Run programs without the app. What a program prints goes to stdout, the rest to stderr. "
-        "Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or a break; the worst counts."
+        "Run programs without the app. Program output goes to stdout, the rest to stderr. Exit "
+        "code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or breakpoint (the worst counts)."
     )
     parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--json] … [-- ARGUMENTS]"
     parser.add_programs("programs")
     add = parser.add_argument_group("data and limits").add_argument
     add("--export", action="append", default=[], metavar="FILE",
         help=f"write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated")  # fmt: skip
-    add("--telemetry", metavar="FILE", help="write every tick of the one program")
+    add("--telemetry", metavar="FILE", help="write the telemetry of a single program, one row per tick")
     add("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", type=lambda text: limit(text, "--timeout"),
         help=f"simulated seconds allowed ({DEFAULT_TIME_LIMIT_S:g})")  # fmt: skip
-    add("--input", action="append", default=[], metavar="TEXT", help="answer to an input(); may be repeated")
+    add("--input", action="append", default=[], metavar="TEXT", help="answer an input(); may be repeated")
     add("--press", action="append", default=[], metavar="BUTTON@S", type=parse_press,
-        help="hold a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated")  # fmt: skip
+        help="press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated")  # fmt: skip
     add_break_arguments(parser)
-    add("--all", action="store_true", help="all program cells of a notebook, or of a folder's notebooks; then a table")
-    add("--json", action="store_true", help="one JSON object a program on stdout; what programs print goes to stderr")
+    add(
+        "--all",
+        action="store_true",
+        help="run all program cells of a notebook, or of a folder's notebooks; print a table",
+    )
+    add("--json", action="store_true", help="print one JSON object per program; program output goes to stderr")
     parser.add_switches()
 
 
@@ -56,7 +60,7 @@ def execute(arguments: Namespace) -> int:
     Raises:
         ConfigError: a program, a world, a mat or a switch is wrong; nothing was run.
         ExportError: a target cannot be written; checked before anything is run.
-        HostError: a child process could not be started or spoke nonsense.
+        HostError: a child process could not be started, or sent invalid data.
     """
     if listed := to_list(arguments.programs, run_all=arguments.all):
         _check_only_listed(arguments, len(listed))
@@ -80,7 +84,7 @@ def execute(arguments: Namespace) -> int:
 
 
 def _export(done: Sequence[StoredRun], arguments: Namespace) -> None:
-    """Write every export that can be written; then complain about the others."""
+    """Write every export; report failures on stderr, and raise the first after all have been tried."""
     writers: list[tuple[str, Callable[[str], None]]] = [
         (target, lambda target: export_samples(done, target)) for target in arguments.export
     ]
@@ -100,16 +104,16 @@ def _export(done: Sequence[StoredRun], arguments: Namespace) -> None:
 
 
 def _check_only_listed(arguments: Namespace, count: int) -> None:
-    """Complain if the words ask for what only a run gives."""
+    """Raise ConfigError if an export or JSON is asked for where a notebook is only listed."""
     if arguments.json or arguments.export or arguments.telemetry is not None:
         (word,) = arguments.programs
-        raise ConfigError(f"has {count} program cells, and none is named", f"--all, or {word}#1", file=word)
+        raise ConfigError(f"has {count} program cells; name one", f"--all, or {word}#1", file=word)
 
 
 def _run_all(
     prepared: Sequence[Prepared | NotRun], arguments: Namespace, store: RunStore, interrupts: Interrupts
 ) -> tuple[int, list[tuple[str, StoredRun | None]]]:
-    """Run one after another until all are done or the user interrupts; return exit code, and runs by what they are."""
+    """Run the programs in turn until done or interrupted; return the worst exit code, and (label, run) pairs."""
     results: list[tuple[str, StoredRun | None]] = []
     code = 0
     for at, one in enumerate(prepared):
@@ -125,7 +129,7 @@ def _run_all(
             results.append((one.label or run.program.name, run))
             exit_status.report(run, exit_code, as_json=arguments.json)
         else:
-            echo_error(f"tuisim: {handle.program.name}: nothing of run {handle.number} is kept: {handle.unstored}")
+            echo_error(f"tuisim: {handle.program.name}: run {handle.number} was not stored: {handle.unstored}")
         code = max(code, exit_code)
         if exit_code > exit_status.SIGNALLED:
             break
@@ -133,12 +137,12 @@ def _run_all(
 
 
 def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
-    """Return what tells how far one of several runs is."""
+    """Return a callback that shows the progress of one of several runs."""
 
     def tell_run(handle: RunHandle) -> None:
         ticks = handle.telemetry.count
         what = f"{handle.program.name}: {ticks / handle.spec.profile.tick_hz:.1f} s simulated"
-        # When a program ends nobody knows; how many there are is known.
+        # The length of a program is unknown; only their number is known.
         tell(f"{number + 1} of {count}, {what}" if count > 1 else what, number, count if count > 1 else None)
 
     return tell_run if is_watched() else lambda _: None
@@ -147,7 +151,7 @@ def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
 def _run_one(
     one: Prepared, arguments: Namespace, store: RunStore, interrupts: Interrupts, how_far: Callable[[RunHandle], None]
 ) -> tuple[int, RunHandle]:
-    """Run one program to its end and return exit code and run."""
+    """Run one program to its end; return exit code and run."""
     assert one.program is not None
     speed = one.settings.speed or 0.0
     options = RunOptions(
@@ -169,7 +173,7 @@ def _run_one(
     finally:
         handle.close()
     if follower.lost:
-        echo_error(f"tuisim: {follower.lost} (run {handle.number} has every line)")
+        echo_error(f"tuisim: {follower.lost} (run {handle.number} contains every line)")
     ended_code = exit_status.EXIT_LIMIT if teller.stopped else exit_status.exit_code_of(ended)
     code = interrupts.exit_code or follower.cut or ended_code
     return max(code, exit_status.EXIT_BAD_OUTPUT) if follower.lost or handle.unstored else code, handle

@@ -1,4 +1,4 @@
-"""`tuisim runs`: the stored runs."""
+"""`tuisim runs`: lists, shows, exports, compares and removes stored runs."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 
 ACTIONS = ("list", "show", "rm", "rerun", "export", "compact")
 QUICK_BYTES = 8 << 20
-"""In longer outputs samples are not counted before they are shown."""
+"""Samples are not counted in outputs longer than this."""
 
 _AGE = re.compile(r"(\d{1,6}(?:\.\d{1,6})?)([hdw])")
 _HOURS = {"h": 1, "d": 24, "w": 168}
 
 STREAMS = {STDOUT: "stdout", STDERR: "stderr", SPEECH: "speech", INPUT: "input"}
-SHORTEST = 40
-"""Characters of a summary in the list."""
+MAX_SUMMARY = 40
+"""Maximum characters of a summary in the list."""
 
 
 def add_arguments(parser: SwitchParser) -> None:
@@ -51,22 +51,23 @@ def add_arguments(parser: SwitchParser) -> None:
         "       tuisim runs compact RUN…|--all [--json]"
     )
     parser.description = (
-        "A RUN is its number, its id or the start of it, the folder's path, or `last`.\n"
-        f"Runs of {COMPACT_TICKS} ticks or more are compacted when they are over; nothing of any run is lost by it."
+        "List, show, export or remove stored runs.\n\n"
+        "A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.\n"
+        f"Runs of {COMPACT_TICKS} ticks or more are compacted when they end; compaction is lossless."
     )
     parser.add_argument("action", nargs="?", default="list", metavar="|".join(ACTIONS), help="what to do")
     parser.add_argument("words", nargs="*", metavar="RUN", help=f"runs; for export also files: {', '.join(EXPORTERS)}")
-    parser.add_argument("--telemetry", metavar="FILE", help="export every tick of the one run")
-    parser.add_argument("--all", action="store_true", help="compact every run that is over")
-    parser.add_argument("--older-than", metavar="AGE", help="remove every run that is over and older: 12h, 30d, 8w")
-    parser.add_argument("--json", action="store_true", help="as JSON")
+    parser.add_argument("--telemetry", metavar="FILE", help="export the telemetry of a single run, one row per tick")
+    parser.add_argument("--all", action="store_true", help="compact every finished run")
+    parser.add_argument("--older-than", metavar="AGE", help="remove finished runs older than this: 12h, 30d, 8w")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def execute(arguments: Namespace) -> int:
-    """Do what `action` says.
+    """Run the action.
 
     Raises:
-        ConfigError: no such action, or arguments that it cannot use.
+        ConfigError: no such action, or arguments that it does not accept.
         LogError: no such run.
         ExportError: a target cannot be written.
     """
@@ -122,7 +123,7 @@ def _list(store: RunStore, *, as_json: bool) -> None:
 
 
 def size(count: int) -> str:
-    """Return a number of bytes for people."""
+    """Format a number of bytes, such as `1.2 MB`."""
     value, unit = count / 1000, "kB"
     for larger in ("MB", "GB", "TB"):
         if value < 1000:
@@ -132,7 +133,7 @@ def size(count: int) -> str:
 
 
 def _cut(text: str) -> str:
-    return text if len(text) <= SHORTEST else text[: SHORTEST - 1] + "…"
+    return text if len(text) <= MAX_SUMMARY else text[: MAX_SUMMARY - 1] + "…"
 
 
 def _plain(row: OutputRow) -> dict[str, object]:
@@ -140,10 +141,10 @@ def _plain(row: OutputRow) -> dict[str, object]:
 
 
 def _show(run: StoredRun, *, as_json: bool) -> None:
-    """Show a run; its rows are shown as they are read, for there may be a million."""
+    """Print a run; rows are printed while they are read, because there may be millions."""
     rows = (row for row in run.output.rows() if row.stream in STREAMS)
     if as_json:
-        # What is counted comes after what it is counted in.
+        # The counts are known only after all rows have been read.
         echo_json_head("output", map(_plain, rows), describe(run))
         return
     facts = describe(run, QUICK_BYTES)
@@ -161,7 +162,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
 
 
 def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
-    """Return the ids of the runs that are over and older than a text such as `30d` says."""
+    """Return the ids of finished runs older than an age such as `30d`."""
     if words:
         raise ConfigError("takes no run", f"got {' '.join(words)}", key="--older-than")
     match = _AGE.fullmatch(age)
@@ -170,19 +171,19 @@ def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
             f"cannot be read: {age!r}", "hours, days or weeks, such as 12h, 30d or 8w", key="--older-than"
         )
     before = datetime.now(UTC) - timedelta(hours=float(match[1]) * _HOURS[match[2]])
-    return [run.id for run in store.runs() if run.end != RUNNING and _made_before(run.created, before)]
+    return [run.id for run in store.runs() if run.end != RUNNING and _created_before(run.created, before)]
 
 
-def _made_before(created: str, moment: datetime) -> bool:
+def _created_before(created: str, moment: datetime) -> bool:
     try:
         return datetime.fromisoformat(created) < moment
     except (ValueError, TypeError):
-        # Of a damaged run nobody knows how old it is.
+        # The age of a damaged run is unknown.
         return False
 
 
 def _remove(store: RunStore, words: Sequence[str], age: str | None) -> None:
-    # All are looked up before the first is gone; one may be named twice.
+    # All are looked up before the first is removed; one may be named twice.
     found = [store.find(word).id for word in words] if age is None else _older(store, words, age)
     freed = 0
     for number, run_id in enumerate(dict.fromkeys(found)):
@@ -192,20 +193,20 @@ def _remove(store: RunStore, words: Sequence[str], age: str | None) -> None:
         freed += 0 if target else bytes_in(folder)
         store.remove(run_id)
         if target:
-            echo_error(f"note: run {run_id} was a link: what it led to stays, {target}")
+            echo_error(f"note: run {run_id} was a link; its target was kept: {target}")
     if age is not None:
         echo(f"{len(found)} run{'s' if len(found) != 1 else ''} removed, {size(freed)}")
 
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
-    """Run it again and tell whether that gave the same; return the exit code."""
+    """Run it again and print whether the result is the same; return the exit code."""
     with TemporaryDirectory(prefix="tuisim-") as home:
         scratch = RunStore(Path(home))
         handle = rerun(run, scratch)
         ticks = run.telemetry.count
         try:
             while handle.wait(ASK_AGAIN_S) is None:
-                tell(f"run {run.number} again: {run.program.name}", handle.telemetry.count, ticks)
+                tell(f"rerunning run {run.number}: {run.program.name}", handle.telemetry.count, ticks)
         finally:
             handle.close()
         tell(f"comparing run {run.number}")
@@ -218,7 +219,7 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
 
 
 def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
-    """Compact the named runs, or every one that is over; return the exit code."""
+    """Compact the named runs, or all finished ones; return the exit code."""
     names = words or [info.id for info in store.runs() if info.end != RUNNING]
     code, before, after, ticks = 0, 0, 0, 0
     for number, name in enumerate(names):
@@ -227,7 +228,7 @@ def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
             (run,) = _load(store, [name])
             sizes = compact_run(run)
         except LogError as error:
-            # The others are none the worse for it.
+            # The other runs are not affected.
             echo_error(f"tuisim: {error}")
             code = error.exit_code
             continue
@@ -235,7 +236,7 @@ def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
     if as_json:
         echo_json({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after})
     else:
-        each = f", {after / ticks:.2f} bytes a tick" if ticks else ""
+        each = f", {after / ticks:.2f} bytes per tick" if ticks else ""
         echo(f"{len(names)} run{'s' if len(names) != 1 else ''}: {before:,} → {after:,} bytes{each}")
     return code
 
@@ -244,7 +245,7 @@ def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> Non
     files = [Path(word) for word in words if Path(word).suffix.lower() in EXPORTERS]
     names = [word for word in words if Path(word).suffix.lower() not in EXPORTERS]
     if not names or not (files or telemetry is not None):
-        hint = f"tuisim runs export RUN… FILE…, a file ends in {', '.join(EXPORTERS)}"
+        hint = f"tuisim runs export RUN… FILE…, FILE ends in {', '.join(EXPORTERS)}"
         raise ConfigError("needs a run and a file", hint, key="export")
     if telemetry is not None and len(names) > 1:
         raise ConfigError("takes one run", f"got {len(names)}", key="--telemetry")

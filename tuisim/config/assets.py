@@ -1,8 +1,8 @@
-"""Where the mats and the example programs are, and what they are called.
+"""The mats and the example programs: their folders and names.
 
-Both folders, `backgrounds` and `programs`, are looked for in the folder that the
-environment variable TUISIM_ASSETS names; without it beside the package (a checkout or an
-editable install), then inside it (an installed copy).
+Both folders, `backgrounds` and `programs`, are in the folder named by the environment
+variable TUISIM_ASSETS; without it, beside the package (a checkout or an editable
+install), else inside it (an installed copy).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tuisim.source import source_lines
 
 CATALOG = "catalog.toml"
 OWN_START = Pose(200.0, 800.0, 0.0)
-"""Where a robot starts on an image of the user's own."""
+"""The robot's start pose on a user's own image."""
 _PACKAGE = Path(__file__).resolve().parent.parent
 _FOLDERS = ("backgrounds", "programs")
 _KEYS = {"title", "original", "shipped", "start", "obstacles", "sensor_x_mm"}
@@ -29,24 +29,24 @@ _KEYS = {"title", "original", "shipped", "start", "obstacles", "sensor_x_mm"}
 
 @dataclass(frozen=True, slots=True)
 class Background:
-    """One mat: of the catalogue, or an own image."""
+    """A mat of the catalogue, or a user's own image."""
 
     name: str
     title: str
     start: Pose
     image: Path
     obstacles: tuple[Obstacle, ...] = ()
-    """What stands on the mat by itself."""
+    """The default obstacles on the mat."""
     sensor_x_mm: Mapping[str, float] = field(default_factory=dict)
-    """Colour sensors that sit elsewhere while this mat is used, by name."""
+    """The x positions of colour sensors on this mat, by name, where they differ from the robot's."""
     original: str = ""
-    """File name of its picture in the browser simulator of the course, empty if it had none."""
+    """File name of its image in the course's browser simulator, empty if it had none."""
     shipped: bool = True
-    """Whether there is a picture of ours."""
+    """Whether tuisim comes with its image."""
     is_own: bool = False
-    """Whether the picture is the user's, in a folder of mats."""
+    """Whether the image is the user's own, in a folder of mats."""
     fit: str | None = None
-    """How the picture becomes a mat unless the user says it, one of `core.spec.BACKGROUND_FITS`; None is the first."""
+    """The default fit of its image, one of `core.spec.BACKGROUND_FITS`; None is the first."""
 
 
 class ProgramFile(NamedTuple):
@@ -62,13 +62,13 @@ class ProgramFile(NamedTuple):
 def _folder(name: str) -> Path:
     given = os.environ.get("TUISIM_ASSETS")
     places = [Path(given)] if given else [_PACKAGE.parent, _PACKAGE / "_assets"]
-    # Beside the package, one folder of such a name alone may be anybody's.
+    # Beside the package, a single folder of such a name may belong to something else.
     needed = (name,) if given else _FOLDERS
     for place in places:
         if all((place / each).is_dir() for each in needed):
             return place / name
     looked = " and ".join(str(place) for place in places)
-    hint = "TUISIM_ASSETS may name the folder that holds backgrounds and programs"
+    hint = "set TUISIM_ASSETS to the folder that contains backgrounds and programs"
     raise ConfigError(f"no folder {name!r} in {looked}", hint)
 
 
@@ -76,7 +76,7 @@ def backgrounds_folder() -> Path:
     """Return the folder of the mats and their catalogue.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: it does not exist.
     """
     return _folder("backgrounds")
 
@@ -85,7 +85,7 @@ def programs_folder() -> Path:
     """Return the folder of the example programs.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: it does not exist.
     """
     return _folder("programs")
 
@@ -95,7 +95,7 @@ def _title_of(path: Path) -> str:
 
     try:
         lines = source_lines(path.read_text(encoding="utf-8"))
-        # A program may begin with a notebook's magic line, which is not Python.
+        # A program may begin with a magic line, which is not Python.
         module = ast.parse("\n".join("" if line.startswith("%") else line for line in lines))
     except (SyntaxError, ValueError, OSError):
         return ""
@@ -118,7 +118,7 @@ def _number(value: object, key: str, file: Path) -> float:
 
 
 def _numbers(table: object, keys: tuple[str, ...], key: str, file: Path) -> list[float]:
-    """The values of a table that has exactly these keys."""
+    """Return the values of a table that must have exactly these keys."""
     if not isinstance(table, dict) or set(table) != set(keys):
         raise BackgroundError(f"must have {', '.join(keys)}, got {table!r}", file=str(file), key=key)
     return [_number(table[each], f"{key}.{each}", file) for each in keys]
@@ -136,7 +136,7 @@ def _obstacle(sides: object, key: str, file: Path) -> Obstacle:
 
 
 def _background(name: str, entry: object, file: Path) -> Background:
-    """One mat from its table in the catalogue."""
+    """Return one mat from its table in the catalogue."""
     if not isinstance(entry, dict):
         raise BackgroundError(f"must be a table, got {entry!r}", file=str(file), key=name)
     if unknown := sorted(set(entry) - _KEYS):
@@ -169,7 +169,7 @@ def _background(name: str, entry: object, file: Path) -> Background:
 
 
 def backgrounds() -> Mapping[str, Background]:
-    """Return every mat that has a picture of ours by name, in the order of the catalogue.
+    """Return every mat whose image comes with tuisim by name, in the order of the catalogue.
 
     Raises:
         As `catalogue`.
@@ -182,7 +182,7 @@ def catalogue() -> Mapping[str, Background]:
 
     Raises:
         ConfigError: there is no folder of mats.
-        BackgroundError: the catalogue cannot be read or says something impossible.
+        BackgroundError: the catalogue cannot be read or is invalid.
     """
     import tomllib
 
@@ -197,17 +197,16 @@ def catalogue() -> Mapping[str, Background]:
 
 
 def background(name: str) -> Background:
-    """Return one mat as a specification calls it: of the catalogue, or an image of the user's own.
+    """Return a mat by its name in a run specification: one of the catalogue, or a user's own image.
 
-    What has a folder in it or a suffix is the path of an image, and so is the name of a file
-    here; a name of the catalogue goes first. An own mat is called after its file, without
-    the suffix.
+    Names of the catalogue take precedence. A name with a folder or a suffix, or of an existing
+    file, is the path of an image; such a mat is named after its file, without the suffix.
 
     Args:
         name: Such as `Lollipop`, `maze.png` or `~/mats/maze.jpg`.
 
     Raises:
-        BackgroundError: there is none of that name, or its picture is missing.
+        BackgroundError: the name is unknown, or its image is missing.
         ConfigError: there is no folder of mats.
     """
     known = catalogue()
@@ -217,12 +216,12 @@ def background(name: str) -> Background:
         raise BackgroundError(f"no such mat {name!r}", names_hint(name, list(known)))
     found = known[name]
     if not found.image.is_file():
-        raise BackgroundError(f"the mat {name!r} has no picture", file=str(found.image))
+        raise BackgroundError(f"the mat {name!r} has no image", file=str(found.image))
     return found
 
 
 def is_image_path(name: str) -> bool:
-    """Return whether a word that names no mat of the catalogue means an image."""
+    """Return whether a word that is not a mat of the catalogue names an image."""
     return os.sep in name or bool(Path(name).suffix) or os.path.isfile(name)
 
 
@@ -230,7 +229,7 @@ def own_background(path: Path) -> Background:
     """Return an image as a mat, with the robot at OWN_START.
 
     Raises:
-        BackgroundError: there is no such file, or it cannot be a picture.
+        BackgroundError: the file does not exist, or cannot be an image.
     """
     try:
         image = Path(os.path.abspath(path.expanduser()))
@@ -241,10 +240,10 @@ def own_background(path: Path) -> Background:
 
 
 def names_hint(name: str, known: list[str]) -> str:
-    """Return the hint for a wrong name of a mat: the nearest one, and all that there are."""
+    """Return the hint for an unknown mat: the closest match, and all names."""
     from difflib import get_close_matches
 
     by_lower = {each.lower(): each for each in known}
     near = get_close_matches(name.lower(), by_lower, n=1, cutoff=0.5)
     guess = f"did you mean {by_lower[near[0]]}? " if near else ""
-    return f"{guess}there are {', '.join(known)}, or the path of an image"
+    return f"{guess}one of {', '.join(known)}, or the path of an image"

@@ -1,4 +1,4 @@
-"""From settings to the frozen specification of a run."""
+"""Build the frozen specification of a run from settings."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from tuisim.core.spec import (
 
 
 def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
-    """Return the robot with its colour sensors where the mat wants them, unless it has places of its own."""
+    """Return the robot with its colour sensors at the mat's positions, unless its file sets their positions."""
     if choice.own_places:
         return choice.spec
     moved = tuple(
@@ -40,7 +40,7 @@ def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
 
 
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
-    """Return the mat's start pose with what the settings say; away from solid walls, so that the robot can turn."""
+    """Return the mat's start pose, overridden by the settings; with solid walls, moved so the robot can turn."""
     start = mat.start
     if walled:
         margin_mm = reach_mm(robot)
@@ -54,14 +54,14 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
 
 
 def _inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
-    """Return the place that has a margin to both ends of a side of the field, in whole mm; its middle if none has."""
+    """Clamp a coordinate to whole mm inside the margins of a side of the field; the middle if the margins overlap."""
     least, most = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
     return min(max(at_mm, least), most) if least <= most else size_mm / 2
 
 
 def _with_pen(robot: RobotSpec, settings: Settings) -> RobotSpec:
-    said = {"color": settings.pen_color, "width_mm": settings.pen_width_mm, "down": settings.pen_down}
-    chosen: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+    given = {"color": settings.pen_color, "width_mm": settings.pen_width_mm, "down": settings.pen_down}
+    chosen: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
     return replace(robot, pen=replace(robot.pen, **chosen)) if chosen else robot
 
 
@@ -81,11 +81,11 @@ def _profile(settings: Settings) -> ProfileSpec:
 
 
 def build_run_spec(settings: Settings) -> RunSpec:
-    """Return the run that the settings describe; where they say nothing, mat, robot and profile decide.
+    """Return the run specification of the settings; unset ones are decided by mat, robot and profile.
 
     Raises:
-        BackgroundError, RobotError, ObstacleError, ProfileError: there is no such mat, robot, set of
-            obstacles or profile, or a file that describes one is wrong.
+        BackgroundError, RobotError, ObstacleError, ProfileError: an unknown mat, robot, set of obstacles or
+            profile, or an invalid file.
     """
     with errors_at("", "-b"):
         mat = find_mat(os.path.expanduser(settings.background), settings.mats)

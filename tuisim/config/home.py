@@ -1,4 +1,4 @@
-"""The folder of all that is the user's own: runs, notes, drafts, mats."""
+"""The folder of the user's own data: runs, notes, drafts, mats."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def home_folder() -> Path:
-    """Return where runs are kept: `TUISIM_HOME`, or the user's data folder."""
+    """Return the folder of the user's own data: `TUISIM_HOME`, or the platform's user data folder."""
     home = os.environ.get("TUISIM_HOME")
     if home:
         return Path(home)

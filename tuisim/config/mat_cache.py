@@ -1,8 +1,8 @@
-"""Mats made ready for the sensors: an image becomes raw files that are mapped, not read.
+"""A cache of mats prepared for the sensors: raw files that are memory-mapped.
 
-`prepare` does the slow part once for each image and disc diameter and keeps it in the
-cache folder; `open_field` maps what it made. What only `prepare` needs is imported there,
-so that a child process opens a field at once.
+`prepare` does the slow part once per image and disc diameter and stores the result in the
+cache folder; `open_field` maps it. Modules that only `prepare` needs are imported there,
+so that a child process can open a field quickly.
 """
 
 from __future__ import annotations
@@ -26,30 +26,30 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MAX_CACHED_FILES = 30
-"""The sums of one diameter are 33 MB; beyond so many files the least recently used go."""
+"""Beyond this number the least recently used files are removed; the sums of one diameter take 33 MB."""
 
 MAX_DIAMETER_PX = 128
-"""One disc row of white pixels must fit a signed 16-bit sum."""
+"""The sum of a disc row of white pixels must fit into a signed 16-bit integer."""
 
 _LAYOUT = 1
-"""Part of the file names: another layout or another way to decode needs another number."""
+"""Version in the file names: increase it when the layout or the decoding changes."""
 _BLOCK_ROWS = 64
-"""Rows summed at a time, so that they stay in the processor's cache."""
+"""Rows summed at a time, few enough for the processor's cache."""
 
 
 @dataclass(frozen=True, slots=True)
 class FieldFiles:
-    """Where a prepared mat lies. Any process may open it, as long as the cache keeps it."""
+    """The files of a prepared mat. Any process may open them while the cache keeps them."""
 
     width_px: int
     height_px: int
     pixels: Path
-    """Raw bytes, rows from the top, red, green and blue of each pixel."""
+    """Raw RGB bytes, rows from the top."""
     sums: tuple[tuple[int, Path], ...]
-    """Disc diameter and the file with its sums, laid out as `core.field.Field` says."""
+    """Pairs of disc diameter and the file with its sums; for the layout see `core.field.Field`."""
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the files as dictionaries, lists, strings and numbers, ready for JSON."""
+        """Return the files as JSON-compatible data."""
         return {
             "width_px": self.width_px,
             "height_px": self.height_px,
@@ -59,7 +59,7 @@ class FieldFiles:
 
     @classmethod
     def from_plain(cls, data: Mapping[str, Any]) -> FieldFiles:
-        """Rebuild what `to_plain` wrote.
+        """Rebuild from the result of `to_plain`.
 
         Raises:
             KeyError, TypeError, ValueError: `data` was not written by `to_plain`.
@@ -69,7 +69,7 @@ class FieldFiles:
 
 
 def cache_folder() -> Path:
-    """Return where prepared mats are kept: `cache` in TUISIM_HOME, else the user's cache folder."""
+    """Return the folder of prepared mats: `cache` in TUISIM_HOME, else the user's cache folder."""
     if home := os.environ.get("TUISIM_HOME"):
         return Path(home) / "cache"
     import platformdirs
@@ -86,15 +86,15 @@ def _sums_size(diameter: int) -> int:
 
 
 def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> FieldFiles:
-    """Make an image ready to be read by colour sensors of some diameters.
+    """Prepare an image for colour sensors of given diameters.
 
-    What the cache already has is not made again.
+    Files that are already in the cache are reused.
 
     Args:
-        image: Any picture that Pillow reads, within the limits of `pictures`.
-        diameters: Disc diameters in pixels, in any order, also repeated.
-        fit: How an image of another size than the field meets it, one of
-            `core.spec.BACKGROUND_FITS`; see `pictures`.
+        image: Any image that Pillow reads, within the limits of `mat_image`.
+        diameters: Disc diameters in pixels, in any order, with or without duplicates.
+        fit: How an image whose size differs from the field's is placed, one of
+            `core.spec.BACKGROUND_FITS`; see `mat_image`.
 
     Raises:
         BackgroundError: the image cannot be read, a diameter or `fit` is impossible, or the
@@ -120,7 +120,7 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
 
 
 def _in_use(path: Path, size: int) -> bool:
-    """Whether the cache has a file of that size; if so, it counts as used now."""
+    """Return whether the cache has a file of this size; if so, mark it as used now."""
     try:
         if path.stat().st_size != size:
             return False
@@ -131,7 +131,7 @@ def _in_use(path: Path, size: int) -> bool:
 
 
 def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np.uint8]) -> None:
-    """Write the pixels and the missing sums into the cache, then make room."""
+    """Write the pixels and the missing sums into the cache, then evict old files."""
     folder = files.pixels.parent
     try:
         make_private_folder(folder)
@@ -142,7 +142,7 @@ def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np
     except OSError as error:
         raise BackgroundError(
             f"the mat cannot be prepared: {error.strerror or error}",
-            "TUISIM_HOME may name another folder that can be written",
+            "set TUISIM_HOME to a writable folder",
             file=str(folder),
         ) from error
 
@@ -153,7 +153,7 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
     height, width, _ = pixels.shape
     # From one disc to its right neighbour the sum gains the pixel after each row of the
-    # disc and loses the row's first: two small additions a row, and one running total.
+    # disc and loses the row's first: two small additions per row, and one cumulative sum.
     dark = np.zeros((height + 2 * diameter, width + 2 * diameter + 1, 3), np.int16)
     dark[diameter : diameter + height, diameter + 1 : diameter + 1 + width] = pixels
     around = dark.reshape(len(dark), -1)
@@ -177,20 +177,20 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 
 def _store(path: Path, array: NDArray[Any]) -> None:
-    """Write an array's bytes; another process sees the whole file or none."""
+    """Write an array's bytes atomically."""
     with replacing(path, lasting=False, owner_only=True) as stream:
         stream.write(array.data)
 
 
 def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
     for path in folder.iterdir():
-        # Another process may be making room too.
+        # Another process may be removing files too.
         with suppress(FileNotFoundError):
             yield path.stat().st_mtime, path
 
 
 def _trim(folder: Path, keep: set[Path]) -> None:
-    """Remove the least recently used files beyond MAX_CACHED_FILES, and what killed processes left."""
+    """Remove the least recently used files beyond MAX_CACHED_FILES, and temporary files of killed processes."""
     sweep(folder)
     cached = [path for _, path in sorted(_by_age(folder)) if path.suffix != PART_SUFFIX]
     surplus = max(0, len(cached) - MAX_CACHED_FILES)
@@ -203,7 +203,7 @@ def _mapped(path: Path, size: int) -> memoryview:
         with path.open("rb") as stream:
             found = os.fstat(stream.fileno()).st_size
             if found != size:
-                raise BackgroundError(f"has {found} bytes, not {size}", "remove it: it is made again", file=str(path))
+                raise BackgroundError(f"has {found} bytes, not {size}", "remove it to recreate it", file=str(path))
             return memoryview(mmap.mmap(stream.fileno(), size, access=mmap.ACCESS_READ))
     except OSError as error:
         message = f"the prepared mat cannot be opened: {error.strerror or error}"
@@ -211,10 +211,10 @@ def _mapped(path: Path, size: int) -> memoryview:
 
 
 def open_field(files: FieldFiles) -> Field:
-    """Map a prepared mat, in any process.
+    """Memory-map a prepared mat, in any process.
 
     Raises:
-        BackgroundError: a file is gone, for example because the cache made room, or is not whole.
+        BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
     """
     width, height = files.width_px, files.height_px
     pixels = _mapped(files.pixels, 3 * width * height)
@@ -226,7 +226,7 @@ def mat_pixels(files: FieldFiles) -> NDArray[np.uint8]:
     """Return a prepared mat for drawing: shape (height, width, 3), rows from the top, read-only.
 
     Raises:
-        BackgroundError: the file is gone or not whole.
+        BackgroundError: the file is missing or incomplete.
     """
     import numpy as np
 

@@ -1,13 +1,13 @@
-"""Any picture as a mat: found, checked before it is decoded, and laid on the field.
+"""Any image as a mat: checked before it is decoded, and placed on the field.
 
-Whatever Pillow reads will do, in any size and mode up to the two limits below. A picture
-is turned as its EXIF data say and put on white. How it meets the field is one of
+Every format of Pillow is accepted, in any size and mode within the two limits below. An image
+is rotated according to its EXIF data and put on white. It is placed on the field by one of
 `core.spec.BACKGROUND_FITS`:
 
-stretch   fills the field, the proportions give way
-fit       as large as the field allows, in the middle, white around it
-centre    one pixel is one mm, in the middle; what is too large is cut off
-corner    one pixel is one mm, from the upper left corner, as in the browser simulator of the course
+stretch   fills the field, without keeping proportions
+fit       as large as the field allows, centred, white around it
+centre    one pixel is one mm, centred; larger images are cropped
+corner    one pixel is one mm, from the upper left corner, as in the course's browser simulator
 """
 
 from __future__ import annotations
@@ -25,59 +25,59 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 MAX_MEGAPIXELS = 40
-"""Pictures with more pixels are refused before they are decoded."""
+"""Images with more pixels are rejected before they are decoded."""
 
 MAX_FILE_MB = 256
-"""Larger files are refused before they are read."""
+"""Larger files are rejected before they are read."""
 
-_HINT = f"a mat is a picture such as PNG or JPEG, at most {MAX_MEGAPIXELS} megapixels and {MAX_FILE_MB} MB"
+_HINT = f"a mat is an image such as PNG or JPEG, at most {MAX_MEGAPIXELS} megapixels and {MAX_FILE_MB} MB"
 _FIELD = (FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
-def _refused(message: str, path: Path) -> BackgroundError:
+def _error(message: str, path: Path) -> BackgroundError:
     return BackgroundError(message, _HINT, file=str(path))
 
 
 def check_file(path: Path) -> None:
-    """Make sure that there is a file to read a picture from; it is not opened.
+    """Check that an image file exists and can be read; it is not opened.
 
     Raises:
-        BackgroundError: there is none, it is a folder or a device, is empty or too large.
+        BackgroundError: it does not exist, is not a regular file, is empty or too large.
     """
     try:
         found = path.stat()
     except OSError as error:
-        raise _refused(f"cannot be read: {error.strerror or error}", path) from error
+        raise _error(f"cannot be read: {error.strerror or error}", path) from error
     except ValueError as error:
         # A null character.
-        raise _refused(f"is no file name: {error}", path) from error
+        raise _error(f"is not a file name: {error}", path) from error
     if stat.S_ISDIR(found.st_mode):
-        raise _refused("is a folder, not a picture", path)
-    # Reading from a pipe or a device might never end.
+        raise _error("is a folder, not an image", path)
+    # Reading from a pipe or a device might block forever.
     if not stat.S_ISREG(found.st_mode):
-        raise _refused("is not a regular file", path)
+        raise _error("is not a regular file", path)
     if not found.st_size:
-        raise _refused("is empty, not a picture", path)
+        raise _error("is empty, not an image", path)
     if found.st_size > MAX_FILE_MB * 1_000_000:
-        raise _refused(f"is too large: {found.st_size / 1e6:,.0f} MB, allowed are {MAX_FILE_MB} MB", path)
+        raise _error(f"is too large: {found.st_size / 1e6:,.0f} MB, the limit is {MAX_FILE_MB} MB", path)
 
 
 def read_file(path: Path) -> bytes:
-    """Return the bytes of a picture's file.
+    """Return the bytes of an image file.
 
     Raises:
-        BackgroundError: `check_file` refuses it, or it cannot be read.
+        BackgroundError: `check_file` rejects it, or it cannot be read.
     """
     check_file(path)
     try:
         return path.read_bytes()
     except OSError as error:
-        raise _refused(f"cannot be read: {error.strerror or error}", path) from error
+        raise _error(f"cannot be read: {error.strerror or error}", path) from error
 
 
 def check_fit(fit: str) -> None:
-    """Make sure that `fit` is one of BACKGROUND_FITS.
+    """Check that `fit` is one of BACKGROUND_FITS.
 
     Raises:
         BackgroundError: it is not.
@@ -87,16 +87,16 @@ def check_fit(fit: str) -> None:
 
 
 def fits_as_it_is(content: bytes) -> bool:
-    """Return whether a picture is surely a field's own size, so that every fit gives the same.
+    """Return whether an image is known to have the size of the field, so that every fit gives the same result.
 
-    Looks only at what a PNG file begins with: cheap enough to be asked before every run.
+    Reads only the header of a PNG file: cheap enough to be called before every run.
     """
     size = tuple(int.from_bytes(content[at : at + 4], "big") for at in (16, 20))
     return content.startswith(_PNG) and size == _FIELD and b"eXIf" not in content
 
 
 def size_of(content: bytes) -> tuple[int, int]:
-    """Return width and height of a picture that can be decoded, in pixels."""
+    """Return width and height in pixels of an image that can be decoded."""
     import io
 
     from PIL import Image
@@ -106,18 +106,18 @@ def size_of(content: bytes) -> tuple[int, int]:
 
 
 def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
-    """Return the field as a picture shows it.
+    """Return the pixels of the field with an image on it.
 
     Args:
-        content: The picture's file.
-        path: What it is called, for messages.
+        content: The bytes of the image file.
+        path: Its path, for messages.
         fit: One of BACKGROUND_FITS.
 
     Returns:
         Shape (height, width, 3), rows from the top.
 
     Raises:
-        BackgroundError: it is no picture, is damaged, has no pixels or too many.
+        BackgroundError: it is not an image, is damaged, has no pixels or too many.
     """
     import io
     import warnings
@@ -126,15 +126,15 @@ def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
     from PIL import Image, ImageOps
 
     with warnings.catch_warnings():
-        # Odd metadata and large sizes: what matters is refused below.
+        # Pillow warns of odd metadata and large sizes; the limits are checked below.
         warnings.simplefilter("ignore")
         try:
             picture = Image.open(io.BytesIO(content))
         except Image.DecompressionBombError as error:
-            raise _refused(f"is too large: far more than {MAX_MEGAPIXELS} megapixels", path) from error
-        # A damaged file makes the readers of Pillow raise anything, also what they do not document.
+            raise _error(f"is too large: far more than {MAX_MEGAPIXELS} megapixels", path) from error
+        # Pillow may raise any exception on a damaged file, also undocumented ones.
         except Exception as error:
-            raise _refused("is not a picture that can be read", path) from error
+            raise _error("is not a readable image", path) from error
         with picture:
             _check_size(picture, path)
             try:
@@ -143,25 +143,25 @@ def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
             # As above.
             except Exception as error:
                 reason = str(error) or type(error).__name__
-                raise _refused(f"is not a picture that can be read whole: {reason}", path) from error
+                raise _error(f"is a damaged image: {reason}", path) from error
     _check_size(upright, path)
-    return np.asarray(_laid(upright, fit))
+    return np.asarray(_placed(upright, fit))
 
 
 def _check_size(picture: Image, path: Path) -> None:
     width, height = picture.size
     if width < 1 or height < 1:
-        raise _refused(f"has no pixels: {width} × {height}", path)
+        raise _error(f"has no pixels: {width} × {height}", path)
     if width * height > MAX_MEGAPIXELS * 1_000_000:
-        raise _refused(
+        raise _error(
             f"is too large: {width:,} × {height:,} pixels are {width * height / 1e6:,.0f} megapixels, "
-            f"allowed are {MAX_MEGAPIXELS}",
+            f"the limit is {MAX_MEGAPIXELS}",
             path,
         )
 
 
 def _on_white(picture: Image) -> Image:
-    """The picture in RGB, its transparent parts on white."""
+    """Return the image in RGB, with transparent parts on white."""
     from PIL import Image
 
     if picture.mode[0] in "IF":
@@ -175,7 +175,7 @@ def _on_white(picture: Image) -> Image:
 
 
 def _in_eight_bits(picture: Image) -> Image:
-    """A grey picture of more than eight bits a pixel, with all its shades in 0 … 255."""
+    """Return a grey image of more than eight bits per pixel, scaled to 0 … 255."""
     import numpy as np
     from PIL import Image
 
@@ -188,8 +188,8 @@ def _in_eight_bits(picture: Image) -> Image:
     return Image.fromarray(np.rint(np.clip(values, 0.0, 255.0)).astype(np.uint8)).convert("RGB")
 
 
-def _laid(picture: Image, fit: str) -> Image:
-    """The picture on the field."""
+def _placed(picture: Image, fit: str) -> Image:
+    """Return the field with the image on it."""
     from PIL import Image
 
     if picture.size == _FIELD:

@@ -1,4 +1,4 @@
-"""Sets of obstacles by name or from a file: TOML, or the JSON list of [x, y, width, height]."""
+"""Sets of obstacles by name or from a file: TOML, or a JSON list of [x, y, width, height]."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
 
     Args:
         word: The name or the path.
-        key: What errors about a name say it stands in, such as `-o`.
+        key: The switch to name in errors about an unknown name, such as `-o`.
 
     Raises:
-        ObstacleError: there is none of that name, or the file is wrong.
+        ObstacleError: the name is unknown, or the file is wrong.
     """
     if word in OBSTACLES:
         return OBSTACLES[word]
@@ -43,7 +43,7 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
 
 
 def obstacles_from_table(table: Section) -> tuple[Obstacle, ...]:
-    """Return the obstacles in the list `obstacle` of a table.
+    """Return the obstacles of a table's list `obstacle`.
 
     Raises:
         ObstacleError: a key or a value is wrong, or there are too many.
@@ -77,7 +77,7 @@ def _obstacle(box: Section) -> Obstacle:
 
 
 def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
-    """Write obstacles as a TOML file from which `load_obstacles` returns equal ones; whole or not at all.
+    """Write obstacles atomically to a TOML file; `load_obstacles` returns equal ones.
 
     Raises:
         ObstacleError: the file cannot be written, or there are too many.
@@ -88,12 +88,12 @@ def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
 
 
 def obstacle_file(obstacles: Sequence[Obstacle]) -> list[str]:
-    """Return the lines of a file of obstacles."""
+    """Return the lines of an obstacle file."""
     return [_HEAD, "", *obstacle_lines(obstacles)]
 
 
 def obstacle_lines(obstacles: Sequence[Obstacle]) -> list[str]:
-    """Return obstacles as lines of TOML."""
+    """Return obstacles as TOML lines."""
     if not obstacles:
         return ["obstacle = []"]
     tables = [["[[obstacle]]", *toml_lines({key: getattr(box, key) for key in OBSTACLE_KEYS}), ""] for box in obstacles]

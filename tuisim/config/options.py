@@ -1,4 +1,4 @@
-"""The switches that the command line and a program's magic line share, and the settings they make.
+"""The switches shared by the command line and a program's magic line, and the settings that they set.
 
 To add a switch: add a line to `SWITCHES`, and its field to `Settings`.
 """
@@ -18,7 +18,7 @@ from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, 
 from tuisim.errors import ConfigError
 
 ARGUMENTS_FOLLOW = "--"
-"""All after this word of the command line is the program's."""
+"""Words after this one on the command line are passed to the program."""
 PRELOADS = ("none", "imports", "preloaded")
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
 MAX_POSITION_MM = 10_000
@@ -31,32 +31,32 @@ MAX_SPEED_WORD = "max"
 
 @dataclass(frozen=True, slots=True)
 class RobotChoice:
-    """A robot that has been read, and what its file decides beside it."""
+    """A robot read from a file, and the other settings in that file."""
 
     spec: RobotSpec
     motor_noise: int | None = None
-    """The motor noise of a run that says none of its own."""
+    """The default motor noise of a run."""
     own_places: bool = True
-    """Whether its colour sensors stay where they are on a mat that has places of its own for them."""
+    """Whether its colour sensors keep their positions on a mat that defines its own."""
     light_noise: int | None = None
-    """The light noise of a run that says none of its own."""
+    """The default light noise of a run."""
     notes: tuple[str, ...] = ()
-    """What to know of the file."""
+    """Warnings about the file, to be shown to the user."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What the switches and a world file decide. None leaves the choice to the mat, robot, profile or program."""
+    """The settings made by switches and a world file. None: the mat, robot, profile or program decides."""
 
     background: str = "Empty_Map"
-    """A mat's name, or an image file."""
+    """The name of a mat, or the path of an image."""
     mats: str | None = None
-    """A folder with mats of the user's own."""
+    """A folder with the user's own mats."""
     background_fit: str | None = None
     robot: str | RobotChoice = "Default_Robot"
-    """Its name or file, or itself."""
+    """Its name or file, or the object itself."""
     obstacles: str | tuple[Obstacle, ...] | None = None
-    """Their name or file, or themselves."""
+    """Their name or file, or the objects themselves."""
     walls: bool = True
     solid: bool | None = None
     x_mm: float | None = None
@@ -71,15 +71,15 @@ class Settings:
     beacon: BeaconSpec | None = None
     """An infrared beacon on the field."""
     remote: tuple[RemotePress, ...] = ()
-    """What is pressed on the infrared remote control."""
+    """Buttons pressed on the infrared remote control."""
     profile: str | ProfileSpec = "robolab"
-    """Its name or file, or itself."""
+    """Its name or file, or the object itself."""
     seed: int = 0
     arguments: tuple[str, ...] = ()
-    """What the program finds in `sys.argv`, after its path: what stands after `--`."""
+    """The program's `sys.argv[1:]`: the words after `--`."""
     preload: str | None = None
     speed: float | None = None
-    """1.0 real time, 0 as fast as possible; None: real time in the app, as fast as possible headless."""
+    """A multiple of real time, 0 for as fast as possible; None: real time in the app, else as fast as possible."""
     autorun: bool = False
     clear_trace: bool = False
     quiet: bool = False
@@ -100,18 +100,18 @@ class Option:
     """The field of `Settings` that it sets."""
     help: str
     metavar: str = ""
-    """How its value is called; empty for a switch without a value."""
+    """The name of its value in the help; empty for a switch without a value."""
     convert: Callable[[str, str], Any] | None = None
-    """From the value's text and the first flag to the value of the field."""
+    """Convert the value's text to the value of the field; the second argument is the flag, for errors."""
     panel: str = ""
-    """The panel that a switch without a value puts on or off; otherwise it sets its field to `value`."""
+    """The panel that a switch without a value shows or hides; empty if the switch sets its field to `value`."""
     value: bool = True
     magic_flags: tuple[str, ...] = ()
-    """Further names in a magic line, where the command line means something else by them."""
+    """Further names in a magic line only, because they mean something else on the command line."""
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
-    """Return the hint for a wrong name: the nearest ones, else all of them."""
+    """Return the hint for an unknown name: the closest matches, else all names."""
     names = list(allowed)
     by_lower = {known.lower(): known for known in names}
     close = [by_lower[lower] for lower in difflib.get_close_matches(name.lower(), by_lower, 3, 0.5)]
@@ -119,7 +119,7 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
 
 
 def number(low: float, high: float) -> Callable[[str, str], float]:
-    """Return a converter from the text after a flag to a number in a range; it raises ConfigError for others."""
+    """Return a converter from the text after a flag to a number in a range; it raises ConfigError for other texts."""
 
     def convert(text: str, flag: str) -> float:
         try:
@@ -134,7 +134,7 @@ def number(low: float, high: float) -> Callable[[str, str], float]:
 
 
 def whole(low: int, high: int) -> Callable[[str, str], int]:
-    """Return a converter from the text after a flag to a whole number in a range; it raises ConfigError for others."""
+    """Return a converter from the text after a flag to an integer in a range; it raises ConfigError for other texts."""
 
     def convert(text: str, flag: str) -> int:
         try:
@@ -168,10 +168,10 @@ def _on_off(text: str, flag: str) -> bool:
 
 
 def pen_color(text: str, flag: str) -> str:
-    """Return a colour in small letters.
+    """Return a colour in lower case.
 
     Raises:
-        ConfigError: it is neither a CSS name nor `#rrggbb`.
+        ConfigError: it is neither a CSS colour name nor `#rrggbb`.
     """
     from tuisim.core.css_colors import css_names, css_rgb
 
@@ -198,47 +198,49 @@ _angle = number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
 WORLD, RUN, APP, PANEL = "world", "run", "app", "panels (app)"
 
 SWITCHES: tuple[Option, ...] = (
-    Option(WORLD, ("-b", "--background"), "background", "mat, see `tuisim backgrounds`, or image file", "MAT", _name),
-    Option(WORLD, ("--mats",), "mats", "folder with pictures of mats, named as in `-b`", "FOLDER", _name),
+    Option(
+        WORLD, ("-b", "--background"), "background", "a mat of `tuisim backgrounds`, or an image file", "MAT", _name
+    ),
+    Option(WORLD, ("--mats",), "mats", "folder of images that `-b` finds by name", "FOLDER", _name),
     Option(
         WORLD,
         ("--background-fit",),
         "background_fit",
-        "how an image fills the field",
+        "how an image is placed on the field",
         "|".join(BACKGROUND_FITS),
         _one_of(BACKGROUND_FITS),
     ),
-    Option(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "robot, see `tuisim robots`, or file", "ROBOT", _name),
-    Option(WORLD, ("-o", "--obstacles"), "obstacles", "see `tuisim obstacles`, or file", "NAME", _name),
+    Option(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "a robot of `tuisim robots`, or a file", "ROBOT", _name),
+    Option(WORLD, ("-o", "--obstacles"), "obstacles", "a set of `tuisim obstacles`, or a file", "NAME", _name),
     Option(WORLD, ("--walls",), "walls", "walls on the edges of the field", "on|off", _on_off),
     Option(WORLD, ("--solid",), "solid", "obstacles and walls stop the robot"),
-    Option(WORLD, ("--no-solid",), "solid", "the robot drives through them", value=False),
+    Option(WORLD, ("--no-solid",), "solid", "the robot drives through obstacles and walls", value=False),
     Option(WORLD, ("-x", "--x", "--xpos"), "x_mm", "start x in mm", "MM", _position),
     Option(WORLD, ("-y", "--y", "--ypos"), "y_mm", "start y in mm", "MM", _position),
     Option(WORLD, ("-a", "--angle"), "heading_deg", "start heading, counter-clockwise from +x", "DEG", _angle),
     Option(WORLD, ("-N", "--sensornoise"), "light_noise", "light noise, 0 … 128", "N", whole(0, MAX_LIGHT_NOISE)),
     Option(WORLD, ("-M", "--motornoise"), "motor_noise", "motor noise, 0 … 500", "N", whole(0, MAX_MOTOR_NOISE)),
     Option(WORLD, ("-p", "--pendown"), "pen_down", "start with the pen down"),
-    Option(WORLD, ("-P", "--pencolor"), "pen_color", "any CSS name, or #rrggbb", "COLOUR", pen_color),
+    Option(WORLD, ("-P", "--pencolor"), "pen_color", "any CSS colour name, or #rrggbb", "COLOUR", pen_color),
     Option(WORLD, ("--pen-width",), "pen_width_mm", "width of the trace", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
     Option(WORLD, ("--pen-marks",), "pen_marks", "the sensors see what the pen draws"),
-    Option(RUN, ("--profile",), "profile", "rules of the brick, see `tuisim profiles`, or file", "NAME", _name),
-    Option(RUN, ("--seed",), "seed", "seed of noise and of `random`", "N", whole(0, MAX_SEED)),
-    Option(RUN, ("--speed",), "speed", "max, or times real time", "N", _speed),
-    Option(RUN, ("--preload",), "preload", "names given to the program", "|".join(PRELOADS), _one_of(PRELOADS)),
+    Option(RUN, ("--profile",), "profile", "a profile of `tuisim profiles`, or a file", "NAME", _name),
+    Option(RUN, ("--seed",), "seed", "seed for noise and `random`", "N", whole(0, MAX_SEED)),
+    Option(RUN, ("--speed",), "speed", "max, or a multiple of real time", "N", _speed),
+    Option(RUN, ("--preload",), "preload", "names predefined for the program", "|".join(PRELOADS), _one_of(PRELOADS)),
     Option(APP, ("-R", "--autorun"), "autorun", "run at once"),
     Option(APP, ("-C", "--clear"), "clear_trace", "start with a clear trace"),
     Option(APP, ("-u", "--ultrasound"), "rays", "show the ultrasonic rays"),
-    Option(APP, ("-q", "--quiet"), "quiet", "never speak aloud"),
-    Option(APP, ("--fps",), "fps", "most frames a second, 1 … 60", "N", whole(1, 60)),
+    Option(APP, ("-q", "--quiet"), "quiet", "make no sound"),
+    Option(APP, ("--fps",), "fps", "maximum frames per second, 1 … 60", "N", whole(1, 60)),
     Option(APP, ("--colors",), "colors", "auto, truecolor, 256, 16 or none", "DEPTH", _one_of(COLOR_DEPTHS)),
     Option(PANEL, ("-O", "--output"), "panels_on", "show the output", panel="output"),
     Option(PANEL, ("-A", "--array"), "panels_on", "show the sensor arrays", panel="arrays"),
     Option(PANEL, ("-c", "--chart"), "panels_on", "show the chart", panel="chart"),
     Option(PANEL, ("-i", "--instrumentation"), "panels_on", "show the instrumentation", panel="instrumentation"),
-    Option(PANEL, ("-z", "--noisecontrols"), "panels_on", "show the noise", panel="noise"),
+    Option(PANEL, ("-z", "--noisecontrols"), "panels_on", "show the noise controls", panel="noise"),
     Option(PANEL, ("-Z", "--settings"), "panels_on", "show the settings", panel="settings"),
-    Option(PANEL, ("-X", "--positioning"), "panels_on", "show the positioning", panel="positioning"),
+    Option(PANEL, ("-X", "--positioning"), "panels_on", "show the positioning controls", panel="positioning"),
     Option(PANEL, ("-D", "--code"), "panels_on", "show the code", panel="code"),
     Option(PANEL, ("-W", "--hideworld"), "panels_off", "hide the world", panel="world", magic_flags=("--world",)),
     Option(PANEL, ("-H", "--hidecontrols", "--hide"), "panels_off", "hide the simulator controls", panel="controls"),
@@ -250,7 +252,7 @@ PANELS = tuple(switch.panel for switch in SWITCHES if switch.panel)
 
 
 class SwitchParser(argparse.ArgumentParser):
-    """An argument parser whose complaints are ConfigErrors, and which knows `SWITCHES` on request."""
+    """An argument parser that raises ConfigError on bad input, and can add `SWITCHES`."""
 
     def error(self, message: str) -> NoReturn:
         """Raise a ConfigError instead of printing the usage.
@@ -262,16 +264,16 @@ class SwitchParser(argparse.ArgumentParser):
         raise ConfigError(text, f"see `{self.prog} --help`" if self.add_help else "")
 
     def add_programs(self, dest: str) -> None:
-        """Add what a magic line cannot have: the programs, and `--world`."""
-        what = "a Python file, a notebook or one of its cells (FILE.ipynb#2), or an example's name"
+        """Add the arguments that a magic line cannot have: the programs, and `--world`."""
+        what = "a Python file, a notebook, one of its cells (FILE.ipynb#2), or an example by name"
         self.add_argument(dest, nargs="*", metavar="PROGRAM", help=what)
-        self.add_argument("--world", metavar="FILE", help="a world file; it may also stand before the program")
+        self.add_argument("--world", metavar="FILE", help="a world file; may also precede the program")
 
     def add_switches(self, *, magic: bool = False) -> None:
-        """Add every shared switch; one that is not given leaves no trace in the namespace.
+        """Add every shared switch; the namespace has no attribute for a switch that is not given.
 
         Args:
-            magic: Whether this is about a magic line, not the command line.
+            magic: Whether a magic line is parsed, not the command line.
         """
         groups = {group: self.add_argument_group(group) for group in dict.fromkeys(s.group for s in SWITCHES)}
         for switch in SWITCHES:
@@ -295,16 +297,16 @@ _FIELDS = frozenset(switch.field for switch in SWITCHES) | {"arguments"}
 
 
 def given(namespace: argparse.Namespace) -> dict[str, Any]:
-    """Return the shared switches and the program's arguments that were given, by field of `Settings`."""
+    """Return the shared switches and program arguments that were given, keyed by field of `Settings`."""
     found = {field: value for field, value in vars(namespace).items() if field in _FIELDS}
     return {field: tuple(value) if isinstance(value, list) else value for field, value in found.items()}
 
 
 def parse_words(words: Sequence[str]) -> dict[str, Any]:
-    """Return the switches in the words of a magic line, by field of `Settings`.
+    """Parse the words of a magic line and return its switches, keyed by field of `Settings`.
 
     Raises:
-        ConfigError: a word is no switch, or a value is wrong.
+        ConfigError: a word is not a switch, or a value is wrong.
     """
     parser = SwitchParser(prog="tuisim", add_help=False, allow_abbrev=False)
     parser.add_switches(magic=True)
@@ -312,7 +314,7 @@ def parse_words(words: Sequence[str]) -> dict[str, Any]:
 
 
 def settings_of(*layers: Mapping[str, Any]) -> Settings:
-    """Return the settings that layers of given switches make; a later layer wins, panels add up."""
+    """Merge layers of given switches: a later layer takes precedence, panels accumulate."""
     settings = Settings()
     for layer in layers:
         panels = {

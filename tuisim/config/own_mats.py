@@ -1,8 +1,8 @@
-"""Mats by the name that a user says: of the catalogue, and of folders with the user's own pictures.
+"""Mats by name: those of the catalogue, and those in folders with the user's own images.
 
-Such a folder is `backgrounds` in TUISIM_HOME; `--mats` names another one, which goes first. A picture in it
-that is called after a mat of the catalogue, or has the file name that it had in the browser simulator, is
-that mat, in place of ours; any other picture is a mat that is called after its file.
+Such a folder is `backgrounds` in TUISIM_HOME; `--mats` names another one, which is searched first. An image that is
+named like a mat of the catalogue, or like its file in the browser simulator, replaces ours; any other image is a mat
+named after its file.
 """
 
 from __future__ import annotations
@@ -20,34 +20,34 @@ from tuisim.errors import BackgroundError
 
 FOLDER = "backgrounds"
 SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp"})
-"""Of the files in a folder of mats that are taken for pictures."""
+"""Suffixes of files that count as images in a folder of mats."""
 
 AS_THERE = "corner"
-"""How the browser simulator laid a picture on the field."""
+"""The fit that the browser simulator used."""
 
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """A picture that was imported."""
+    """An imported image."""
 
     name: str
-    """Of the mat."""
+    """The mat's name."""
     file: str
     size_px: tuple[int, int]
 
 
 def own_folder() -> Path:
-    """Return the folder of the user's own mats; it need not be there."""
+    """Return the folder of the user's own mats; it may not exist."""
     return (home_folder() / FOLDER).absolute()
 
 
 def mats(folder: str | None = None) -> dict[str, Background]:
-    """Return every mat by name: of the catalogue in its order, then the user's further ones.
+    """Return every mat by name: the catalogue in its order, then the user's additional ones.
 
-    A mat of the catalogue whose picture nobody may ship is there also while its picture is not.
+    A mat of the catalogue whose image is not distributed is included even if its image is missing.
 
     Args:
-        folder: A further folder with mats of the user's own, which goes first.
+        folder: Another folder of the user's own mats, which takes precedence.
 
     Raises:
         BackgroundError: a folder cannot be read, or the catalogue is wrong.
@@ -61,20 +61,20 @@ def mats(folder: str | None = None) -> dict[str, Background]:
 
 
 def find_mat(word: str, folder: str | None = None) -> Background:
-    """Return the mat that a word means: its name, or the path of an image.
+    """Return a mat by its name or by the path of an image.
 
     Args:
-        word: As after `-b`.
+        word: The value of `-b`.
         folder: As for `mats`.
 
     Raises:
-        BackgroundError: there is none, or it has no picture.
+        BackgroundError: it does not exist, or has no image.
         ConfigError: there is no folder of mats.
     """
     known = mats(folder)
     if (found := known.get(word)) is not None:
         if not found.shipped and not found.image.is_file():
-            raise BackgroundError(f"the mat {word!r} comes without its picture, which is not ours", where_to_put(found))
+            raise BackgroundError(f"the mat {word!r} comes without its image", where_to_put(found))
         return found if found.is_own else background(word)
     if not is_image_path(word):
         raise BackgroundError(f"no such mat {word!r}", names_hint(word, list(known)))
@@ -87,20 +87,20 @@ def find_mat(word: str, folder: str | None = None) -> Background:
 
 
 def spec_name(mat: Background) -> str:
-    """Return what a specification calls a mat: its name if the picture is ours, else the path of the picture."""
+    """Return the name of a mat in a run specification: its name if the image is ours, else the path of the image."""
     ours = catalogue().get(mat.name)
     return mat.name if ours is not None and ours.image == mat.image else str(mat.image)
 
 
 def mat_of_spec(name: str) -> tuple[str, Background]:
-    """Return the word by which `find_mat` finds the mat of a specification, and the mat.
+    """Return the mat of a run specification, preceded by the word with which `find_mat` finds it.
 
     Raises:
-        BackgroundError: it is gone.
+        BackgroundError: it no longer exists.
     """
     known = mats()
     if name in known and known[name].is_own:
-        # The user has put another picture in the place of the one that was meant.
+        # The user's image now replaces ours, which is the one meant.
         ours = background(name)
         return str(ours.image), ours
     if (found := _of_path(name, known)) is not None:
@@ -109,32 +109,32 @@ def mat_of_spec(name: str) -> tuple[str, Background]:
 
 
 def where_to_put(mat: Background) -> str:
-    """Return the hint for a mat without a picture."""
+    """Return the hint for a mat without an image."""
     names = " or ".join(dict.fromkeys((mat.original, f"{mat.name}.png")))
-    return f"put it as {names} into {own_folder()}, or name its folder with --mats FOLDER"
+    return f"save it as {names} in {own_folder()}, or name its folder with --mats FOLDER"
 
 
 def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
-    """Copy the pictures of the catalogue's mats from a folder to the user's own mats.
+    """Copy images of the catalogue's mats from a folder to the folder of the user's own mats.
 
     Returns:
-        What was taken, in the order of the catalogue, and the names of other pictures in the folder.
+        The imported images, in the order of the catalogue, and the names of other images in the folder.
 
     Raises:
-        BackgroundError: the folder cannot be read or has no such picture, one of them cannot be read, or the
-            user's folder cannot be written; only then may some have been taken.
+        BackgroundError: the folder cannot be read or has no such image, an image cannot be read, or the user's
+            folder cannot be written; only in the last case some images may have been copied.
     """
     known = catalogue()
     files = _pictures(source)
     found = {name: mat.image for name, mat in _in_folder(source, known).items() if name in known}
     if not found:
-        hint = f"such as {known['Loop'].original} or Loop.png; the folder itself is looked through, not those in it"
-        raise BackgroundError("holds no picture of a mat of the catalogue", hint, file=str(source))
+        hint = f"such as {known['Loop'].original} or Loop.png; subfolders are not searched"
+        raise BackgroundError("has no image of a mat of the catalogue", hint, file=str(source))
     contents: dict[str, bytes] = {}
     taken: list[Taken] = []
     for name in (name for name in known if name in found):
         content = contents[name] = read_file(found[name])
-        # All are looked at before the first is written.
+        # All are checked before the first is written.
         decode(content, found[name], AS_THERE)
         taken.append(Taken(name, found[name].name, size_of(content)))
     target = own_folder()
@@ -149,7 +149,7 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
 
 
 def _places(folder: str | None) -> list[Path]:
-    """The folders with the user's mats, the one that goes first first."""
+    """Return the folders of the user's mats, in order of precedence."""
     named = [] if folder is None else [_named(folder)]
     own = own_folder()
     return [*named, own] if own.exists() else named
@@ -158,7 +158,7 @@ def _places(folder: str | None) -> list[Path]:
 def _named(folder: str) -> Path:
     path = Path(os.path.abspath(os.path.expanduser(folder)))
     if not path.exists():
-        raise BackgroundError("there is no such folder", "of pictures of mats", file=str(path), key="--mats")
+        raise BackgroundError("there is no such folder", "name a folder of mat images", file=str(path), key="--mats")
     return path
 
 
@@ -171,11 +171,11 @@ def _pictures(folder: Path) -> list[Path]:
         )
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise BackgroundError(f"cannot be read: {reason}", "a folder of pictures of mats", file=str(folder)) from error
+        raise BackgroundError(f"cannot be read: {reason}", "name a folder of mat images", file=str(folder)) from error
 
 
 def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Background]:
-    """The mats whose pictures are in a folder, by name."""
+    """Return the mats with an image in a folder, by name."""
     by_original = {mat.original.lower(): mat for mat in known.values() if mat.original}
     by_name = {name.lower(): mat for name, mat in known.items()}
     found: dict[str, Background] = {}
@@ -191,7 +191,7 @@ def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Backg
 
 
 def _of_path(path: str, known: Mapping[str, Background]) -> Background | None:
-    """The mat of the user's own folders, or ours in whose place there is one, that a path means."""
+    """Return the user's mat with this image path, or ours if one of the user's replaces it."""
     for mat in _own(known):
         if str(mat.image) == path:
             return mat

@@ -1,4 +1,4 @@
-"""What a program may find ready: the text that runs before it."""
+"""Preludes: source text that runs before a program and defines names for it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ev3dev2.sound import Sound
 from ev3dev2_glue import get_clock
 """
 
-_READY_MADE = """\
+_INSTANCES = """\
 tank_turn = MoveSteering(OUTPUT_B, OUTPUT_C)
 tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)
 ultrasonic = UltrasonicSensor(INPUT_1)
@@ -28,5 +28,5 @@ def say(txt, wait=False, show=True):
     Sound().speak(str(txt).replace("'", "\\u2019"), play_type=0 if wait else 1)
 """
 
-PRELUDE_TEXTS: Mapping[str, str] = {"none": "", "imports": _IMPORTS, "preloaded": _IMPORTS + _READY_MADE}
-"""What runs before a program, by name."""
+PRELUDE_TEXTS: Mapping[str, str] = {"none": "", "imports": _IMPORTS, "preloaded": _IMPORTS + _INSTANCES}
+"""The text of each prelude, by name."""

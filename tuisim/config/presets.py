@@ -1,4 +1,4 @@
-"""Robots and obstacles that have a name.
+"""The named robots and sets of obstacles.
 
 To add a robot or a set of obstacles: add an entry to `ROBOTS` or `OBSTACLES`.
 """
@@ -12,8 +12,10 @@ from tuisim.core.parts import InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.spec import ROBOT_WEIGHTS, ColorSensorSpec, Obstacle, RobotSpec, UltrasonicSpec
 
 
-def _eyes(x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int) -> tuple[ColorSensorSpec, ...]:
-    """Two colour sensors, as far to the left as to the right."""
+def _sensor_pair(
+    x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int
+) -> tuple[ColorSensorSpec, ...]:
+    """Return two colour sensors, symmetric about the robot's axis."""
     return (
         ColorSensorSpec("left", "in2", -x_mm, y_mm, left_diameter_mm),
         ColorSensorSpec("right", "in3", x_mm, y_mm, right_diameter_mm),
@@ -26,7 +28,7 @@ _SMALL = RobotSpec(
     wheel_spacing_mm=90.0,
     back_mm=-60.0,
     weight=ROBOT_WEIGHTS["weightless"],
-    color_sensors=_eyes(10.0, 15.0, 10, 10),
+    color_sensors=_sensor_pair(10.0, 15.0, 10, 10),
     ultrasonic=UltrasonicSpec(y_mm=10.0),
 )
 
@@ -35,8 +37,8 @@ ROBOTS: Mapping[str, RobotSpec] = {
     for robot in (
         RobotSpec(),
         _SMALL,
-        replace(_SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_eyes(30.0, 15.0, 10, 10)),
-        RobotSpec(name="Sensor_Diameter_Config", color_sensors=_eyes(20.0, 30.0, 30, 10)),
+        replace(_SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_sensor_pair(30.0, 15.0, 10, 10)),
+        RobotSpec(name="Sensor_Diameter_Config", color_sensors=_sensor_pair(20.0, 30.0, 30, 10)),
         RobotSpec(
             name="Explorer",
             color_sensors=(ColorSensorSpec("left", "in2", 0.0, 30.0),),

@@ -1,4 +1,4 @@
-"""Profiles by name or from a TOML file, which may say only what differs from its `base`."""
+"""Profiles by name or from a TOML file, which needs only the keys that differ from its `base`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "reflected_max": (1, 1000),
     "ultrasonic_period_ticks": (1, 1000),
 }
-"""What a number may be; any other from 0 to a million."""
+"""Ranges of numbers; all others are from 0 to a million."""
 _ANY = (0.0, 1e6)
 
 _OLD = "measured on the old simulator"
@@ -31,24 +31,24 @@ _NEW = "choice of this project"
 
 SOURCES: Mapping[str, str] = {
     "tick_hz": f"{_NEW}: 100; {_OLD}: 30",
-    "color_read_ns": f"{_OLD}: it waits before the value is taken",
+    "color_read_ns": f"{_OLD}: it waits before it takes the value",
     "color_code_read_ns": f"{_OLD}: it waits twice; ev3: a reading like any other",
-    "ultrasonic_read_ns": f"{_OLD}: it waits before the value is taken",
+    "ultrasonic_read_ns": f"{_OLD}: it waits before it takes the value",
     "gyro_read_ns": f"{_OLD}: it waits twice; ev3: a reading like any other",
     "attribute_read_ns": f"{_NEW}, so that polling takes time; {_OLD}: nothing",
     "clock_read_ns": f"{_NEW}, so that loops on the clock end; {_OLD}: nothing",
-    "display_update_ns": f"{_NEW}, an estimate: 130 steps a pixel at the brick's 300 MHz; the old simulator has none",
-    "motor_law": f"brick: moves end where they were to end, as the EV3 motor driver ends them; nbev3devsim: {_OLD}",
+    "display_update_ns": f"{_NEW}, an estimate: 130 steps per pixel at the brick's 300 MHz; the old simulator has none",
+    "motor_law": f"brick: moves end at their target, as with the EV3 motor driver; nbev3devsim: {_OLD}",
     "max_speed_dps": "EV3 motor driver table: large motor without a load",
     "reflected_max": "ev3dev2 library: 100; the course and the old simulator: 255",
-    "ambient_percent": f"{_NEW}: a sensor close to the mat is in its own shade; {_OLD}: always 0",
+    "ambient_percent": f"{_NEW}: a sensor close to the mat is in its own shadow; {_OLD}: always 0",
     "halfway_heading": f"{_NEW}, so that arcs are round; {_OLD}: the heading before the turn",
     "ultrasonic_period_ticks": _OLD,
-    "solid": "on a real field things are solid; in the old simulator nothing is",
-    "mend_library": f"{_NEW}: README tells what; ev3: the library as it is",
-    "starts_in_own_folder": "ev3dev starts a program in its folder; in a course it starts where the notebook is",
+    "solid": "obstacles are solid on a real field, but not in the old simulator",
+    "mend_library": f"{_NEW}: see README; ev3: the library as it is",
+    "starts_in_own_folder": "ev3dev starts a program in its own folder; a course starts it in the notebook's",
 }
-"""Where the numbers of a key come from."""
+"""The source of each key's numbers."""
 
 
 def load_profile(word: str, key: str = "") -> ProfileSpec:
@@ -56,10 +56,10 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
 
     Args:
         word: The name or the path.
-        key: What errors about a name say it stands in, such as `--profile`.
+        key: The switch to name in errors about an unknown name, such as `--profile`.
 
     Raises:
-        ProfileError: there is none of that name, or the file is wrong.
+        ProfileError: the name is unknown, or the file is wrong.
     """
     if word in PROFILES:
         return PROFILES[word]
@@ -68,16 +68,16 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
         raise ProfileError(f"no such profile {word!r}", hint, key=key)
     path = Path(word).expanduser()
     if path.suffix.lower() != ".toml":
-        raise ProfileError("is not a .toml file", "the suffix says what is in it", file=str(path))
+        raise ProfileError("is not a .toml file", "the suffix selects the format", file=str(path))
     return profile_from_table(Section(read_file(path, ProfileError), str(path), ProfileError), name_of(path))
 
 
 def profile_from_table(table: Section, name: str) -> ProfileSpec:
-    """Return the profile that a table describes. A cost may be given in ms instead of ns.
+    """Return the profile in a table. Costs may be given in ms instead of ns.
 
     Args:
         table: The table.
-        name: What the profile is called if the table does not say it.
+        name: The profile's name, unless the table has one.
 
     Raises:
         ProfileError: a key or a value is wrong.
@@ -86,7 +86,7 @@ def profile_from_table(table: Section, name: str) -> ProfileSpec:
     in_ms = {_in_ms(key): key for key in kinds if key.endswith(_NS)}
     in_ns = frozenset(in_ms.values())
     earlier = EARLIER_KEYS | {_in_ms(key) for key in EARLIER_KEYS if key.endswith(_NS)}
-    table.allow(("base", *(key for key in kinds if key not in in_ns), *in_ms), unsaid=in_ns | earlier)
+    table.allow(("base", *(key for key in kinds if key not in in_ns), *in_ms), unlisted=in_ns | earlier)
     base = PROFILES[table.one_of("base", PROFILES) if "base" in table else DEFAULT_PROFILE]
     found: dict[str, Any] = {"name": name}
     law = law_of_earlier({key: table.flag(key) for key in ("halve_position_moves",) if key in table})
@@ -97,12 +97,12 @@ def profile_from_table(table: Section, name: str) -> ProfileSpec:
             continue
         if key in in_ms:
             if in_ms[key] in table:
-                raise table.wrong(key, f"stands beside {in_ms[key]}", "give one of the two")
+                raise table.wrong(key, f"is given together with {in_ms[key]}", "give only one of them")
             found[in_ms[key]] = round(table.number(key, 0, MAX_COST_MS) * MS)
         elif key != "base":
             found[key] = _value(table, key, kinds[key])
     if found["name"] in PROFILES:
-        raise table.wrong("name", f"{found['name']!r} is one of the profiles of tuisim", "give it a name of its own")
+        raise table.wrong("name", f"{found['name']!r} is the name of a built-in profile", "choose another name")
     return replace(base, **found)
 
 
@@ -126,11 +126,11 @@ def _in_ms(key: str) -> str:
 
 
 def profile_lines(spec: ProfileSpec, parent: str = "") -> list[str]:
-    """Return a profile as lines of TOML, every value said.
+    """Return a profile as TOML lines, with every value.
 
     Args:
         spec: The profile.
-        parent: The table in which it stands; empty for a file of its own.
+        parent: The name of its table; empty for a file of its own.
     """
     values: dict[str, Scalar] = {}
     for field in fields(ProfileSpec):

@@ -1,4 +1,4 @@
-"""A program file: its text, its magic line, and which prelude it gets."""
+"""Reads a program file: its text, its magic line, and its prelude."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ PRELUDES: Mapping[str, str] = {
     "sim_magic_imports": "imports",
     "sim_magic_preloaded": "preloaded",
 }
-"""The prelude that each magic stands for."""
+"""The prelude of each magic."""
 
 _FILE_FIELDS = {"background", "robot", "obstacles", "profile"}
 """Settings that may name a file."""
 
 _MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
 _READS_ANY_NAME = {"eval", "exec", "globals", "vars"}
-"""Functions that may use a name without its standing in the program."""
+"""Functions that may use names that do not appear in the program."""
 
 _DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
 
@@ -47,7 +47,7 @@ class Magic:
     switches: Mapping[str, Any]
     """By field of `Settings`."""
     comment: bool
-    """Whether it stands in a comment; if not, it is not Python and must become one."""
+    """Whether it is a comment; if not, it is not Python and must be commented out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,17 +58,17 @@ class ProgramSource:
     """File name."""
     path: str
     text: str
-    """The source; a magic line that is none has become a comment, so that line numbers are the file's own."""
+    """The source; a magic line is commented out, which keeps the file's line numbers."""
     prelude: str
     """none, imports or preloaded."""
     switches: Mapping[str, Any] = field(default_factory=dict)
-    """Switches of the magic line, by field of `Settings`; files in them are found from the program's folder."""
+    """Switches of the magic line, by field of `Settings`; file names are resolved from the program's folder."""
     module_folder: str = ""
-    """Folder of the notebook that it is a cell of; empty for a program with a file of its own."""
+    """Folder of its notebook if it is a cell; empty for a program file."""
 
 
 def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
-    """Yield (line number, text) of the lines before the first statement, a docstring left out."""
+    """Yield (line number, text) of the lines before the first statement, without the docstring."""
     closing = ""
     for number, raw in enumerate(lines, start=1):
         line = raw.strip()
@@ -85,10 +85,10 @@ def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
 
 
 def beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the switches of a magic line with the files that they name found from a folder.
+    """Return the switches of a magic line, with file names resolved from a folder.
 
     Args:
-        folder: Where the program is, or the notebook that holds it.
+        folder: The folder of the program or its notebook.
         switches: By field of `Settings`.
     """
     found = dict(switches)
@@ -102,14 +102,14 @@ def beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def find_magic(text: str, name: str) -> Magic | None:
-    """Return the magic line that stands before the program's first statement, if there is one.
+    """Return the magic line before the program's first statement, or None.
 
     Args:
         text: The program.
         name: Its file name, for errors.
 
     Raises:
-        ConfigError: the magic is none of `PRELUDES`, or a switch in it is wrong.
+        ConfigError: the magic is not one of `PRELUDES`, or a switch in it is wrong.
     """
     for number, line in _head(source_lines(text)):
         match = _MAGIC.fullmatch(line)
@@ -129,15 +129,15 @@ def find_magic(text: str, name: str) -> Magic | None:
 
 
 def prelude_for(text: str) -> str:
-    """Return the prelude that a program without a magic line gets.
+    """Return the prelude of a program without a magic line.
 
-    One that imports the library, or needs no name of a prelude, gets none.
+    It is `none` if the program imports the library, or uses no name of a prelude.
     """
     try:
         if _imports_ev3dev2(ast.parse(text)):
             return "none"
         used, defined = _global_names(text)
-    # The program's own mistakes are reported when it runs; here a glance must do.
+    # Errors of the program are reported when it runs; here a search must do.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return "none" if re.search(r"^\s*(from|import)\s+ev3dev2\b", text, re.MULTILINE) else "preloaded"
     _, ready = _global_names(PRELUDE_TEXTS["preloaded"])
@@ -189,10 +189,10 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
 
 
 def read_program(path: Path) -> ProgramSource:
-    """Read a program file; files that its magic line names are looked for beside it.
+    """Read a program file; files in its magic line are looked up beside it.
 
     Raises:
-        ConfigError: it is missing, a directory, no Python text, too large, or its magic line is wrong.
+        ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
     """
     shown = str(path)
     try:
@@ -200,7 +200,7 @@ def read_program(path: Path) -> ProgramSource:
             raise ConfigError("is a directory, not a program", "name a Python file", file=shown)
         if not path.exists():
             raise ConfigError("there is no such program", _neighbours(path), file=shown)
-        # A device or a pipe may never end.
+        # Reading from a device or a pipe may never end.
         if not path.is_file():
             raise ConfigError("is not a regular file", "name a Python file", file=shown)
         with path.open("rb") as file:
@@ -216,12 +216,12 @@ def read_program(path: Path) -> ProgramSource:
 
 
 def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
-    """Return a program from its text as if it had been read; files that its magic line names are found beside it.
+    """Like `read_program`, from a text; files in its magic line are looked up beside `path`.
 
     Args:
-        text: With `\\n` as line ends.
-        path: Its file, which need not be there; None for none.
-        name: What it is called.
+        text: The source, with `\\n` as line endings.
+        path: Its file, which may not exist; None if it has none.
+        name: Its name, for errors and tables.
 
     Raises:
         ConfigError: its magic line is wrong.
@@ -233,12 +233,12 @@ def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
 def _decode(data: bytes, shown: str) -> str:
     text, _ = decode_source(data, shown)
     if "\0" in text:
-        raise ConfigError("is not Python text: it holds null characters", "name a Python file", file=shown)
+        raise ConfigError("is not Python text: it contains null characters", "name a Python file", file=shown)
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _neighbours(path: Path) -> str:
-    """The hint for a missing file: programs beside it with a like name, else examples, and where to find more."""
+    """Return the hint for a missing file: similar names beside it, else similar examples, else how to list them."""
     import difflib
 
     try:
@@ -247,7 +247,7 @@ def _neighbours(path: Path) -> str:
         beside = []
     close = difflib.get_close_matches(path.name, beside, 3)
     if not close and path.parent == Path():
-        # A word without a folder may also have meant an example, which needs no suffix.
+        # A word without a folder may also be meant as an example, which needs no suffix.
         stems = [file.path.stem for file in programs()]
         close = [f"{stem}{path.suffix}" for stem in difflib.get_close_matches(path.stem, stems, 3)]
     return f"did you mean {' or '.join(close)}?" if close else "see `tuisim programs` for examples"

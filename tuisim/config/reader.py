@@ -1,7 +1,6 @@
-"""Files that describe things: read with care, each mistake told with file and key.
+"""Reads configuration files; every error names file and key.
 
-A file may come from anybody, so nothing in it is trusted: its size, depth and types are checked
-before anything is made of it.
+Files are not trusted: size, depth and types are checked before their values are used.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ Value = TypeVar("Value")
 
 MAX_FILE_BYTES = 1_000_000
 MAX_LINE = 1000
-"""Longest line of a TOML file: a key of many thousand parts would keep the parser busy for hours."""
+"""Longest line of a TOML file: a key of many thousand parts would take the parser hours."""
 
 MAX_NAME = 100
 FILE_SUFFIXES = (".toml", ".json")
@@ -32,24 +31,24 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
 
 def shown(value: object) -> str:
-    """Return a value as it stands in a message: short, however long or deep it is."""
+    """Return the `repr` of a value for messages, shortened."""
     if isinstance(value, bool):
         return str(value).lower()
     return _SHORT.repr(value)
 
 
 def means_file(word: str) -> bool:
-    """Return whether a word names a file, and not one of the things that have a name."""
+    """Return whether a word names a file, not a preset."""
     return os.sep in word or Path(word).suffix.lower() in FILE_SUFFIXES
 
 
 def name_of(path: Path) -> str:
-    """Return what something is called whose file gives it no name."""
+    """Return the default name of the object in a file, from the file name."""
     return "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME] or "unnamed"
 
 
 def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
-    """Return the same error with another file and key as the place where it stands."""
+    """Return the same error with another file and key as its location."""
     where = ": ".join(part for part in (error.file, error.key) if part)
     message = error.message.removeprefix(f"{where}: ") if where else error.message
     return type(error)(message, error.hint, file=file, key=key)
@@ -57,7 +56,7 @@ def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
 
 @contextmanager
 def errors_at(file: str, prefix: str = "") -> Iterator[None]:
-    """Give errors of the block that name no file this one."""
+    """Add a file to ConfigErrors that are raised in the block without one."""
     try:
         yield
     except ConfigError as error:
@@ -67,16 +66,16 @@ def errors_at(file: str, prefix: str = "") -> Iterator[None]:
 
 
 def read_file(path: Path, error: type[ConfigError]) -> Any:
-    """Return what a TOML or JSON file holds.
+    """Read a TOML or JSON file and return its data.
 
     Raises:
-        ConfigError: of the class `error`: the file is missing, no regular file, too large, no text, empty or
-            breaks the rules of its format.
+        ConfigError: of the class `error`: the file is missing, not a regular file, too large, not text, empty or
+            not valid TOML or JSON.
     """
     shown_path = str(path)
     suffix = path.suffix.lower()
     if suffix not in FILE_SUFFIXES:
-        raise error("is neither a .toml nor a .json file", "the suffix says what is in it", file=shown_path)
+        raise error("is neither a .toml nor a .json file", "the suffix selects the format", file=shown_path)
     text = _text(path, error)
     if suffix == ".json":
         return _json(text, shown_path, error)
@@ -89,7 +88,7 @@ def _text(path: Path, error: type[ConfigError]) -> str:
         mode = path.stat().st_mode
         if stat.S_ISDIR(mode):
             raise error("is a folder, not a file", file=file)
-        # A device or a pipe may never end.
+        # Reading from a device or a pipe may never end.
         if not stat.S_ISREG(mode):
             raise error("is not a regular file", file=file)
         with path.open("rb") as stream:
@@ -111,7 +110,7 @@ def _text(path: Path, error: type[ConfigError]) -> str:
 
 
 def _neighbours(path: Path) -> str:
-    """The hint for a missing file: files beside it with a like name."""
+    """Return the hint for a missing file: files beside it with similar names."""
     import difflib
 
     try:
@@ -123,10 +122,10 @@ def _neighbours(path: Path) -> str:
 
 
 def parse_toml(text: str, file: str, error: type[ConfigError]) -> Any:
-    """Return what a TOML text holds.
+    """Parse a TOML text and return its data.
 
     Raises:
-        ConfigError: of the class `error`: it breaks the rules of TOML, or is nested too deeply.
+        ConfigError: of the class `error`: it is not valid TOML, or is nested too deeply.
     """
     import tomllib
 
@@ -148,7 +147,7 @@ def _json(text: str, file: str, error: type[ConfigError]) -> Any:
         found: dict[str, Any] = {}
         for key, value in pairs:
             if key in found:
-                raise error("stands there twice", file=file, key=shown(key)[1:-1])
+                raise error("is given twice", file=file, key=shown(key)[1:-1])
             found[key] = value
         return found
 
@@ -164,10 +163,10 @@ class Section:
     """One table of a file, read key by key.
 
     Args:
-        data: What the file holds there; an error if it is no table.
+        data: The data of the table; anything but a dict raises `error`.
         file: The file, for errors.
         error: The class of errors about it.
-        key: Where in the file the table stands; empty for the file itself.
+        key: The path of the table in the file; empty for the top level.
     """
 
     def __init__(self, data: object, file: str, error: type[ConfigError], key: str = "") -> None:
@@ -188,28 +187,28 @@ class Section:
         return len(self._data)
 
     def wrong(self, key: str, message: str, hint: str = "") -> ConfigError:
-        """Return the error about one key of this table."""
+        """Return an error about one key of this table, to be raised."""
         return self._error(message, hint, file=self.file, key=self._path(key))
 
     def instead(self, data: object) -> Section:
-        """Return a table with other data in the same place."""
+        """Return a section with other data at the same location."""
         return Section(data, self.file, self._error, self.key)
 
-    def allow(self, keys: Iterable[str], unsaid: Iterable[str] = ()) -> None:
-        """Raise unless every key is one of `keys`, or of `unsaid`, which the hint leaves out."""
+    def allow(self, keys: Iterable[str], unlisted: Iterable[str] = ()) -> None:
+        """Raise unless every key is in `keys`, or in `unlisted`, which the hint omits."""
         known = list(keys)
         for key in self._data:
-            if key not in known and key not in unsaid:
+            if key not in known and key not in unlisted:
                 raise self.wrong(shown(key)[1:-1], "no such key", nearest(key[:MAX_NAME], known))
 
     def raw(self, key: str) -> object:
-        """Return a value as it is; raise if the key is missing."""
+        """Return an unchecked value; raise if the key is missing."""
         if key not in self._data:
             raise self.wrong(key, "is missing")
         return self._data[key]
 
     def number(self, key: str, low: float = -math.inf, high: float = math.inf) -> float:
-        """Return a finite number in a range."""
+        """Return a finite number; raise if it is out of range."""
         value = self.raw(key)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(_float(value)):
             raise self.wrong(key, f"must be a number, got {shown(value)}")
@@ -218,7 +217,7 @@ class Section:
         return float(value)
 
     def whole(self, key: str, low: int, high: int) -> int:
-        """Return a whole number in a range."""
+        """Return an integer; raise if it is out of range."""
         value = self.raw(key)
         if isinstance(value, bool) or not isinstance(value, int):
             raise self.wrong(key, f"must be a whole number, got {shown(value)}")
@@ -227,7 +226,7 @@ class Section:
         return value
 
     def text(self, key: str) -> str:
-        """Return a line of text that is not empty."""
+        """Return a non-empty line of text."""
         value = self.raw(key)
         if not isinstance(value, str):
             raise self.wrong(key, f"must be text, got {shown(value)}")
@@ -236,21 +235,21 @@ class Section:
         return value
 
     def flag(self, key: str) -> bool:
-        """Return true or false."""
+        """Return a boolean."""
         value = self.raw(key)
         if not isinstance(value, bool):
             raise self.wrong(key, f"must be true or false, got {shown(value)}")
         return value
 
     def one_of(self, key: str, allowed: Iterable[str]) -> str:
-        """Return one of some words."""
+        """Return a text that must be one of `allowed`."""
         value, words = self.text(key), list(allowed)
         if value not in words:
             raise self.wrong(key, f"no such value {shown(value)}", f"one of {', '.join(words)}")
         return value
 
     def converted(self, key: str, convert: Callable[[str, str], Value]) -> Value:
-        """Return a text as a switch of the command line would take it."""
+        """Return a text converted by the converter of a command-line switch."""
         value = self.text(key)
         try:
             return convert(value, "")
@@ -265,11 +264,11 @@ class Section:
         return value
 
     def section(self, key: str, error: type[ConfigError] | None = None) -> Section:
-        """Return the table that a key holds; errors about it are of the class `error`."""
+        """Return a nested table; errors about it are of the class `error`."""
         return Section(self.raw(key), self.file, error or self._error, self._path(key))
 
     def entries(self, key: str, error: type[ConfigError] | None = None) -> list[Section]:
-        """Return the tables of a list of tables; the first is called `key[1]`."""
+        """Return the tables in a list; in errors the first is `key[1]`."""
         path, found = self._path(key), self.items(key)
         return [
             Section(entry, self.file, error or self._error, f"{path}[{at}]") for at, entry in enumerate(found, start=1)
@@ -277,7 +276,7 @@ class Section:
 
     @contextmanager
     def telling(self, prefix: str | None = None) -> Iterator[None]:
-        """Give errors of the block that name no file this table's file and key, or `prefix` instead of the key."""
+        """Add this table's file and key (or `prefix`) to ConfigErrors raised in the block without a file."""
         with errors_at(self.file, self.key if prefix is None else prefix):
             yield
 

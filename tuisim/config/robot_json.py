@@ -1,6 +1,6 @@
-"""Robots from the JSON that the browser simulator of the course saved.
+"""Robots from the JSON files of the course's browser simulator.
 
-Its keys are translated, so that one set of rules holds for both formats.
+The keys are translated to those of a robot's TOML table, so both formats are checked by the same rules.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
 from tuisim.errors import ConfigError
 
 _COLOR_SENSOR = {"x": "x_mm", "y": "y_mm", "diameter": "diameter_mm"}
-_PLACES: Mapping[str, tuple[str, Mapping[str, str]]] = {
+_PARTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "pen": ("pen", {"x": "x_mm", "y": "y_mm", "color": "color", "width": "width_mm"}),
     "sensor1": ("color_sensors.left", _COLOR_SENSOR),
     "sensor2": ("color_sensors.right", _COLOR_SENSOR),
     "ultrasonic": ("ultrasonic", {"x": "x_mm", "y": "y_mm", "angle": "angle_deg", "noise": "noise_mm"}),
     "gyro": ("gyro", {}),
 }
-"""Where a part of the robot stands in our own table, and what its keys are called there."""
+"""The key of each part in a robot's TOML table, and the names of its keys there."""
 
 _KEYS = {
     "wheeldiameter": "wheel_diameter_mm",
@@ -32,23 +32,23 @@ _KEYS = {
     "weight": "weight",
 }
 _WHEEL_NOISE, _SENSOR_NOISE = "wheelNoise", "sensorNoise"
-_NOISE_UNSAID = 1
-"""What a motor or ultrasonic noise that is not said came to in the simulator."""
+_DEFAULT_NOISE = 1
+"""The simulator's default for motor and ultrasonic noise."""
 
 _KEYS_SHOWN = 5
 
 _WITHOUT_EFFECT = ("baseWeight", "width", "height")
-"""Keys of every saved file that change nothing in a run."""
+"""Keys of saved files that do not affect a run."""
 
 
 def robot_from_json(table: Section, name: str) -> RobotChoice:
-    """Return the robot; what the table leaves out is as in Default_Robot, its noises go to the run.
+    """Return the robot; missing keys are as in Default_Robot, its noise settings become those of the run.
 
-    A key that the simulator did not know either is left aside, with a note.
+    A key that the simulator did not know either is ignored, with a note.
 
     Args:
         table: The object in the file.
-        name: What the robot is called.
+        name: The robot's name.
 
     Raises:
         RobotError: a key or a value is wrong.
@@ -59,12 +59,12 @@ def robot_from_json(table: Section, name: str) -> RobotChoice:
     for key in table:
         if key in _KEYS:
             if key == "weight" and table.raw(key) in (None, ""):
-                # That is medium, as without the key.
+                # Medium, as without the key.
                 continue
             ours[_KEYS[key]] = table.raw(key)
             theirs[_KEYS[key]] = key
-        elif key in _PLACES:
-            place, keys = _PLACES[key]
+        elif key in _PARTS:
+            place, keys = _PARTS[key]
             theirs |= {place: key, f"{place}.port": key} | {f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()}
             outer, _, inner = place.rpartition(".")
             part = table.section(key)
@@ -77,8 +77,8 @@ def robot_from_json(table: Section, name: str) -> RobotChoice:
         choice = robot_from_table(table.instead(ours), name)
     except ConfigError as error:
         raise with_location(error, table.file, theirs.get(error.key, error.key)) from None
-    notes = (f"{table.file}: left aside what means nothing here: {shown_keys(unknown)}",) if unknown else ()
-    return replace(choice, motor_noise=_NOISE_UNSAID if motor is None else motor, light_noise=light, notes=notes)
+    notes = (f"{table.file}: ignored unknown keys: {shown_keys(unknown)}",) if unknown else ()
+    return replace(choice, motor_noise=_DEFAULT_NOISE if motor is None else motor, light_noise=light, notes=notes)
 
 
 def _noise(table: Section, key: str, most: int) -> int | None:
@@ -86,16 +86,16 @@ def _noise(table: Section, key: str, most: int) -> int | None:
 
 
 def shown_keys(keys: Sequence[str]) -> str:
-    """Return keys as a message names them: short, however many and long they are."""
+    """Return a short list of keys for a message, whatever their number and length."""
     names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
     return ", ".join(names) + (f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else "")
 
 
 def _part(part: Section, keys: Mapping[str, str]) -> dict[str, object] | bool:
-    """A sensor or the pen in our own keys; False for one that is not enabled."""
+    """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
     if "pen" != part.key and "enabled" in part and not part.flag("enabled"):
         return False
     found = {keys[key]: part.raw(key) for key in part if key in keys}
     if "noise" in keys and found.get("noise_mm") is None:
-        found["noise_mm"] = _NOISE_UNSAID
+        found["noise_mm"] = _DEFAULT_NOISE
     return found

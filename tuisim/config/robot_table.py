@@ -1,4 +1,4 @@
-"""A robot, its sensors and further motors as a table of keys and values, in a file or inside a world."""
+"""Reads a robot, its sensors and extra motors from a table of a robot or world file."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ MAX_WHOLE = 10**9
 MAX_ITEMS = 1000
 SENSOR_KEYS = tuple(mount.key for mount in MOUNTS)
 PART_KEYS = ("motors", *SENSOR_KEYS)
-"""Keys of a robot's file for what is mounted on it besides its wheels and the pen."""
+"""Keys of a robot file for the mounted parts, except wheels and pen."""
 _SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 
 def keys_of(spec: type) -> tuple[str, ...]:
-    """Return what a file may say of a sensor, by its class: each of its fields but the name."""
+    """Return the keys of a sensor in a file: every field of its class except the name."""
     return tuple(field.name for field in fields(spec) if field.name != "name")
 
 
 def parts_from_table(table: Section, base: RobotSpec) -> dict[str, Any]:
-    """Return the parts that a robot's table names, by field of `RobotSpec`; others stay as in `base`.
+    """Return the parts in a robot's table, keyed by field of `RobotSpec`; others stay as in `base`.
 
     Raises:
         RobotError: a key or a value is wrong.
@@ -44,19 +44,19 @@ def parts_from_table(table: Section, base: RobotSpec) -> dict[str, Any]:
 
 
 def _motors(table: Section, base: Iterable[MotorSpec], wheels: Mapping[str, str]) -> dict[str, Any]:
-    """Kinds by port, as fields of `RobotSpec`; `false` takes a motor of the base away.
+    """Return motor kinds by port, as fields of `RobotSpec`; `false` removes a motor of the base.
 
     Args:
         table: The table.
-        base: The motors of the base that do not drive it.
-        wheels: `left_port` and `right_port`, by the port that they name.
+        base: The extra motors of the base.
+        wheels: `left_port` and `right_port`, keyed by the port that they name.
     """
     kinds = {motor.port: motor.kind for motor in base}
     found: dict[str, Any] = {}
     table.allow(OUTPUT_PORTS)
     for port in table:
         if port in wheels and table.raw(port) is False:
-            raise table.wrong(port, "drives a wheel", f"it stays; {wheels[port]} names the port")
+            raise table.wrong(port, "drives a wheel", f"it cannot be removed; {wheels[port]} sets its port")
         if port in wheels:
             found[wheels[port].replace("port", "motor")] = table.one_of(port, MOTOR_KINDS)
         elif table.raw(port) is False:
@@ -67,7 +67,7 @@ def _motors(table: Section, base: Iterable[MotorSpec], wheels: Mapping[str, str]
 
 
 def _single(table: Section, mount: Mount, base: RobotSpec) -> SensorSpec | None:
-    """The one sensor of its kind; `false` takes it away."""
+    """Return the only sensor of its kind; None for `false`, which removes it."""
     if table.raw(mount.key) is False:
         return None
     with table.telling():
@@ -76,7 +76,7 @@ def _single(table: Section, mount: Mount, base: RobotSpec) -> SensorSpec | None:
 
 
 def _named(robot: Section, mount: Mount, base: RobotSpec) -> tuple[SensorSpec, ...]:
-    """The sensors of the base as the table changes them, and the table's own; `false` takes one away."""
+    """Return the base's sensors with the table's changes, and those that the table adds; `false` removes one."""
     table = robot.section(mount.key)
     found = {sensor.name: sensor for sensor in base.sensors_in(mount)}
     for name in table:
@@ -84,17 +84,17 @@ def _named(robot: Section, mount: Mount, base: RobotSpec) -> tuple[SensorSpec, .
             found.pop(name, None)
             continue
         if not _SENSOR_NAME.fullmatch(name):
-            raise table.wrong(name, "is no name for a sensor", "letters, digits and _, a letter first, at most 31")
+            raise table.wrong(name, "is not a valid sensor name", "letters, digits and _, a letter first, at most 31")
         section = table.section(name)
         with table.telling():
-            found[name] = _sensor(section, found[name]) if name in found else _fresh(section, mount, name)
-    # A file that names them all also says their order.
+            found[name] = _sensor(section, found[name]) if name in found else _new_sensor(section, mount, name)
+    # A file that names all of them also sets their order.
     order = [name for name in table if name in found]
     return tuple(found[name] for name in (order if len(order) == len(found) else found))
 
 
-def _fresh(table: Section, mount: Mount, name: str) -> Any:
-    """A sensor that only the file has; its port is not its own by custom, so that it must be said."""
+def _new_sensor(table: Section, mount: Mount, name: str) -> Any:
+    """Return a sensor that the base does not have; it has no default port, so the table must have one."""
     table.allow(keys_of(mount.spec))
     for field in fields(mount.spec):
         if field.name == "port" or (field.default is MISSING and field.name != "name"):
@@ -103,18 +103,18 @@ def _fresh(table: Section, mount: Mount, name: str) -> Any:
 
 
 def _sensor(table: Section, base: Any) -> Any:
-    """A sensor of a table; what that leaves out is as in `base`."""
+    """Return a sensor from a table; missing keys are as in `base`."""
     table.allow(keys_of(type(base)))
     return replace(base, **_values(table, type(base)))
 
 
 def _values(table: Section, spec: type) -> dict[str, Any]:
-    """What a table says of a sensor, by field."""
+    """Return the values of a sensor's table, by field."""
     return {field.name: _value(table, field.name, field.type) for field in fields(spec) if field.name in table}
 
 
 def _value(table: Section, key: str, kind: object) -> Any:
-    """A value of the type that a field is declared with."""
+    """Return a value converted to the declared type of its field."""
     match kind:
         case "bool":
             return table.flag(key)
@@ -139,11 +139,11 @@ PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
 
 
 def robot_from_table(table: Section, name: str) -> RobotChoice:
-    """Return the robot that a table describes.
+    """Return the robot in a table.
 
     Args:
         table: The table.
-        name: What the robot is called if the table does not say it.
+        name: The robot's name, unless the table has one.
 
     Raises:
         RobotError: a key or a value is wrong.
@@ -167,7 +167,7 @@ def robot_from_table(table: Section, name: str) -> RobotChoice:
 
 
 def robot_name(table: Section, key: str) -> str:
-    """Return the name of something, or raise."""
+    """Return a robot's name; raise if it is too long."""
     name = table.text(key)
     if len(name) > MAX_NAME:
         raise table.wrong(key, f"must be at most {MAX_NAME} characters, got {len(name)}")
@@ -175,7 +175,7 @@ def robot_name(table: Section, key: str) -> str:
 
 
 def weight(table: Section, key: str) -> float:
-    """Return a weight, given by its name or as a number."""
+    """Return a weight that is given by name or as a number."""
     value = table.raw(key)
     if isinstance(value, str):
         return ROBOT_WEIGHTS[table.one_of(key, ROBOT_WEIGHTS)]
@@ -183,7 +183,7 @@ def weight(table: Section, key: str) -> float:
 
 
 def pen(table: Section, base: PenSpec, keys: Iterable[str] = PEN_KEYS) -> PenSpec:
-    """Return a pen; what the table leaves out is as in `base`."""
+    """Return a pen; missing keys are as in `base`."""
     table.allow(keys)
     found: dict[str, Any] = {key: table.number(key) for key in ("x_mm", "y_mm", "width_mm") if key in table}
     if "color" in table:

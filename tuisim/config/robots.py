@@ -16,23 +16,23 @@ from tuisim.core.spec import MOUNTS, ROBOT_WEIGHTS, RobotSpec
 from tuisim.errors import RobotError
 
 COMMENTS = {
-    "wheel_spacing_mm": "between the middles of the wheels",
+    "wheel_spacing_mm": "between the centres of the wheels",
     "back_mm": "how far the body reaches behind the axle, as a negative y",
     "weight": f"{', '.join(ROBOT_WEIGHTS)}, or a number",
     "left_port": "outA … outD",
     "port": "in1 … in4",
-    "x_mm": "to the right of the robot's middle",
+    "x_mm": "to the right of the robot's centre",
     "y_mm": "forward of the axle",
-    "diameter_mm": "of the disc that it sees, whole mm",
-    "strategy": "how the pixels of the disc count: mean, gaussian or centre",
+    "diameter_mm": "of the visible disc, whole mm",
+    "strategy": "weights of the disc's pixels: mean, gaussian or centre",
     "angle_deg": "counter-clockwise from straight ahead",
     "max_range_mm": "reported when no echo returns",
-    "noise_mm": "uniform, at most so much to either side",
-    "ray_angles_deg": "the fan of rays; the nearest echo counts",
+    "noise_mm": "uniform, plus or minus this value",
+    "ray_angles_deg": "directions of the rays; the nearest echo counts",
     "color": "a CSS colour name, or #rrggbb",
 }
 _FURTHER_COMMENTS: Mapping[type, Mapping[str, str]] = {TouchSpec: {"width_mm": "of the bumper, across the robot"}}
-"""What a key means in sensors of one class."""
+"""Comments on keys in sensors of one class only."""
 
 _HEAD = (
     "# A robot for tuisim. Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels,",
@@ -45,19 +45,19 @@ def load_robot(word: str, key: str = "") -> RobotSpec:
 
     Args:
         word: The name or the path.
-        key: What errors about a name say it stands in, such as `-r`.
+        key: The switch to name in errors about an unknown name, such as `-r`.
 
     Raises:
-        RobotError: there is none of that name, or the file is wrong.
+        RobotError: the name is unknown, or the file is wrong.
     """
     return choose_robot(word, key).spec
 
 
 def choose_robot(word: str, key: str = "") -> RobotChoice:
-    """Return the same as `load_robot`, with what else the file decides.
+    """Like `load_robot`, with the other settings in the file.
 
     Raises:
-        RobotError: there is none of that name, or the file is wrong.
+        RobotError: the name is unknown, or the file is wrong.
     """
     if word in ROBOTS:
         return RobotChoice(ROBOTS[word], own_places=False)
@@ -72,31 +72,31 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
 
 
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
-    """Write a robot as a TOML file from which `load_robot` returns an equal one; whole or not at all.
+    """Write a robot atomically to a TOML file; `load_robot` returns an equal one.
 
     Raises:
-        RobotError: the file cannot be written, or the robot has what no file can say, such as a name of two lines.
+        RobotError: the file cannot be written, or cannot represent the robot, such as a name of two lines.
     """
     path = Path(path)
     lines = robot_file(spec)
     table = Section(parse_toml("\n".join(lines), str(path), RobotError), str(path), RobotError)
     if robot_from_table(table, name_of(path)).spec != spec:
-        raise RobotError("the robot has something that no file can say", file=str(path))
+        raise RobotError("a file cannot represent this robot", file=str(path))
     write_toml(path, lines, RobotError)
 
 
 def robot_file(spec: RobotSpec) -> list[str]:
-    """Return the lines of a robot's file."""
+    """Return the lines of a robot file."""
     return [*_HEAD, "", *robot_lines(spec)]
 
 
 def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN_KEYS) -> list[str]:
-    """Return a robot as lines of TOML, every value said.
+    """Return a robot as TOML lines, with every value.
 
     Args:
         spec: The robot.
-        parent: The table in which it stands; empty for a file of its own.
-        pen_keys: What to say of its pen.
+        parent: The name of its table; empty for a file of its own.
+        pen_keys: The keys to write of its pen.
     """
     under = f"{parent}." if parent else ""
     lines = [f"[{parent}]"] if parent else []
@@ -108,7 +108,7 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
         lines += ["", f"[{under}color_sensors]", *(f"{toml_key(name)} = false" for name in gone)]
     for mount in MOUNTS:
         if mount.usual and not mount.many and not spec.sensors_in(mount):
-            # A key of the robot itself must stand before its first table.
+            # Keys of the robot itself must precede its first table.
             lines.insert(1 if parent else 0, f"{mount.key} = false")
     for mount in MOUNTS:
         for sensor in spec.sensors_in(mount):

@@ -1,4 +1,4 @@
-"""Files that describe things, written: TOML with comments, whole or not at all."""
+"""Writes TOML files with comments, atomically."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def toml_key(key: str) -> str:
-    """Return a key as TOML writes it."""
+    """Return a key in TOML syntax."""
     return key if _BARE.fullmatch(key) else toml_value(key)
 
 
 def toml_value(value: Scalar) -> str:
-    """Return a value as TOML writes it; a number reads back to the last bit."""
+    """Return a value in TOML syntax; numbers round-trip exactly."""
     match value:
         case bool():
             return str(value).lower()
         case str():
-            # TOML knows every escape of JSON, and wants one more character escaped.
+            # TOML has all escapes of JSON, and requires one more character to be escaped.
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case list():
             return f"[{', '.join(map(toml_value, value))}]"
@@ -38,17 +38,17 @@ def toml_value(value: Scalar) -> str:
 
 
 def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})) -> list[str]:
-    """Return the lines of one table, each with its comment if it has one."""
+    """Return the lines of one table, with their comments, aligned."""
     pairs = [(f"{toml_key(key)} = {toml_value(value)}", comments.get(key, "")) for key, value in values.items()]
     width = max((len(pair) for pair, comment in pairs if comment and len(pair) <= 36), default=0)
     return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
 
 
 def write_toml(path: Path, lines: Iterable[str], error: type[ConfigError], *, owner_only: bool = False) -> None:
-    """Write a TOML file whole or not at all.
+    """Write a TOML file atomically.
 
     Raises:
-        ConfigError: of the class `error`: it cannot be written; what was there is as it was.
+        ConfigError: of the class `error`: it cannot be written; an existing file is unchanged.
     """
     try:
         if path.suffix != ".toml":

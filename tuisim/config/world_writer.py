@@ -1,4 +1,4 @@
-"""World files, written: a run's specification as a file that makes the same run again."""
+"""Writes a run specification as a world file that gives the same run."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from tuisim.errors import ConfigError
 
 _HEAD = "# A world for tuisim. Lengths in mm, angles in degrees counter-clockwise from +x; y up from the bottom edge."
 _COMMENTS = {
-    "program": "beside this file",
-    "arguments": "what the program finds in sys.argv",
-    "background": "a mat's name, or an image beside this file",
+    "program": "relative to this file",
+    "arguments": "the program's sys.argv[1:]",
+    "background": "a mat's name, or an image relative to this file",
     "background_fit": "for an image: stretch, fit, centre or corner",
     "walls": "on the four edges of the field",
     "solid": "whether obstacles and walls stop the robot",
@@ -39,12 +39,12 @@ _COMMENTS = {
 
 
 def settings_from(spec: RunSpec) -> dict[str, Any]:
-    """Return the settings that make this run, by field of `Settings`; what has a name is called by it.
+    """Return the settings that give this run, keyed by field of `Settings`; presets are given by name.
 
-    What other settings would decide the same way is left to them: `solid` is None where it is the profile's.
+    `solid` is None where it equals the profile's default.
 
     Raises:
-        ConfigError: its mat is gone.
+        ConfigError: its mat no longer exists.
     """
     world, pen = spec.world, spec.robot.pen
     word, mat = mat_of_spec(world.background)
@@ -72,7 +72,7 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
 
 
 def _robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
-    """The name of a robot that is one of the presets but for its pen, else the robot itself."""
+    """Return the name of the preset that equals the robot except for its pen, else the robot itself."""
     for preset in ROBOTS.values():
         on_mat = robot_on_mat(RobotChoice(preset, own_places=False), mat)
         place = replace(robot.pen, x_mm=on_mat.pen.x_mm, y_mm=on_mat.pen.y_mm)
@@ -82,27 +82,27 @@ def _robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
 
 
 def save_world(spec: RunSpec, path: Path | str, program: str | None = None, arguments: Sequence[str] = ()) -> None:
-    """Write a run as a world file from which the same run is built; whole or not at all.
+    """Write a run atomically to a world file from which an equal run is built.
 
     Args:
         spec: The run.
         path: The file; an image and a program are written relative to its folder.
         program: The program to run in it, as a path or as the name of an example.
-        arguments: What it is given.
+        arguments: The program's arguments.
 
     Raises:
-        ConfigError: the file cannot be written, or the run has what no file can say.
+        ConfigError: the file cannot be written, or cannot represent the run.
     """
     path = Path(path)
     lines = world_lines(spec, path.parent, program, arguments)
     table = Section(parse_toml("\n".join(lines), str(path), ConfigError), str(path), ConfigError)
     if build_run_spec(settings_of(world_from_table(table, path).settings)) != spec:
-        raise ConfigError("the world has something that no file can say", file=str(path))
+        raise ConfigError("a file cannot represent this world", file=str(path))
     write_toml(path, lines, ConfigError)
 
 
 def world_lines(spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()) -> list[str]:
-    """Return a run as lines of TOML.
+    """Return a run as TOML lines.
 
     Args:
         spec: The run.
@@ -140,6 +140,6 @@ def _table(name: str, values: Mapping[str, Scalar]) -> list[str]:
 
 
 def _relative(path: str, folder: Path) -> str:
-    """A path as seen from a folder, written so that it cannot be taken for a name."""
+    """Return a path relative to a folder, in a form that cannot be mistaken for a name."""
     found = os.path.relpath(os.path.expanduser(path), folder)
     return found if os.sep in found or Path(found).suffix else f".{os.sep}{found}"

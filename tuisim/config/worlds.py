@@ -1,4 +1,4 @@
-"""World files: one TOML with mat, obstacles, robot, noise, start pose, pen, profile and infrared beacon."""
+"""World files: TOML with mat, obstacles, robot, noise, start pose, pen, profile and infrared beacon."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ TOP_KEYS = (
 )  # fmt: skip
 
 
-Near = Callable[[str], str]
-"""From a path in the file to a path from here."""
+Resolver = Callable[[str], str]
+"""Resolves a path in the file."""
 
 
 @dataclass(frozen=True, slots=True)
 class WorldFile:
-    """What a world file says."""
+    """The contents of a world file."""
 
     path: Path
     settings: Mapping[str, Any]
-    """By field of `Settings`: a layer between a program's magic line and the command line."""
+    """By field of `Settings`; in precedence between a program's magic line and the command line."""
     program: str | None = None
     """The program to run in it: a path, or the name of an example."""
     files: tuple[Path, ...] = ()
@@ -52,7 +52,7 @@ class WorldFile:
 
 
 def means_world(word: str) -> bool:
-    """Return whether a word of the command line names a world file, and not a program."""
+    """Return whether a word of the command line names a world file, not a program."""
     return Path(word).suffix.lower() == WORLD_SUFFIX
 
 
@@ -61,7 +61,7 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
 
     Args:
         path: The file.
-        mats: A folder with mats of the user's own, where the file names none.
+        mats: A folder of the user's own mats, used if the file names none.
 
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
@@ -73,11 +73,11 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
 
 
 def world_from_table(table: Section, path: Path, mats: str | None = None) -> WorldFile:
-    """Return the world that a table describes.
+    """Return the world in a table.
 
     Args:
         table: The table.
-        path: Where the file is, or will be.
+        path: The path of the file, which may not exist yet.
         mats: As for `load_world`.
 
     Raises:
@@ -85,22 +85,22 @@ def world_from_table(table: Section, path: Path, mats: str | None = None) -> Wor
     """
     table.allow(TOP_KEYS)
     referred: list[Path] = []
-    near = partial(_near, path.parent, referred)
-    found: dict[str, Any] = _mat(table, near, mats)
+    resolve = partial(_resolved, path.parent, referred)
+    found: dict[str, Any] = _mat(table, resolve, mats)
     found |= {field: table.flag(key) for key, field in FLAGS.items() if key in table}
     for key, choose in (("robot", _robot), ("obstacles", _obstacles), ("profile", _profile)):
         if key in table:
-            found[key] = choose(table, near, path)
+            found[key] = choose(table, resolve, path)
     if "obstacle" in table:
         if "obstacles" in table:
-            raise table.wrong("obstacle", "stands beside obstacles", "give one of the two")
+            raise table.wrong("obstacle", "is given together with obstacles", "give only one of them")
         found["obstacles"] = obstacles_from_table(table)
     if "seed" in table:
         found["seed"] = table.whole("seed", 0, MAX_SEED)
     found |= _noise(table) | _pen(table) | _panels(table) | infrared_from_table(table)
     if "arguments" in table:
         found["arguments"] = tuple(_argument(table, at, word) for at, word in enumerate(table.items("arguments"), 1))
-    program = _program(table.text("program"), path.parent, near) if "program" in table else None
+    program = _program(table.text("program"), path.parent, resolve) if "program" in table else None
     return WorldFile(path, found, program, (path, *referred))
 
 
@@ -112,32 +112,32 @@ def _argument(table: Section, at: int, word: object) -> str:
     return word
 
 
-def _program(word: str, folder: Path, near: Near) -> str:
-    """The path of a program; the name of an example stays a name if there is no such file beside the world."""
+def _program(word: str, folder: Path, resolve: Resolver) -> str:
+    """Resolve the path of a program; an example's name stays a name if there is no such file beside the world."""
     known = os.sep not in word and not (folder / word).exists()
     if known and any((programs_folder() / name).is_file() for name in (word, f"{word}.py")):
         return word
-    return near(word)
+    return resolve(word)
 
 
-def _near(folder: Path, referred: list[Path], word: str) -> str:
-    """A path in the file as a path from here; it is noted as one that the file refers to."""
+def _resolved(folder: Path, referred: list[Path], word: str) -> str:
+    """Resolve a path in the file, and append it to `referred`."""
     found = Path(os.path.normpath(folder / os.path.expanduser(word)))
     referred.append(found)
     return str(found)
 
 
-def _mat(table: Section, near: Near, mats: str | None) -> dict[str, Any]:
-    """Mat, how it fits, and start pose. A mat brings its own start pose, so the magic line's goes with its mat."""
+def _mat(table: Section, resolve: Resolver, mats: str | None) -> dict[str, Any]:
+    """Return mat, fit and start pose. A mat has its own start pose, so it also discards the magic line's."""
     found: dict[str, Any] = {}
     if "background_fit" in table:
         found["background_fit"] = table.one_of("background_fit", BACKGROUND_FITS)
     if "mats" in table:
-        found["mats"] = near(table.text("mats"))
+        found["mats"] = resolve(table.text("mats"))
     if "background" in table:
         word = table.text("background")
         found |= dict.fromkeys(START_LIMITS)
-        found["background"] = near(word) if os.sep in word or Path(word).suffix else word
+        found["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
         with table.telling("background"):
             find_mat(found["background"], found.get("mats", mats))
     if "start" in table:
@@ -147,27 +147,27 @@ def _mat(table: Section, near: Near, mats: str | None) -> dict[str, Any]:
     return found
 
 
-def _robot(table: Section, near: Near, path: Path) -> Any:
+def _robot(table: Section, resolve: Resolver, path: Path) -> Any:
     if not isinstance(table.raw("robot"), str):
         return robot_from_table(table.section("robot", RobotError), name_of(path))
-    return _named(table, "robot", near, load_robot)
+    return _named(table, "robot", resolve, load_robot)
 
 
-def _obstacles(table: Section, near: Near, path: Path) -> Any:
-    return _named(table, "obstacles", near, load_obstacles)
+def _obstacles(table: Section, resolve: Resolver, path: Path) -> Any:
+    return _named(table, "obstacles", resolve, load_obstacles)
 
 
-def _profile(table: Section, near: Near, path: Path) -> Any:
+def _profile(table: Section, resolve: Resolver, path: Path) -> Any:
     if not isinstance(table.raw("profile"), str):
         return profile_from_table(table.section("profile", ProfileError), name_of(path))
-    return _named(table, "profile", near, load_profile)
+    return _named(table, "profile", resolve, load_profile)
 
 
-def _named(table: Section, key: str, near: Near, load: Callable[[str], object]) -> str:
-    """The name or the file that stands there; loaded once, so that a mistake is told with this file and key."""
+def _named(table: Section, key: str, resolve: Resolver, load: Callable[[str], object]) -> str:
+    """Return the name or file in a key; it is loaded once, so that errors name this file and key."""
     word = table.text(key)
     if means_file(word):
-        word = near(word)
+        word = resolve(word)
     with table.telling(key):
         load(word)
     return word
@@ -215,7 +215,7 @@ _COMMENTS = {
 
 
 def infrared_from_table(table: Section) -> dict[str, Any]:
-    """Return what a world file says of beacon and remote control, by field of `Settings`.
+    """Return beacon and remote control of a world file, keyed by field of `Settings`.
 
     Raises:
         ObstacleError: a key or a value is wrong.
@@ -248,7 +248,7 @@ def _press(table: Section) -> RemotePress:
 
 
 def infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
-    """Return beacon and presses as lines of a world file."""
+    """Return beacon and button presses as lines of a world file."""
     lines: list[str] = []
     if beacon is not None:
         lines += ["", "[beacon]", *toml_lines(asdict(beacon), _COMMENTS)]

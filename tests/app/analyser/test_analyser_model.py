@@ -91,7 +91,7 @@ def test_a_variable_along_another() -> None:
 
 def test_a_log_without_numbers_is_refused() -> None:
     table = pa.table({"a": ["x", "y"]})
-    with pytest.raises(LogError, match="no column of numbers"):
+    with pytest.raises(LogError, match="no numeric column"):
         model_of(Log("test", table, Layout()))
 
 

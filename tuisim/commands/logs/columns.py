@@ -1,4 +1,4 @@
-"""What the shell is told of the columns of a file."""
+"""The options that name the columns of a file."""
 
 from __future__ import annotations
 
@@ -8,14 +8,12 @@ from tuisim.logs.units import SECONDS
 
 def add_columns(parser: SwitchParser) -> None:
     """Declare `--time`, `--unit` and `--value`."""
-    parser.add_argument("--time", metavar="COLUMN", help="column with the time; '' counts the rows")
+    parser.add_argument("--time", metavar="COLUMN", help="time column; '' uses row numbers")
     parser.add_argument(
         "--unit",
         default="",
         choices=tuple(SECONDS),
         metavar="|".join(SECONDS),
-        help="its unit, where its name does not tell",
+        help="unit of the time column, if its name has none",
     )
-    parser.add_argument(
-        "--value", action="append", default=[], metavar="COLUMN", help="column with values; may be repeated"
-    )
+    parser.add_argument("--value", action="append", default=[], metavar="COLUMN", help="value column; may be repeated")

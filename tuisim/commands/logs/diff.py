@@ -1,4 +1,4 @@
-"""`tuisim log diff`: where two runs part."""
+"""`tuisim log diff`: where two runs differ."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tuisim.runs.store import RunStore
 
 
 def diff(arguments: Namespace) -> int:
-    """Show where two stored runs differ; 0 if they are the same, else 1.
+    """Print where two stored runs differ; return 0 if they are the same, else 1.
 
     Raises:
         ConfigError: not two runs.
@@ -33,11 +33,11 @@ def diff(arguments: Namespace) -> int:
 
 
 def diff_text(found: RunDiff) -> str:
-    """Return a comparison for people."""
+    """Return a comparison as readable text."""
     if found.same and not found.setup and not found.program:
-        return "equal to the last bit: recording, output, set-up"
-    lines = ["equal to the last bit: recording, output"] if found.same else []
-    lines += [f"set-up, {name}: {left} | {right}" for name, left, right in found.setup]
+        return "bit-identical: recording, output, settings"
+    lines = ["bit-identical: recording, output"] if found.same else []
+    lines += [f"settings, {name}: {left} | {right}" for name, left, right in found.setup]
     lines += found.program
     if found.by_time:
         lines.append("tick rates differ: compared by time, no record is the same")

@@ -1,4 +1,4 @@
-"""Figures of a log: summary, bands, events."""
+"""`tuisim log summary`, `bands` and `events`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
 
 
 def summary(arguments: Namespace) -> int:
-    """Count, extremes, mean, spread and quantiles of every variable."""
+    """Print count, min, max, mean, std and quantiles of every variable."""
     rows: list[dict[str, Any]] = []
     for log in open_sources(arguments):
         for name in names_of(log, arguments):
@@ -34,7 +34,7 @@ def summary(arguments: Namespace) -> int:
 
 
 def bands(arguments: Namespace) -> int:
-    """Plateaus of every variable: level, name, times, width."""
+    """Print the plateaus of every variable: level, name, times, width."""
     rows: list[dict[str, Any]] = []
     notes = []
     for log in open_sources(arguments):
@@ -53,7 +53,7 @@ def bands(arguments: Namespace) -> int:
 
 
 def events(arguments: Namespace) -> int:
-    """Where each variable crosses a threshold."""
+    """Print where each variable crosses the threshold."""
     if arguments.at is None:
         raise ConfigError("at which threshold?", "such as --at 50", key="events")
     rows: list[dict[str, Any]] = []
@@ -61,9 +61,9 @@ def events(arguments: Namespace) -> int:
         for name in names_of(log, arguments):
             series = log.series(name)
             for found in crossings(series.time_s, series.values, arguments.at, arguments.hysteresis):
-                way = "rises" if found.rising else "falls"
+                direction = "rises" if found.rising else "falls"
                 row = int(series.rows[found.at])
-                rows.append({"log": log.title, "variable": name, "time_s": found.time_s, "crossing": way,
+                rows.append({"log": log.title, "variable": name, "time_s": found.time_s, "crossing": direction,
                              "value": found.value, "row": row})  # fmt: skip
     show_rows(rows, arguments, {"variable": "", "time_s": ".3f", "crossing": "", "value": ".4g", "row": ""})
     return 0

@@ -1,4 +1,4 @@
-"""`tuisim log plot`: the chart of a log, in the shell or as a file."""
+"""`tuisim log plot`: draws the chart of a log in the shell or to a file."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 _LEAST_COLUMNS, _ROWS = 20, (12, 32)
-"""Of the chart in the shell: narrower terminals get this width, and its height lies between these two."""
+"""Size of the chart in the shell: minimum width, and limits of its height."""
 
 
 def plot(arguments: Namespace) -> int:
-    """Draw a log: to the file that `out` names, else as text.
+    """Draw a log: to the file `out`, else as text on stdout.
 
     Raises:
-        ConfigError: an option makes no sense.
+        ConfigError: an option is invalid.
         LogError: the log cannot be read, or there is no such variable.
         ExportError: the file cannot be written.
     """
@@ -41,7 +41,7 @@ def plot(arguments: Namespace) -> int:
     log = the_source(arguments)
     model = _model(log, arguments)
     view = View(arguments.facets, arguments.marks, against=_against(log, model, arguments))
-    _check_seen(model)
+    _check_visible(model)
     if target:
         save_chart(model, view, target, size)
     else:
@@ -52,14 +52,14 @@ def plot(arguments: Namespace) -> int:
     return 0
 
 
-def _check_seen(model: Model) -> None:
-    """Make sure that there is something to draw."""
+def _check_visible(model: Model) -> None:
+    """Raise LogError if there is nothing to draw."""
     ticked = model.traces.ticked()
     if not any(len(trace.pyramid.times_s) for trace in ticked):
         raise LogError(f"no numbers in {listed(trace.name for trace in ticked)}", file=model.log.title)
     if not any(len(trace.pyramid.between(*model.x_limits())[0]) for trace in ticked):
         low, high = model.traces.span_s()
-        raise LogError("no samples in that time", f"they lie between {low:g} s and {high:g} s", file=model.log.title)
+        raise LogError("no samples in this range", f"they are between {low:g} s and {high:g} s", file=model.log.title)
 
 
 def _size(text: str, least: Size, most: Size) -> Size:
@@ -72,7 +72,7 @@ def _size(text: str, least: Size, most: Size) -> Size:
 
 
 def _model(log: Log, arguments: Namespace) -> Model:
-    """The log with the wanted variables ticked and the wanted time chosen."""
+    """Return the model of a log with the chosen variables and time range."""
     from tuisim.analysis.model import Model
     from tuisim.analysis.source import LogRequest, OpenedLog
 
@@ -87,7 +87,7 @@ def _model(log: Log, arguments: Namespace) -> Model:
     low, high = model.traces.span_s()
     low, high = low if start is None else start, high if stop is None else stop
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise ConfigError(f"nothing lies between {low:g} s and {high:g} s", "--from comes before --to", key="plot")
+        raise ConfigError(f"no range from {low:g} s to {high:g} s", "--from must be less than --to", key="plot")
     model.limits = low, high
     return model
 
@@ -99,14 +99,14 @@ def _against(log: Log, model: Model, arguments: Namespace) -> tuple[str, str] | 
         raise ConfigError("draws one --variable against another", f"got {len(arguments.variable)}", key="--against")
     y = arguments.variable[0] if arguments.variable else model.selected
     if y not in log.names:
-        # A column beside the samples, such as y_mm; where there are several runs, it is of the first.
+        # A column of the samples, such as y_mm; of several runs, the first one's.
         return arguments.against, y
     model.selected = y
     return arguments.against, y
 
 
 def _show(model: Model, view: View, size: Size | None) -> None:
-    """Print the chart, in colours where there is a terminal that has them."""
+    """Print the chart, in colour if the terminal supports it."""
     from rich.console import Console
 
     from tuisim.charts.text import text_of
@@ -117,7 +117,7 @@ def _show(model: Model, view: View, size: Size | None) -> None:
     chart = chart_of(model, view, width * finer[0], height * finer[1])
     console = Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False)
     colors = console.color_system is not None and not console.no_color
-    # Written by ourselves: the console would end the process where a pipe is closed.
+    # Not printed by the console, which exits the process when a pipe is closed.
     with console.capture() as captured:
         console.print(text_of(chart, width, height, colors=colors), soft_wrap=True)
     echo_chart(captured.get())

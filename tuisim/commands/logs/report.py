@@ -1,4 +1,4 @@
-"""`tuisim log report`: everything about a run or a log on one page."""
+"""`tuisim log report`: writes a one-page report on a run or a log."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from tuisim.report.report import check_report, default_name, write_report
 
 
 def report(arguments: Namespace) -> int:
-    """Write the report and say where it is.
+    """Write the report and print its path.
 
     Raises:
-        ConfigError: no log, or a file among others.
+        ConfigError: no log, or a file together with another log.
         LogError: the log cannot be read, or there is no such variable.
         ExportError: the file cannot be written.
     """
@@ -31,7 +31,7 @@ def report(arguments: Namespace) -> int:
     if arguments.telemetry and len(what.runs) > 1:
         raise ConfigError("takes one run", f"got {len(what.runs)}", key="--telemetry")
     if what.runs and (arguments.time is not None or arguments.value):
-        raise ConfigError("are for files", "what a run recorded is known", key="--time and --value")
+        raise ConfigError("are for files only", "the columns of a run are fixed", key="--time and --value")
     wanted = LogRequest(
         what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
     )

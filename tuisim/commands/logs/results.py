@@ -1,4 +1,4 @@
-"""How results come out: as a table for people, as JSON, or as a file."""
+"""Output of results: as a table, as JSON, or to a file."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ ANALYSIS_FORMAT = 1
 
 
 def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Namespace, formats: Mapping[str, str]) -> None:
-    """Show rows that all have the same keys.
+    """Print or write rows that all have the same keys.
 
     Args:
         rows: Values by column.
-        arguments: `json` and `out` say how.
-        formats: Columns of the table for people, and how each is written, such as `.2f`.
+        arguments: `json` and `out` select the format.
+        formats: Columns of the table, and their format specs, such as `.2f`.
     """
     if arguments.out:
         import pandas as pd
@@ -37,7 +37,7 @@ def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Namespace, formats: 
 
 
 def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
-    """Show a frame: to a file, as JSON lines, or as CSV that another program can read."""
+    """Output a frame: to a file, as JSON lines, or as CSV on stdout."""
     if arguments.out:
         write_frame(frame, arguments)
     elif arguments.json:
@@ -47,14 +47,14 @@ def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
 
 
 def _print_json(frame: pd.DataFrame) -> None:
-    """Print each row as an object; every number to its last bit, which the frame's own function does not do."""
+    """Print each row as a JSON object with numbers in full precision, which `DataFrame.to_json` does not keep."""
     names = [str(name) for name in frame.columns]
     for cells in zip(*(frame[name].tolist() for name in frame.columns), strict=True):
         echo_json({name: _plain(cell) for name, cell in zip(names, cells, strict=True)})
 
 
 def write_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
-    """Write a frame to the file that `out` names; the suffix says in which format."""
+    """Write a frame to the file `out`; the suffix selects the format."""
     check_target(arguments.out)
     metadata = {"format": ANALYSIS_FORMAT, "table": arguments.action, "columns": list(frame.columns)}
     export_frame(frame, arguments.out, metadata)
@@ -65,7 +65,7 @@ def _plain(value: Any) -> Any:
 
 
 class _Number(float):
-    """A number that is written in a given way."""
+    """A float with a format spec of its own, for tables."""
 
     def __new__(cls, value: float, how: str) -> _Number:
         number = super().__new__(cls, value)

@@ -1,4 +1,4 @@
-"""Signals made of a log: derivative, average, integral, even moments, expressions, dead reckoning, export."""
+"""Signals computed from a log: derivative, rolling mean, integral, resampling, expressions, dead reckoning, export."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def _each(arguments: Namespace, column: str, change: Callable[[Series], FloatArray]) -> int:
-    """Show a long frame with one more column, made of each variable."""
+    """Output a long frame with one more column, computed per variable."""
     import pandas as pd
 
     log = the_source(arguments)
@@ -42,35 +42,35 @@ def _each(arguments: Namespace, column: str, change: Callable[[Series], FloatArr
 
 
 def derive(arguments: Namespace) -> int:
-    """The slope of each variable, in units a second."""
+    """Output the derivative of each variable, in units per second."""
     return _each(arguments, "derivative", lambda series: derivative(series.time_s, series.values))
 
 
 def integrate(arguments: Namespace) -> int:
-    """The integral of each variable, in units times seconds."""
+    """Output the integral of each variable, in units times seconds."""
     return _each(arguments, "integral", lambda s: integral(s.time_s, s.values, arguments.between))
 
 
 def average(arguments: Namespace) -> int:
-    """The mean of the samples around each sample."""
+    """Output the centred rolling mean of each variable."""
     return _each(arguments, "average", lambda series: moving_average(series.values, arguments.width))
 
 
 def even(arguments: Namespace) -> int:
-    """Every variable at even moments: one column each."""
+    """Output every variable resampled at a fixed period, one column each."""
     log = the_source(arguments)
     if arguments.period is None:
-        raise ConfigError("at which period?", "such as --period 0.1", key="resample")
+        raise ConfigError("which period?", "such as --period 0.1", key="resample")
     all_series = [log.series(name) for name in names_of(log, arguments)]
     start = min(float(series.time_s.min()) for series in all_series)
     stop = max(float(series.time_s.max()) for series in all_series)
     moments = even_moments(start, stop, arguments.period)
-    show_frame(_beside_time(moments, all_series, arguments.between), arguments)
+    show_frame(_sampled_at(moments, all_series, arguments.between), arguments)
     return 0
 
 
-def _beside_time(moments_s: FloatArray, all_series: Sequence[Series], between: Between = HOLD) -> pd.DataFrame:
-    """What each series is at some moments: a column each, named so that none takes the place of another."""
+def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Between = HOLD) -> pd.DataFrame:
+    """Return the values of each series at given times: one column each, with unique names."""
     import pandas as pd
 
     names = unique_names(["time", *(series.name for series in all_series)], Notes())
@@ -79,7 +79,7 @@ def _beside_time(moments_s: FloatArray, all_series: Sequence[Series], between: B
 
 
 def calculate(arguments: Namespace) -> int:
-    """An expression over the columns, in each row."""
+    """Output the log with a column computed from an expression."""
     if not arguments.expression:
         raise ConfigError("which expression?", "such as --expression '(left + right) / 2'", key="calc")
     log = the_source(arguments)
@@ -91,7 +91,7 @@ def calculate(arguments: Namespace) -> int:
 
 
 def wide_frame(log: Log) -> pd.DataFrame:
-    """Return a log with a column each variable; of a long one a row each sample, other variables as they were last."""
+    """Return a log in wide format: one column per variable; rows of a long log are forward-filled."""
     import pandas as pd
 
     if not log.layout.variable:
@@ -99,21 +99,21 @@ def wide_frame(log: Log) -> pd.DataFrame:
         return pd.DataFrame({name: numbers_of(log.table.column(name)) for name in numeric})
     series = [one for one in map(log.series, log.names) if len(one.rows)]
     moments = np.unique(np.concatenate([one.time_s for one in series]))
-    return _beside_time(moments, series)
+    return _sampled_at(moments, series)
 
 
 def reckon(arguments: Namespace) -> int:
-    """Where the wheels' counts say that the robot is, and how far off that is."""
+    """Output the pose by dead reckoning from the wheel encoders, and its error."""
     arguments.telemetry = True
     log = the_source(arguments)
-    made = {series.name: series.values for series in reckoned_series(log)}
+    computed = {series.name: series.values for series in reckoned_series(log)}
     frame = log.table.select(["time", "x_mm", "y_mm", "heading_deg"]).to_pandas()
-    show_frame(frame.assign(**made), arguments)
+    show_frame(frame.assign(**computed), arguments)
     return 0
 
 
 def export(arguments: Namespace) -> int:
-    """The log as it is, or some of its variables, in another format."""
+    """Write the log, or some of its variables, in another format."""
     if not arguments.out:
         raise ConfigError("to which file?", "such as --out log.parquet", key="export")
     check_target(arguments.out)
@@ -123,7 +123,7 @@ def export(arguments: Namespace) -> int:
 
 
 def _chosen_part(log: Log, arguments: Namespace) -> pa.Table:
-    """The rows of the variables that were asked for; where each has a column, those columns and what is no variable."""
+    """Return the rows of the chosen variables; of a wide log, their columns and those that are not variables."""
     if not arguments.variable:
         return log.table
     names = names_of(log, arguments)

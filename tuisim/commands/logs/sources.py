@@ -1,4 +1,4 @@
-"""Which log a word on the command line means."""
+"""Open the logs that are named on the command line."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from tuisim.runs.store import RunStore
 
 
 def is_file(word: str) -> bool:
-    """Return whether a word means a file rather than a stored run: it is there, or could only be a file's name."""
+    """Return whether a word names a file, not a stored run: the file exists, or the word has a suffix or is `-`."""
     path = Path(word)
-    # Of a name that is too long for the file system even the question whether it is there is an error.
+    # `is_file` raises if the name is too long for the file system.
     with suppress(OSError):
         if path.is_file() or path.is_fifo():
             return True
@@ -28,10 +28,10 @@ def is_file(word: str) -> bool:
 
 
 def open_sources(arguments: Namespace) -> Iterator[Log]:
-    """Yield the logs that the words name: each file by itself, runs that follow each other together.
+    """Yield the named logs: each file by itself, consecutive runs as one log.
 
     Raises:
-        ConfigError: no word.
+        ConfigError: no log is named.
         LogError: no such run or file, or it cannot be read.
     """
     words: Sequence[str] = arguments.words
@@ -49,10 +49,10 @@ def open_sources(arguments: Namespace) -> Iterator[Log]:
 
 
 def the_source(arguments: Namespace) -> Log:
-    """Return the one log that the words name.
+    """Return the single named log.
 
     Raises:
-        ConfigError: they name none or several.
+        ConfigError: none or several are named.
         LogError: it cannot be read.
     """
     logs = list(open_sources(arguments))
@@ -70,8 +70,8 @@ def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
     for log in logs:
         if not log.rows:
             if arguments.telemetry:
-                raise LogError("no ticks: its recording is empty or cut off", file=log.title)
-            hint = "a program logs by printing lines such as `Colour: 50`; --telemetry takes every tick instead"
+                raise LogError("no ticks: its recording is empty or truncated", file=log.title)
+            hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", hint, file=log.title)
         layout = choose_columns(log.table, arguments.time, arguments.value, arguments.unit)
         yield _with_notes(log.with_layout(layout))
@@ -85,9 +85,9 @@ def _open_file(word: str, arguments: Namespace) -> Log:
             tell(f"reading {word}", loaded.part, 1.0)
     tell(f"{arguments.action} {word}")
     assert log is not None
-    # Our own exports say what their columns are.
+    # Exports of tuisim name their time column in the metadata.
     if arguments.time is None and not log.metadata:
-        hint = "--time COLUMN takes another, --time '' counts the rows"
+        hint = "--time COLUMN selects another, --time '' uses row numbers"
         echo_error(f"note: {log.title}: {time_in_words(log.layout)} ({hint})")
     return _with_notes(log)
 
@@ -99,7 +99,7 @@ def _with_notes(log: Log) -> Log:
 
 
 def names_of(log: Log, arguments: Namespace) -> tuple[str, ...]:
-    """Return the variables that were asked for, all by default; `A` also means `A #1` and `A #2`.
+    """Return the chosen variables, all by default; `A` also matches `A #1` and `A #2`.
 
     Raises:
         LogError: there is no such variable.
@@ -108,7 +108,7 @@ def names_of(log: Log, arguments: Namespace) -> tuple[str, ...]:
     with_rows = [name for name in log.names if len(log.series(name).rows)]
     if not with_rows:
         hint = f"its columns are {listed(log.table.column_names)}"
-        raise LogError("no column of numbers", hint, file=log.title)
+        raise LogError("no numeric column", hint, file=log.title)
     if not wanted:
         return tuple(with_rows)
     found: list[str] = []
