@@ -17,9 +17,9 @@ SIBLINGS = {
         "import random\nrandom.randint(1, 2)",
         1,
         "",
-        "random.py beside the program stands in the place of",
+        "random.py beside the program shadows",
     ),
-    "missing in a library": ("import tempfile", 1, "", "random.py beside the program stands in the place of"),
+    "missing in a library": ("import tempfile", 1, "", "random.py beside the program shadows"),
     "not wanted": ("print('A: 1')", 0, "A: 1\n", ""),
 }
 

@@ -144,17 +144,17 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     session = Session(sim, open_field(files), output, channel, steering, Limits(60 * NS_PER_S), "program.py")
     output.place = lambda: (sim.tick, session.now, 0)
     turn = loop_hook(session, 500, 5_000_000)
-    baton = Scheduler(session, lambda parked: None)
+    scheduler = Scheduler(session, lambda parked: None)
     patch_time(session)
-    # The program's own is to be made anew, with locks that are on the baton.
+    # The program's own must be imported again, with locks of the scheduler.
     del sys.modules["threading"]
-    patch_threads(baton)
+    patch_threads(scheduler)
     install(session, {}, put_in_place, lambda file: False)
 
     def leave(outcome: Outcome) -> NoReturn:
         raise SystemExit(outcome.end)
 
-    outcome = ProgramRunner(config, session, output, baton, turn, leave).run()
+    outcome = ProgramRunner(config, session, output, scheduler, turn, leave).run()
     return {
         "end": " ".join(filter(None, (outcome.end, outcome.error))),
         "end_tick": sim.tick,

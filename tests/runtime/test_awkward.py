@@ -93,7 +93,7 @@ LOOKS: dict[str, tuple[str, str | tuple[str, ...]]] = {
     "repr that recurses": ("r", "<repr calls itself without end>"),
     "repr of no text": ("r", "<repr raised TypeError: __repr__ returned non-string (type int)>"),
     "repr of 20 MB": ("r", "x" * 300),
-    "repr with effects": ("r", "<repr raised RuntimeError: the program stands still"),
+    "repr with effects": ("r", "<repr raised RuntimeError: the program is paused"),
     "long list": ("data", "[0, 1, 2, 3"),
     "huge numbers and texts": ("n", "<whole number of 561471 bits>"),
 }

@@ -1,4 +1,4 @@
-"""Simulated time in everything a program can tell the time with, and threads on the baton."""
+"""Simulated time in everything a program can tell the time with, and threads on the scheduler."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Entry of the child: `python -m tuisim.runtime FOLDER COMMAND_FD EVENT_FD LIFELINE_FD`."""
+"""Entry point of the child: `python -m tuisim.runtime FOLDER COMMAND_FD EVENT_FD LIFELINE_FD`."""
 
 from __future__ import annotations
 
-from tuisim.runtime import wallclock  # isort: skip - must come first: it keeps the real clock
-from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - its import is all that is wanted
+from tuisim.runtime import wallclock  # isort: skip - must come first: it saves the real clock
+from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - imported for its effect
 
 import os
 import sys
@@ -46,11 +46,11 @@ if TYPE_CHECKING:
 
 LOOP_TURNS = 500
 LOOP_COST_NS = 5_000_000
-"""So many turns of loops in which no time passed cost so much."""
+"""Cost of `LOOP_TURNS` loop iterations in which no time passed."""
 
 
 def main(arguments: list[str]) -> NoReturn:
-    """Do the run that a folder describes, then end the process."""
+    """Run what a folder describes, then end the process."""
     folder = Path(arguments[0])
     command_fd, event_fd, lifeline_fd = map(int, arguments[1:4])
     die_with_host(lifeline_fd)
@@ -73,11 +73,11 @@ def _no_room(error: OSError) -> str:
 
 
 class Child:
-    """One run, put together.
+    """One run with all its parts.
 
     Args:
         folder: Run folder.
-        config: What to run.
+        config: The run.
         channel: Pipes to the host.
     """
 
@@ -102,7 +102,7 @@ class Child:
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
-        # Not at the session's time: that of a paced run goes on in smaller steps.
+        # Not at the session's time: in a paced run it advances in smaller steps.
         self._output.row_at(motors_row(turns), MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
 
     def _after_write(self) -> None:
@@ -111,7 +111,7 @@ class Child:
 
     def run(self) -> NoReturn:
         """Run the program and end the process."""
-        # Imported here: threads must be on the baton before anything else imports `threading`.
+        # Imported here: threads must be patched before anything else imports `threading`.
         from tuisim.runtime.alarm import patch_alarm
         from tuisim.runtime.program import Outcome, ProgramRunner
         from tuisim.runtime.scheduler import Scheduler
@@ -121,7 +121,7 @@ class Child:
         session = self._session
         turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
         interrupts = Interrupts(session, frozenset({turn.__code__}))
-        baton = Scheduler(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
+        scheduler = Scheduler(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
         patch_time(session)
         patch_datetime(session, self._config.own_folder)
         patch_process_times(session)
@@ -129,8 +129,8 @@ class Child:
         waits = FileWaits(session)
         waits.patch_select()
         refuse_processes()
-        patch_threads(baton)
-        patch_alarm(session, baton)
+        patch_threads(scheduler)
+        patch_alarm(session, scheduler)
         wallclock.stack_size(STACK_BYTES)
         limit_memory()
         install(
@@ -154,15 +154,15 @@ class Child:
             interrupts.remove()
             self._end(outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line)
 
-        runner = ProgramRunner(self._config, session, self._output, baton, turn, leave)
-        session.make_debugger = lambda: _debugger(session, baton, runner)
+        runner = ProgramRunner(self._config, session, self._output, scheduler, turn, leave)
+        session.make_debugger = lambda: _debugger(session, scheduler, runner)
         interrupts.install(self._folder)
         self._channel.send(protocol.Started(protocol.PROTOCOL_VERSION, os.getpid()))
         leave(runner.run())
 
     def _end(self, end: str, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
         if wallclock.getpid() != self._pid:
-            # A copy that the program has made below Python: what is recorded and told is the original's.
+            # A copy that the program has forked at a lower level: only the original records and reports.
             wallclock.exit_process(0)
         self._telemetry.close()
         self._output.close()
@@ -172,10 +172,10 @@ class Child:
         wallclock.exit_process(0)
 
 
-def _debugger(session: Session, baton: Scheduler, runner: ProgramRunner) -> Debugger:
+def _debugger(session: Session, scheduler: Scheduler, runner: ProgramRunner) -> Debugger:
     from tuisim.runtime.debugger.debugger import Debugger
 
-    return Debugger(session, baton, runner.names, runner.prepared, runner.code)
+    return Debugger(session, scheduler, runner.names, runner.prepared, runner.code)
 
 
 main(sys.argv[1:])

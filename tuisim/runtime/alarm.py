@@ -19,47 +19,47 @@ from tuisim.runtime.session import Session
 
 
 class Alarm:
-    """The one alarm of a program.
+    """The alarm of a program.
 
-    The signal itself belongs to the runtime: the program's handler is only kept here, and a thread that nobody sees
+    The signal itself belongs to the runtime: the program's handler is only stored here, and a hidden thread
     waits for the time of the alarm.
 
     Args:
         session: The program's clock.
-        baton: Lets the handler be called in the main thread.
+        scheduler: Calls the handler in the main thread.
     """
 
-    def __init__(self, session: Session, baton: Scheduler) -> None:
+    def __init__(self, session: Session, scheduler: Scheduler) -> None:
         self._session = session
-        self._baton = baton
+        self._scheduler = scheduler
         self._task: ScheduledThread | None = None
         self._due_ns = FOREVER
         self._interval_ns = 0
         self.handler: Any = int(signal.SIG_DFL)
-        """What the program has said, as a number where it has one."""
+        """The program's handler, or the number of a standard action."""
 
     def left_ns(self) -> tuple[int, int]:
-        """Return how long it is until the alarm, 0 if there is none, and from one to the next."""
+        """Return the time until the alarm, 0 if there is none, and its interval."""
         left = 0 if self._due_ns == FOREVER else max(self._due_ns - self._session.now, 1)
         return left, self._interval_ns
 
     def set(self, after_ns: int, interval_ns: int) -> None:
-        """Set the alarm; 0 takes it away."""
+        """Set the alarm; 0 cancels it."""
         self._due_ns = self._session.now + after_ns if after_ns else FOREVER
         self._interval_ns = interval_ns if after_ns else 0
         if self._task is not None:
-            self._baton.wake(self._task)
+            self._scheduler.wake(self._task)
         elif after_ns:
-            self._task = self._baton.spawn(self._wait, daemon=True)
+            self._task = self._scheduler.spawn(self._wait, daemon=True)
 
     def _wait(self) -> None:
         while True:
-            if self._baton.wait(self._due_ns) or self._session.now < self._due_ns:
-                # It has been set anew.
+            if self._scheduler.wait(self._due_ns) or self._session.now < self._due_ns:
+                # It has been set again.
                 continue
             self._due_ns = self._due_ns + self._interval_ns if self._interval_ns else FOREVER
             if self.handler != signal.SIG_IGN:
-                self._baton.interrupt_main(self._call)
+                self._scheduler.interrupt_main(self._call)
 
     def _call(self) -> None:
         if self.handler == signal.SIG_DFL:
@@ -71,16 +71,16 @@ class Alarm:
         self.handler(int(signal.SIGALRM), frame)
 
 
-def patch_alarm(session: Session, baton: Scheduler) -> None:
-    """Replace the functions of `signal` that set an alarm, wait for one, or say what is done then."""
-    alarm = Alarm(session, baton)
+def patch_alarm(session: Session, scheduler: Scheduler) -> None:
+    """Replace the functions of `signal` that set an alarm, wait for one, or set and return its handler."""
+    alarm = Alarm(session, scheduler)
     real_signal, real_getsignal, real_getitimer = wallclock.set_signal, wallclock.signals.getsignal, signal.getitimer
 
     def set_alarm(seconds: Any) -> int:
         length = operator.index(seconds) % 2**32
         before, _ = alarm.left_ns()
         alarm.set(length * NS_PER_S, 0)
-        # Whole seconds, and not 0 as long as there is an alarm.
+        # Whole seconds, and not 0 while an alarm is pending.
         return max(round(before / NS_PER_S), 1) if before else 0
 
     def getitimer(which: Any) -> tuple[float, float]:
@@ -103,7 +103,7 @@ def patch_alarm(session: Session, baton: Scheduler) -> None:
         before = real_signal(number, handler)
         if number != signal.SIGALRM:
             return before
-        # It was good enough for the signal, which is the runtime's own.
+        # The handler was valid for the signal, which the runtime itself uses.
         real_signal(number, before)
         before, alarm.handler = alarm.handler, handler
         return before
@@ -114,8 +114,8 @@ def patch_alarm(session: Session, baton: Scheduler) -> None:
     replace(signal, "alarm", set_alarm, (1, 1))
     replace(signal, "setitimer", setitimer, (2, 3))
     replace(signal, "getitimer", getitimer, (1, 1))
-    replace(signal, "pause", baton.pause, (0, 0))
-    # Those of `signal` call them, and make numbers of what has a name there, and names again.
+    replace(signal, "pause", scheduler.pause, (0, 0))
+    # Those of `signal` call them, and convert numbers to enum members and back.
     replace(wallclock.signals, "signal", set_handler, (2, 2))
     replace(
         wallclock.signals, "getsignal", lambda n: alarm.handler if n == signal.SIGALRM else real_getsignal(n), (1, 1)

@@ -9,7 +9,7 @@ from tuisim.runtime import wallclock
 
 
 class Channel:
-    """Commands come in without blocking; events go out at once.
+    """Receives commands without blocking and sends events immediately.
 
     Args:
         command_fd: Read end of the command pipe.
@@ -22,7 +22,7 @@ class Channel:
         self._rest = b""
 
     def send(self, event: Message) -> None:
-        """Send an event; a host that is gone is no error here."""
+        """Send an event. A host that no longer exists is not an error."""
         data = event.encode()
         try:
             while data:
@@ -31,7 +31,7 @@ class Channel:
             pass
 
     def receive(self) -> list[Message]:
-        """Return the commands that have come in."""
+        """Return the commands that have arrived, without blocking."""
         try:
             data = os.read(self.command_fd, 65536)
         except BlockingIOError:
@@ -40,5 +40,5 @@ class Channel:
         return [parse_command(line) for line in lines]
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait for a command in real time; return whether one has come."""
+        """Block until a command arrives or the real time is over; return whether one has arrived."""
         return bool(wallclock.select_files([self.command_fd], [], [], max(0.0, timeout_s))[0])

@@ -19,14 +19,14 @@ from tuisim.runtime.replacement import replace
 from tuisim.runtime.session import Session
 
 EPOCH_S = 1_577_836_800
-"""Every run begins on 1 January 2020, 00:00 UTC."""
+"""Every run starts on 1 January 2020, 00:00 UTC."""
 
 LONGEST_SLEEP_S = 9_000_000_000
 """The real functions count nanoseconds in 63 bits."""
 
 
 def patch_time(session: Session) -> None:
-    """Replace the functions of `time` in place; what was imported from it before stays real."""
+    """Replace the functions of `time` in place; names imported from it before keep the real functions."""
     cost = session.sim.spec.profile.clock_read_ns
     real_sleep = time.sleep
 
@@ -49,7 +49,7 @@ def patch_time(session: Session) -> None:
     def sleep(seconds: Any) -> None:
         length = seconds if isinstance(seconds, float) else operator.index(seconds)
         if not 0 <= length < LONGEST_SLEEP_S:
-            # Says what is wrong.
+            # Raises the proper error.
             real_sleep(seconds)
         session.spend(round(length * NS_PER_S))
 
@@ -59,7 +59,7 @@ def patch_time(session: Session) -> None:
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):
         replace(time, name, clock, (0, 0))
         replace(time, f"{name}_ns", clock_ns, (0, 0))
-    # The real ones look whether there is such a clock.
+    # The real functions check whether the clock exists.
     gettime, gettime_ns = time.clock_gettime, time.clock_gettime_ns
     replace(time, "clock_gettime", lambda clock: (gettime(clock), wall())[1], (1, 1))
     replace(time, "clock_gettime_ns", lambda clock: (gettime_ns(clock), wall_ns())[1], (1, 1))
@@ -67,7 +67,7 @@ def patch_time(session: Session) -> None:
 
 
 def _patch_calendar(wall: Callable[[], float]) -> None:
-    """Let the functions that write a time down take the simulated one where they are given none."""
+    """Make formatting functions default to the simulated time."""
     localtime, gmtime, ctime = time.localtime, time.gmtime, time.ctime
     strftime, asctime = time.strftime, time.asctime
 
@@ -79,10 +79,10 @@ def _patch_calendar(wall: Callable[[], float]) -> None:
 
 
 def patch_datetime(session: Session, folder: str) -> None:
-    """Give the program, its own modules and the library a `datetime` that tells simulated time.
+    """Give the program, its own modules and the library a `datetime` with simulated time.
 
-    Everybody else keeps the real module: compiled ones, such as those of pandas, build on
-    the real classes and crash on others.
+    All other modules keep the real one: compiled code, such as that of pandas, relies on
+    the real classes and crashes on others.
     """
     real_import = builtins.__import__
     shadow: list[types.ModuleType] = []
@@ -112,7 +112,7 @@ def patch_datetime(session: Session, folder: str) -> None:
 
 
 def _simulated_datetime(session: Session, module: types.ModuleType) -> types.ModuleType:
-    """Return a copy of `datetime` whose `now`, `utcnow` and `today` tell simulated time."""
+    """Return a copy of `datetime` whose `now`, `utcnow` and `today` return simulated time."""
     cost = session.sim.spec.profile.clock_read_ns
     real_datetime, real_date = module.datetime, module.date
 
@@ -157,7 +157,7 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
         setattr(shadow, replaced.__name__, replacement)
 
     def reduce_class(one: Any) -> Any:
-        # Pickled as the real classes: what is written can be read without this program.
+        # Pickled as the real classes: the data can be loaded without this program.
         return (type, (one.min,)) if one in real_of else one.__qualname__
 
     copyreg.pickle(LikeTheReal, reduce_class)
@@ -165,7 +165,7 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
 
 
 def _look_like(replacement: Any, real: Any) -> None:
-    """Let a replaced class and what is made of it be shown and pickled as the real ones."""
+    """Give a replaced class and its instances the repr and pickle form of the real one."""
     replacement.__module__, replacement.__qualname__, replacement.__doc__ = "datetime", real.__name__, real.__doc__
     for name, part in vars(replacement).items():
         if isinstance(part, classmethod):
@@ -173,7 +173,7 @@ def _look_like(replacement: Any, real: Any) -> None:
 
     def show(self: Any) -> str:
         text = real.__repr__(self)
-        # The real class is shown with its module, classes derived from it are not.
+        # The repr of the real class contains its module, that of derived classes does not.
         return f"datetime.{text}" if type(self) is replacement else str(text)
 
     def reduce(self: Any, protocol: Any) -> Any:
@@ -184,7 +184,7 @@ def _look_like(replacement: Any, real: Any) -> None:
 
 
 def patch_process_times(session: Session) -> None:
-    """Let the time that a process has used be the simulated time that has passed."""
+    """Make process times equal to the elapsed simulated time."""
     real_times = os.times
 
     def times() -> Any:
@@ -195,7 +195,7 @@ def patch_process_times(session: Session) -> None:
 
 
 def finish_resource(session: Session, module: types.ModuleType) -> None:
-    """Let `resource` tell the same process times as `os.times`."""
+    """Make `resource` report the same process times as `os.times`."""
     real_usage = module.getrusage
 
     def getrusage(who: Any) -> Any:
@@ -207,7 +207,7 @@ def finish_resource(session: Session, module: types.ModuleType) -> None:
 
 
 def finish_pandas(session: Session, module: types.ModuleType) -> None:
-    """Let pandas' own "now" be simulated time; its compiled code does not look at `time`."""
+    """Make "now" of pandas simulated time; its compiled code does not call `time`."""
     cost = session.sim.spec.profile.clock_read_ns
     stamp, period = module.Timestamp, module.Period
 
@@ -241,12 +241,12 @@ def finish_pandas(session: Session, module: types.ModuleType) -> None:
 
 
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
-    """Return the function called at the top of each loop body.
+    """Return the function called at the start of each loop body.
 
     Args:
         session: The run.
-        turns: So many turns in which no time passed …
-        cost_ns: … cost this much.
+        turns: After this number of iterations without time passing …
+        cost_ns: … this much time passes.
     """
     left, mark = turns, -1
 

@@ -1,7 +1,7 @@
-"""Steering a run: commands from the host, pacing against the wall clock, user actions.
+"""Control of a run: commands from the host, pacing against the wall clock, user actions.
 
-User actions take effect right before a tick and are written down with it, so that a
-run can be repeated to the same bits.
+User actions take effect right before a tick and are recorded with it, so that a
+run can be repeated bit by bit.
 """
 
 from __future__ import annotations
@@ -28,29 +28,29 @@ if TYPE_CHECKING:
     from tuisim.runtime.session import Session
 
 LIVE = 1
-"""Bit of `Session.slow`: the steering is asked before ticks."""
+"""Bit of `Session.slow`: the control is called before ticks."""
 STOPPED = "stopped"
-"""Why a run ends that the user stops."""
+"""How a run ends that the user stops."""
 SLICE_S = 0.02
-"""Longest uninterrupted real wait."""
+"""Longest uninterrupted wait in real time."""
 BEHIND_S = 0.25
-"""A run that has fallen further behind than this starts its pace anew."""
+"""A run that is later than this restarts its pace."""
 STOP_GRACE_S = 0.2
-"""Real time that a program's own cleaning up gets."""
+"""Real time for the program's cleanup after a stop."""
 FAST_SLICE_TICKS = 64
-"""Ticks between two looks at the commands in a run without pacing."""
+"""Ticks between two checks for commands in a run without pacing."""
 
 
 class RunControl:
-    """The host's hand on the run.
+    """Lets the host control the run.
 
     Args:
         channel: Pipes to the host.
         folder: Run folder, for the user actions.
         live: Whether the run is paced and can be paused.
         speed: 1.0 is real time, 0 as fast as possible; a run that is not live is not paced.
-        paused: Begin standing still.
-        script: User actions that are known already, in the order of their ticks.
+        paused: Whether to start paused.
+        script: Known user actions, in the order of their ticks.
     """
 
     def __init__(
@@ -66,24 +66,24 @@ class RunControl:
         self._waiting: deque[Message] = deque()
         self._reason = "asked"
         self._rushing = False
-        """Whether the pace is left aside until the run stands still."""
+        """Whether pacing is suspended until the run pauses."""
         self.debugged = False
-        """Whether the debugger is to be asked before and after ticks."""
+        """Whether the debugger is called before and after ticks."""
         self.holding = False
-        """Whether the run stands still and commands are waited for."""
+        """Whether the run is paused and waits for commands."""
         self.between_ticks = False
-        """While it stands still: whether no code of the program runs before the next tick, or since the last."""
+        """While paused: whether no code of the program runs between here and the next tick, or since the last."""
         self._actions_fd = -1
         self._stop_asked_at: float | None = None
         self.answers: deque[str | None] = deque()
-        """Answers to input() that have come in."""
+        """Answers to input() that have arrived."""
         self.messages: list[Any] = []
-        """What the host's responder has said so far."""
+        """All messages of the host's responder."""
 
     # Commands
 
     def receive(self, session: Session) -> None:
-        """Read the commands that have come in; user actions wait for the next tick."""
+        """Process the commands that have arrived; user actions wait for the next tick."""
         for command in self._channel.receive():
             match command:
                 case protocol.Stop():
@@ -105,8 +105,8 @@ class RunControl:
                 case _:
                     session.debug().take(command)
 
-    def let_on(self, at_full_speed: bool = False) -> None:
-        """Let the run go on, to the next moment at which the debugger holds it."""
+    def resume(self, at_full_speed: bool = False) -> None:
+        """Resume the run until the debugger pauses it again."""
         self._paused, self._steps, self._rushing = False, 0, at_full_speed
 
     @property
@@ -119,33 +119,33 @@ class RunControl:
         if session.debugger is not None:
             session.debugger.forget_goals()
 
-    def stop_asked(self) -> None:
-        """Begin the grace time."""
+    def begin_grace(self) -> None:
+        """Start the grace period of a stop."""
         self._stop_asked_at = wallclock.monotonic()
 
     def grace_is_over(self) -> bool:
-        """Whether the program has had its real time for cleaning up."""
+        """Whether the real time for the program's cleanup is over."""
         return self._stop_asked_at is not None and wallclock.monotonic() - self._stop_asked_at > STOP_GRACE_S
 
     # Right before ticks
 
     @property
     def wanted(self) -> bool:
-        """Whether it must be asked before ticks: the run is live, actions are still to come, or the debugger asks."""
+        """Whether it must be called before ticks: the run is live, actions are pending, or the debugger needs it."""
         return self.live or self.debugged or bool(self._script)
 
     def before_ticks(self, session: Session, most: int) -> int:
-        """Wait until ticks may be done.
+        """Block until ticks may run.
 
         Args:
             session: The run.
-            most: How many are wanted.
+            most: Number of ticks that the caller wants.
 
         Returns:
-            How many to do now, at least 1.
+            Number of ticks to run now, at least 1.
 
         Raises:
-            StopProgram: the run is to stop.
+            StopProgram: the run has to stop.
         """
         self.receive(session)
         self._apply_actions(session)
@@ -153,7 +153,7 @@ class RunControl:
             session.checkpoint(before_tick=True)
             return most
         if self._script:
-            # The next one must find its tick.
+            # The next action must find its tick.
             most = min(most, self._script[0].tick - session.sim.tick)
         if self.debugged:
             debugger = session.debug()
@@ -171,13 +171,13 @@ class RunControl:
         return self._pace(session, most)
 
     def hold(self, session: Session, moment: protocol.Paused) -> None:
-        """Stand still until told to go on, or to stop.
+        """Pause the run; block until it is resumed or stopped.
 
         Args:
             session: The run.
-            moment: Where it stands. User actions take effect at once only right before a tick.
+            moment: Where it pauses. User actions take effect immediately only right before a tick.
         """
-        # From now on it is steered, however it began.
+        # The run is live from here on, however it started.
         self.live, session.slow = True, session.slow | LIVE
         self._paused, self._steps, self._rushing = True, 0, False
         self.holding, self.between_ticks = True, moment.ordinal in (AFTER_TICK, BEFORE_NEXT_TICK)
@@ -197,8 +197,8 @@ class RunControl:
         if not self._paused:
             self._channel.send(protocol.Resumed())
 
-    def was_there(self, session: Session, kind: type[Answer | Reply]) -> bool:
-        """Apply the next known action if it is of a kind, and came here when it was made: time stood still for it."""
+    def replay_next(self, session: Session, kind: type[Answer | Reply]) -> bool:
+        """Apply the next known action if it has this type and was made here, while simulated time did not pass."""
         if not self._script or self._script[0].tick > session.sim.tick:
             return False
         action = self._script[0].action
@@ -208,18 +208,18 @@ class RunControl:
         self.apply(session, action)
         return True
 
-    def stand_still_for(self, session: Session, kind: type[Answer | Reply], question: Message) -> None:
-        """Ask the host, and let no simulated time pass until its answer is there and applied.
+    def wait_for_reply(self, session: Session, kind: type[Answer | Reply], question: Message) -> None:
+        """Ask the host, and block until its answer is applied. No simulated time passes.
 
         Args:
             session: The run.
-            kind: Of the answer.
-            question: The event that asks for it.
+            kind: Type of the answer.
+            question: Event that asks for it.
 
         Raises:
-            StopProgram: the run is to stop.
+            StopProgram: the run has to stop.
         """
-        # Commands are taken here, not where the signal that announces them strikes.
+        # Commands are processed here, not in the handler of the signal that announces them.
         self.holding = True
         self._channel.send(question)
         while not (here := [one for one in self._waiting if isinstance(one, kind)]) and session.stop_reason is None:
@@ -262,15 +262,15 @@ class RunControl:
             self.apply(session, self._waiting.popleft())
 
     def apply(self, session: Session, action: Message) -> None:
-        """Carry out a user action now, right before the next tick, and write it down.
+        """Apply a user action now, right before the next tick, and record it.
 
         Raises:
-            TypeError: the message is none.
+            TypeError: the message is not a user action.
         """
         sim = session.sim
         match action:
             case protocol.Stop():
-                # No change of the world, and not counted as one.
+                # Does not change the world, and is not counted as a change.
                 session.ask_stop(STOPPED, STOPPED)
                 return
             case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
@@ -292,12 +292,12 @@ class RunControl:
         try:
             self._write_down(sim.tick, action)
         except OSError as error:
-            # Not written down it would be no run that can be run again.
+            # Without this record the run could not be repeated.
             session.ask_stop(DISK_FULL, f"what was done cannot be written down: {error.strerror}")
 
     def write_down_stop(self, tick: int) -> None:
-        """Note that the stop reaches the program right before the tick after `tick`."""
-        # Without it a re-run compares what there is.
+        """Record that the stop reaches the program right before the tick after `tick`."""
+        # Without it a re-run compares what both runs have.
         with suppress(OSError), open(self._folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
             file.write(json.dumps({"tick": tick}))
 

@@ -1,4 +1,4 @@
-"""Waits for files, pipes and sockets in simulated time: `select`, `selectors` and `socket`."""
+"""Waiting for files, pipes and sockets in simulated time: `select`, `selectors` and `socket`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tuisim.runtime.session import THREADS, Session
 Found = TypeVar("Found")
 
 POLL_NS = 1_000_000
-"""How often a wait with threads behind it looks for what they did."""
+"""Interval at which a wait checks for the effects of other threads."""
 _NS_PER_MS = 1_000_000
 
 _SELECTORS = {
@@ -26,13 +26,13 @@ _SELECTORS = {
     "KqueueSelector": "kqueue",
     "DevpollSelector": "devpoll",
 }
-"""Classes of `selectors`, and the class of `select` that each is built on."""
+"""Selector classes, and the class of `select` that each is based on."""
 _READS = ("_accept", "recv", "recv_into", "recvfrom", "recvfrom_into", "recvmsg", "recvmsg_into")
 _WRITES = ("send", "sendto", "sendmsg")
 
 
 class FileWaits:
-    """Looks at the real files without waiting, and waits on the simulated clock.
+    """Polls real files without blocking, and waits on the simulated clock.
 
     Args:
         session: The run.
@@ -44,11 +44,11 @@ class FileWaits:
         self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
 
     def until_found(self, look: Callable[[], Found], timeout_ns: int | None) -> Found:
-        """Return what a look finds, as soon as it finds something; what it finds last when the time is over.
+        """Poll until something is found or the timeout is over; return the last result.
 
         Args:
-            look: Looks without waiting; what it finds is empty if there is nothing.
-            timeout_ns: Longest simulated time to wait, at most 0 for one look; None for as long as it takes.
+            look: Polls without blocking; returns something falsy if nothing is ready.
+            timeout_ns: Longest simulated time to wait; at most 0 polls once, None waits indefinitely.
         """
         session = self._session
         found = look()
@@ -66,11 +66,11 @@ class FileWaits:
     # select
 
     def patch_select(self) -> None:
-        """Replace what waits in the module `select`."""
+        """Replace the blocking functions of `select`."""
         real = self._select
 
         def simulated(readers: Any, writers: Any, others: Any, timeout: Any = None) -> Any:
-            # The real one says what is wrong with its arguments.
+            # The real function validates the arguments.
             found = real(readers, writers, others, 0 if timeout is None or timeout >= 0 else timeout)
             if any(found) or timeout == 0:
                 return found
@@ -92,7 +92,7 @@ class FileWaits:
     # selectors
 
     def finish_selectors(self, module: types.ModuleType) -> None:
-        """Let every selector wait in simulated time; they look at the files by the real functions."""
+        """Let every selector wait in simulated time; they poll the files with the real functions."""
         selector: Any = module
         selector.SelectSelector._select = staticmethod(self._select)
         for name in ("SelectSelector", *_SELECTORS):
@@ -113,7 +113,7 @@ class FileWaits:
     # socket
 
     def finish_socket(self, module: types.ModuleType) -> None:
-        """Let sockets that may wait do so in simulated time."""
+        """Let blocking sockets wait in simulated time."""
         sockets: Any = module.socket
         for names, writes in ((_READS, False), (_WRITES, True)):
             for name in names:
@@ -123,7 +123,7 @@ class FileWaits:
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
     def _wait_for_socket(self, socket: Any, writes: bool) -> None:
-        """Return when it can be read or written; raise TimeoutError after its time."""
+        """Block until the socket can be read or written; raise TimeoutError after its timeout."""
         timeout_s = socket.gettimeout()
         if timeout_s == 0.0:
             return
@@ -144,7 +144,7 @@ class FileWaits:
         @wraps(real)
         def sendall(socket: Any, data: Any, flags: int = 0) -> None:
             rest = memoryview(data).cast("B")
-            # As much at a time as there is room for: whoever reads may be another thread of the program.
+            # As much at a time as fits: the reader may be another thread of the program.
             while len(rest):
                 rest = rest[send(socket, rest, flags | _dont_wait()) :]
 
@@ -184,18 +184,18 @@ def _dont_wait() -> int:
 
 
 def _nanoseconds(timeout: Any, per_unit: int) -> int | None:
-    """Return a time limit in nanoseconds; None for one that is not given."""
+    """Return a timeout in nanoseconds; None if there is none."""
     return None if timeout is None else round(timeout * per_unit)
 
 
 class _Polling:
-    """Stands in for an object that polls files: all but its waiting is done by the real one.
+    """Wraps an object that polls files; only the waiting is replaced.
 
     Args:
         waits: How to wait.
-        real: The object.
-        method: Name of its method that waits.
-        per_unit: Nanoseconds that one of its time limit stands for.
+        real: The wrapped object.
+        method: Name of its blocking method.
+        per_unit: Nanoseconds per unit of its timeout.
     """
 
     def __init__(self, waits: FileWaits, real: Any, method: str, per_unit: int) -> None:
@@ -205,8 +205,8 @@ class _Polling:
         return getattr(self._real, name)
 
     def poll(self, timeout: Any = None, *more: Any) -> Any:
-        """Return the events, waiting for them in simulated time."""
-        # Less than nothing means without end, as in the real one.
+        """Return the events; blocks in simulated time."""
+        # Negative means without limit, as in the real one.
         limit = None if timeout is None or timeout < 0 else _nanoseconds(timeout, self._per_unit)
         return self._waits.until_found(lambda: getattr(self._real, self._method)(0, *more), limit)
 
@@ -218,13 +218,13 @@ def _epoll_class(waits: FileWaits, real: Any) -> type:
 
         @classmethod
         def fromfd(cls, fd: int) -> epoll:
-            """Return one that stands for a descriptor."""
+            """Return an epoll object for a descriptor."""
             made = cls.__new__(cls)
             _Polling.__init__(made, waits, real.fromfd(fd), "poll", NS_PER_S)
             return made
 
         def poll(self, timeout: Any = None, maxevents: int = -1) -> Any:
-            """Return the events, waiting for them in simulated time."""
+            """Return the events; blocks in simulated time."""
             return super().poll(timeout, maxevents)
 
         def __enter__(self) -> epoll:

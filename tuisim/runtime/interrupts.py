@@ -1,7 +1,7 @@
-"""Signals: a command has come, the program must be stopped again, an instant takes too long.
+"""Signal handlers: a command has arrived, a stop must be repeated, an instant takes too long.
 
-A handler may raise only in the program's own code. Inside the runtime it just sets a
-bit, so that core code is never unwound half way; whose code it is, the frames say.
+A handler may raise only in the program's own code. Inside the runtime it only sets a
+bit, so that core code is never unwound halfway; the frames show whose code is running.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ STACK_FILE = "stack.txt"
 
 
 def die_with_host(lifeline_fd: int) -> None:
-    """Let the end of the host end this process and its group at once, even inside a long C call.
+    """Make the kernel kill this process and its group when the host ends, even inside a long C call.
 
     Args:
-        lifeline_fd: Read end of a pipe that nothing is ever written to. When the host is
-            gone the pipe ends, and the kernel sends SIGIO, whose default is to kill.
+        lifeline_fd: Read end of a pipe that nothing is ever written to. When the host
+            ends, the pipe closes and the kernel sends SIGIO, whose default action is to kill.
     """
     fcntl.fcntl(lifeline_fd, fcntl.F_SETOWN, -os.getpgrp())
     fcntl.fcntl(lifeline_fd, fcntl.F_SETFL, fcntl.fcntl(lifeline_fd, fcntl.F_GETFL) | os.O_ASYNC)
     if wallclock.select_files([lifeline_fd], [], [], 0)[0]:
-        # The host went before the signal was asked for.
+        # The host ended before the signal was requested.
         wallclock.exit_process(1)
 
 
@@ -42,7 +42,7 @@ class Interrupts:
 
     Args:
         session: The run.
-        soft_codes: Code objects of the runtime inside which a handler may raise all the same.
+        soft_codes: Code objects of the runtime inside which a handler may raise nevertheless.
     """
 
     def __init__(self, session: Session, soft_codes: frozenset[types.CodeType]) -> None:
@@ -55,13 +55,13 @@ class Interrupts:
         self._stall_now, self._stall_s = -1, 0.0
 
     def install(self, folder: Path) -> None:
-        """Begin to listen.
+        """Install the handlers.
 
         Args:
-            folder: Run folder; SIGUSR2 writes the stack there, also from inside a long C call.
+            folder: Run folder; SIGUSR2 writes the stack there, even inside a long C call.
         """
         self._stack_file = os.fdopen(private(str(folder / STACK_FILE), os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w")
-        # What ends the process from inside, such as SIGSEGV, is written there too.
+        # Crashes such as SIGSEGV are written there, too.
         faulthandler.enable(self._stack_file, all_threads=False)
         faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
         signal.signal(signal.SIGUSR1, self._on_command)
@@ -72,7 +72,7 @@ class Interrupts:
             wallclock.set_timer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)
 
     def remove(self) -> None:
-        """Stop listening: the program is over. Any thread may end it, but only the main one can change handlers."""
+        """Disarm the handlers when the program is over. Any thread may call this; only the main one can remove them."""
         self._removed = True
         wallclock.set_timer(signal.ITIMER_REAL, 0.0)
         wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)
@@ -83,7 +83,7 @@ class Interrupts:
             return
         session.slow |= ATTENTION
         if session.steering.holding:
-            # Commands are waited for, maybe in another thread: it takes them from the pipe itself.
+            # The run waits for commands, maybe in another thread, which reads them from the pipe itself.
             return
         if self._may_raise(frame):
             try:
@@ -92,7 +92,7 @@ class Interrupts:
                 self._raise_again_later()
 
     def _raise_again_later(self) -> None:
-        # A program that swallows the stop gets it again and again, until the host kills it.
+        # A program that catches the stop gets it again and again, until the host kills it.
         if self._session.stop_reason is not None and not self._timer_on:
             self._timer_on = True
             wallclock.set_timer(signal.ITIMER_REAL, RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S)
@@ -114,7 +114,7 @@ class Interrupts:
             session.checkpoint()
 
     def _may_raise(self, frame: types.FrameType | None) -> bool:
-        """Whether the program's own code, or the library it called, is what is being carried out."""
+        """Return whether code of the program, or of the library that it called, is running."""
         if self.main_is_parked or (frame is not None and frame.f_code in self._soft_codes):
             return True
         while frame is not None:

@@ -1,4 +1,4 @@
-"""What a program may not do: start processes, or take all the memory. Not a sandbox."""
+"""Restrictions on programs: no processes, limited memory. Not a sandbox."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ MEMORY_LIMIT_BYTES = 1 << 30
 """Address space of the child; beyond it the program gets a MemoryError."""
 
 STACK_BYTES = 8 << 20
-"""Of a thread. It costs memory only as far as it is used."""
+"""Stack of a thread. It uses memory only as needed."""
 STACKS_KEPT = 8
-"""So many stacks of threads that are over may still be there."""
+"""Number of stacks of finished threads that may still be allocated."""
 
 _PROCESS_CALLS = (
     "fork", "forkpty", "posix_spawn", "posix_spawnp",
@@ -25,7 +25,7 @@ _PROCESS_CALLS = (
 
 
 def limit_memory(threads: int = 0) -> None:
-    """Give the process a limit of address space, with room for the stacks of so many threads above it."""
+    """Limit the process's address space, with additional room for the stacks of `threads` threads."""
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     stack = wallclock.stack_size() or STACK_BYTES
     wanted = MEMORY_LIMIT_BYTES + (threads and threads + STACKS_KEPT) * stack
@@ -33,7 +33,7 @@ def limit_memory(threads: int = 0) -> None:
     try:
         resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
     except (OSError, ValueError):
-        # macOS knows the limit but does not keep it; the run is merely less protected there.
+        # macOS accepts the limit without enforcing it; the run is merely less protected there.
         return
 
 
@@ -45,9 +45,9 @@ def _refusal(name: str) -> Any:
 
 
 def refuse_processes() -> None:
-    """Let the calls of `os` that start processes say that they are not allowed."""
+    """Make the functions of `os` that start processes raise PermissionError."""
     for name in _PROCESS_CALLS:
         if hasattr(os, name):
             replace(os, name, _refusal(f"os.{name}"))
-    # The debugger forks to look at values: nothing of the program's may run then.
+    # The debugger forks to inspect values: no code of the program may run then.
     replace(os, "register_at_fork", lambda **_functions: None)

@@ -1,4 +1,4 @@
-"""From source text to code: loop hooks, prelude, and what a prelude lacks on this robot."""
+"""From source text to code: loop hooks, prelude, and names of the prelude without a part on this robot."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tuisim.config.preludes import PRELUDE_TEXTS
 
 
 class MissingPart:
-    """What a name of the prelude stands for when the robot has no such part.
+    """Placeholder for a name of the prelude when the robot has no such part.
 
     Args:
         name: The name.
-        error: Why it could not be made; raised again by whatever uses it.
+        error: The error on creating the part; raised again on any use.
     """
 
     __slots__ = ("_error", "_name")
@@ -23,7 +23,7 @@ class MissingPart:
     _error: Exception
 
     def __init__(self, name: str, error: Exception) -> None:
-        error.add_note(f"`{name}` is a name that the program found ready: it stands for parts of Default_Robot.")
+        error.add_note(f"`{name}` is a name of the prelude, for a part of Default_Robot.")
         object.__setattr__(self, "_name", name)
         object.__setattr__(self, "_error", error.with_traceback(None))
 
@@ -41,7 +41,7 @@ LOOP_HOOK = "__loop_turn__"
 
 
 class _LoopHooks(ast.NodeTransformer):
-    """Puts a call of the loop hook at the top of every loop body."""
+    """Inserts a call of the loop hook at the start of every loop body."""
 
     def _hooked(self, node: ast.For | ast.While | ast.AsyncFor) -> ast.AST:
         self.generic_visit(node)
@@ -66,10 +66,10 @@ def compile_program(text: str, file: str) -> types.CodeType:
 
 
 def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
-    """Yield the statements of a prelude: the name of the part that one makes, else nothing, and its code.
+    """Yield the statements of a prelude: the name of the part that it creates, or an empty string, and its code.
 
     Raises:
-        KeyError: there is no such prelude.
+        KeyError: no prelude has this name.
     """
     for statement in ast.parse(PRELUDE_TEXTS[name], PRELUDE_FILE).body:
         code = compile(ast.Module([statement], []), PRELUDE_FILE, "exec", dont_inherit=True)
@@ -81,7 +81,7 @@ def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
 
 
 def point_at_prelude(error: BaseException) -> None:
-    """Add to an error that is about a name of the prelude how a program comes by that name."""
+    """Add a note to an error about a name of the prelude: how the program can get that name."""
     if not isinstance(error, NameError) or not error.name:
         return
     statement = _statement_of(error.name)
@@ -99,7 +99,7 @@ def point_at_prelude(error: BaseException) -> None:
 
 
 def _statement_of(name: str) -> ast.stmt | None:
-    """Return the statement of the whole prelude that makes a name, None if there is none."""
+    """Return the statement of the whole prelude that defines a name; None if there is none."""
     for statement in ast.parse(PRELUDE_TEXTS["preloaded"]).body:
         match statement:
             case ast.ImportFrom(names=aliases):

@@ -1,4 +1,4 @@
-"""The program's own modules: found as Python finds them, and kept with the run, so that it can be repeated."""
+"""The program's own modules: found as Python finds them, and stored with the run, so that it can be repeated."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ _FOREIGN = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
 _INSTALLED = ("site-packages", "dist-packages")
 
 OWN_FILES: set[str] = set()
-"""Files of all modules of the program's own that were imported, wherever they are."""
+"""Files of all imported modules of the program's own."""
 
 
 def is_own(path: str) -> bool:
-    """Return whether a file may be the user's: neither Python's, nor an installed package's, nor ours."""
+    """Return whether a file may be the user's: not part of Python, an installed package, or this application."""
     return not path.startswith(_FOREIGN) and not any(name in path for name in _INSTALLED)
 
 
 class OwnLoader(SourceFileLoader):
-    """Loads a module from its text as it was when it was first read.
+    """Loads a module from the text that was read first.
 
     Args:
         module: The module.
@@ -38,26 +38,26 @@ class OwnLoader(SourceFileLoader):
         self._data = module.text.encode("utf-8", "surrogateescape")
 
     def get_data(self, path: str) -> bytes:
-        """Return the text, or what is in another file."""
+        """Return the stored text, or the contents of another file."""
         return self._data if path == self.path else super().get_data(path)
 
     def path_stats(self, path: str) -> NoReturn:
-        """Tell nothing of the file: compiled code beside it may be of another text."""
+        """Raise OSError: compiled code beside the file may belong to another text."""
         raise OSError
 
 
 class OwnModules(PathFinder):
-    """Finds every module that is in a file, and keeps a copy of those that are the user's.
+    """Finds modules in files, and stores a copy of those that are the user's.
 
     Args:
-        run_folder: Where they are kept.
-        known: What the imports of another run gave, which these are to give again.
+        run_folder: Where the copies are stored.
+        known: Modules of the run that is repeated; they are loaded instead of the files.
     """
 
     def __init__(self, run_folder: Path, known: Sequence[OwnModule]) -> None:
         self._run_folder = run_folder
         self._missed: dict[str, int] = {}
-        """How often a name was not there, after the first time, which is kept at once."""
+        """How often a name was not found, beyond the first time, which is stored at once."""
         self._known: dict[str, list[OwnModule]] = {}
         for module in known:
             self._known.setdefault(module.name, []).append(module)
@@ -65,9 +65,9 @@ class OwnModules(PathFinder):
     def find_spec(  # type: ignore[override]
         self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return how to load a module, None if there is none of that name."""
+        """Return how to load a module; None if it does not exist."""
         if known := self._known.get(fullname):
-            # One that was loaded anew had another text each time.
+            # A module that was reloaded may have had another text each time.
             return _spec_of(known.pop(0) if len(known) > 1 else known[0])
         spec = PathFinder.find_spec(fullname, path, target)
         module = OwnModule(fullname) if spec is None else _own_module(fullname, spec)
@@ -85,13 +85,13 @@ class OwnModules(PathFinder):
 
 
 def find_modules_for(run_folder: Path) -> None:
-    """Let what the program imports be kept with its run; what is there already, from another run, is given again."""
+    """Store modules that the program imports with its run; modules from a repeated run are loaded instead."""
     finders: list[Any] = sys.meta_path
     finders[finders.index(PathFinder)] = OwnModules(run_folder, read_modules(run_folder))
 
 
 def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
-    """What is to be kept of a module, None if it is not the user's, or compiled: such a one is taken where it is."""
+    """Return the module to store; None if it is not the user's or is compiled: those are loaded from their place."""
     folders = None if spec.submodule_search_locations is None else tuple(spec.submodule_search_locations)
     if spec.origin is None:
         return OwnModule(name, folders=folders) if folders and all(map(is_own, folders)) else None
@@ -101,7 +101,7 @@ def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
     try:
         data = loader.get_data(spec.origin)
     except (OSError, AttributeError):
-        # Python says what is wrong with it.
+        # Python reports the error.
         return None
     return OwnModule(name, spec.origin, folders, data.decode("utf-8", "surrogateescape"))
 

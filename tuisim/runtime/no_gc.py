@@ -1,6 +1,6 @@
-"""Imported early in the child: a start-up makes only things that stay, so looking for garbage is lost time.
+"""Imported early in the child: start-up creates only permanent objects, so garbage collection would waste time.
 
-The collector is switched on again right before the program's own first line.
+The collector is enabled again right before the program's first line.
 """
 
 from __future__ import annotations

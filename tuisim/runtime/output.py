@@ -1,4 +1,4 @@
-"""What the program prints, line by line into the run folder."""
+"""Writes what the program prints to the run folder, line by line."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class Output:
     def __init__(self, writer: OutputWriter) -> None:
         self._writer = writer
         self.place: Callable[[], tuple[int, int, int]] = lambda: (0, 0, 0)
-        """Gives tick, simulated ns and source line; set once the session exists."""
+        """Returns tick, simulated ns and source line; set once the session exists."""
         self.after_write: Callable[[], None] = lambda: None
         self.watch: Callable[[str, int], None] | None = None
-        """Called with text and stream of each row that was written, where somebody waits for one."""
+        """If set, called with text and stream of each written row."""
 
     def row(self, text: str, stream: int) -> None:
         """Write one row."""
@@ -32,11 +32,11 @@ class Output:
             self.watch(text, stream)
 
     def row_at(self, text: str, stream: int, tick: int, time_ns: int, line: int) -> None:
-        """Write one row that is of a tick and not of a moment between two."""
+        """Write one row that belongs to a tick, not to a time between two."""
         self._writer.write(text.encode(), tick, time_ns, line, stream)
 
     def close(self) -> None:
-        """Cut the file to its size."""
+        """Close the file and truncate it to its size."""
         self._writer.close()
 
 
@@ -44,7 +44,7 @@ class LineStream(io.TextIOBase):
     """`sys.stdout` or `sys.stderr` of the program.
 
     Args:
-        output: Where whole lines go.
+        output: Receives whole lines.
         stream: STDOUT or STDERR.
     """
 
@@ -54,36 +54,36 @@ class LineStream(io.TextIOBase):
     def __init__(self, output: Output, stream: int = STDOUT) -> None:
         self._output, self._stream = output, stream
         self._part = io.StringIO()
-        """What has no newline yet; a line may be put together of any number of prints."""
+        """Text without a newline yet; a line may be the result of any number of prints."""
 
     @property
     def name(self) -> str:
-        """As the real stream has it."""
+        """Name of the real stream."""
         return "<stdout>" if self._stream == STDOUT else "<stderr>"
 
     @property
     def buffer(self) -> ByteStream:
-        """For programs that write bytes."""
+        """Binary stream, for programs that write bytes."""
         return ByteStream(self)
 
     def reconfigure(self, **_settings: object) -> None:
-        """Lines are written at once and in UTF-8 whatever is asked for."""
+        """Do nothing: lines are always written at once and in UTF-8."""
 
     def writable(self) -> bool:
-        """Always."""
+        """Return True."""
         return True
 
     def write(self, text: str) -> int:
-        """Take text; whole lines are written at once."""
+        """Write text; whole lines are recorded at once."""
         if not isinstance(text, str):
             raise TypeError(f"write() argument must be str, not {type(text).__name__}")
         if "\n" not in text:
             self._part.write(text)
             if self._part.tell() > MAX_OUTPUT_BYTES:
-                # More than the file takes anyway, which says so, before it fills the memory.
+                # More than the file accepts anyway: write it before it fills the memory.
                 self.finish()
             return len(text)
-        # Taken first: should writing a row end the program, nothing is written twice.
+        # Taken first: if writing a row ends the program, nothing is written twice.
         *lines, rest = (self.take_part() + text).split("\n")
         self._part.write(rest)
         for line in lines:
@@ -92,35 +92,35 @@ class LineStream(io.TextIOBase):
         return len(text)
 
     def flush(self) -> None:
-        """Whole lines are out already; a part of a line waits for its end."""
+        """Do nothing: whole lines are written already, and a partial line waits for its end."""
 
     def finish(self) -> None:
-        """Write what has no newline yet."""
+        """Write the partial line."""
         if part := self.take_part():
             self._output.row(part, self._stream)
 
     def take_part(self) -> str:
-        """Return what has no newline yet, as written elsewhere from now on."""
+        """Return the partial line and clear it."""
         part, self._part = self._part.getvalue(), io.StringIO()
         return part
 
 
 class ByteStream(io.RawIOBase):
-    """The bytes below a line stream.
+    """The binary stream below a line stream.
 
     Args:
-        stream: Takes the text.
+        stream: Receives the text.
     """
 
     def __init__(self, stream: LineStream) -> None:
         self._stream = stream
 
     def writable(self) -> bool:
-        """Always."""
+        """Return True."""
         return True
 
     def write(self, data: Any) -> int:
-        """Take bytes; they are shown as UTF-8."""
+        """Write bytes, decoded as UTF-8."""
         taken = bytes(data)
         self._stream.write(taken.decode("utf-8", "replace"))
         return len(taken)

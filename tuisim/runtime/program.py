@@ -1,4 +1,4 @@
-"""Runs the program: its streams, its input, its module, and how it ended."""
+"""Runs the program: its streams, its input, its module, and how it ends."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from tuisim.runtime.tracebacks import point_at_namesake, report_error
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How the program ended, as in `protocol.Ended`."""
+    """How the program ended; fields as in `protocol.Ended`."""
 
     end: str
     exit_code: int = 0
@@ -46,19 +46,19 @@ class Outcome:
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 
-def _has_last_words(value: object) -> bool:
-    """Whether something of the program's is run when a value goes."""
+def _has_finalizer(value: object) -> bool:
+    """Return whether code of the program runs when a value is deleted."""
     words = hasattr(type(value), "__del__") or isinstance(value, types.GeneratorType | types.CoroutineType)
     return words and not isinstance(value, io.IOBase)
 
 
 def _is_data(value: object) -> bool:
-    """Whether a value is neither code nor a file that somebody may still write to."""
+    """Return whether a value is neither code nor an open file."""
     return not isinstance(value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase)
 
 
 def safe_text(write: Callable[[object], str], value: object) -> str:
-    """Return the `str` or `repr` of a value, or that there is none."""
+    """Return the `str` or `repr` of a value, or a placeholder if that fails."""
     try:
         return write(value)
     except BaseException:  # a program's own method may do anything
@@ -66,14 +66,14 @@ def safe_text(write: Callable[[object], str], value: object) -> str:
 
 
 class ProgramRunner:
-    """Everything the program sees of the process it runs in.
+    """The environment that the program sees in this process.
 
     Args:
         config: The run.
         session: The program's clock.
         output: Where its lines go.
-        baton: Its threads.
-        loop_hook: Called at the top of each loop body.
+        scheduler: The program's threads.
+        loop_hook: Called at the start of each loop body.
         leave: Ends the process at once, with an outcome.
     """
 
@@ -82,11 +82,11 @@ class ProgramRunner:
         config: RunConfig,
         session: Session,
         output: Output,
-        baton: Scheduler,
+        scheduler: Scheduler,
         loop_hook: Callable[[], None],
         leave: Callable[[Outcome], NoReturn],
     ) -> None:
-        self._config, self._session, self._output, self._baton = config, session, output, baton
+        self._config, self._session, self._output, self._scheduler = config, session, output, scheduler
         self._leave = leave
         has_own_folder = bool(config.path or config.module_folder)
         self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and has_own_folder
@@ -97,7 +97,7 @@ class ProgramRunner:
         self.stdout, self.stderr = LineStream(output), LineStream(output, STDERR)
         self._module = types.ModuleType("__main__")
         self.prepared: dict[str, int] = {}
-        """By name, the identity of what the prelude has made."""
+        """Identities of the objects that the prelude has created, by name."""
         self.code: types.CodeType | None = None
         """The program; None before it is compiled."""
         self.names = self._module.__dict__
@@ -105,30 +105,30 @@ class ProgramRunner:
         setattr(builtins, LOOP_HOOK, loop_hook)
 
     def run(self) -> Outcome:
-        """Run prelude and program to their end, whatever it is."""
+        """Run prelude and program to their end; never raises."""
         try:
             return self._run()
         except StopProgram as stop:
-            # What was written last had no room any more.
+            # The last write had no space.
             return Outcome(stop.end, 0, stop.summary)
 
     def _run(self) -> Outcome:
         try:
             self._prepare()
             self._execute()
-            self._baton.join_all()
+            self._scheduler.join_all()
             outcome = Outcome("finished")
-        except BaseException as error:  # whatever a program lets escape is an outcome, not an error of ours
+        except BaseException as error:  # any uncaught exception is an outcome of the program
             outcome = self._outcome_of(error)
         outcome = self._hold_at_end(outcome)
-        self._wind_up()
+        self._shut_down()
         self._finish_streams()
-        # One that struck a thread, an exit function or a `__del__` need not have come here.
+        # A stop in another thread, an exit function or a `__del__` need not have arrived here.
         stop = self._session.stop_reason
         return outcome if stop is None or outcome.end != "finished" else Outcome(stop.end, 0, stop.summary)
 
     def _hold_at_end(self, outcome: Outcome) -> Outcome:
-        """Let the debugger hold a program that is over before the instant that was wanted."""
+        """Let the debugger pause a program that ended before the requested instant."""
         if self._session.debugger is None or self._session.stop_reason is not None:
             return outcome
         try:
@@ -137,38 +137,38 @@ class ProgramRunner:
             return Outcome(stop.end, 0, stop.summary)
         return outcome
 
-    def _wind_up(self) -> None:
-        """Do what Python does at the end of a program: exit functions, open files, what is left of objects."""
+    def _shut_down(self) -> None:
+        """Do what Python does at the end of a program: exit functions, open files, finalizers."""
         try:
             atexit._run_exitfuncs()
             if self._session.stop_reason is not None:
-                # It holds on to the frames that it came through.
+                # Its traceback keeps frames alive.
                 self._session.stop_reason.with_traceback(None)
-            self._let_go()
-        except BaseException as error:  # the program is over: what still goes wrong in it is only told
+            self._clear_module()
+        except BaseException as error:  # the program is over: later errors are only reported
             self._thread_error(type(error), error, None)
 
-    def _let_go(self) -> None:
-        """Empty the program's module: what is run when an object goes still finds as many of its names as can be."""
-        for goes_now in (_has_last_words, _is_data):
-            for name in [name for name, value in self.names.items() if goes_now(value) and not name.startswith("__")]:
+    def _clear_module(self) -> None:
+        """Clear the program's module in such an order that finalizers still find most of its names."""
+        for removable in (_has_finalizer, _is_data):
+            for name in [name for name, value in self.names.items() if removable(value) and not name.startswith("__")]:
                 self.names.pop(name, None)
             gc.collect()
         self.names.clear()
         gc.collect()
 
     def _finish_streams(self) -> None:
-        """Write what the program printed without a line end."""
+        """Write the text that the program printed without a newline."""
         for stream in (self.stdout, self.stderr):
             try:
                 stream.finish()
             except LogError:
-                # The file is full, and says so itself.
+                # The file is full, and reports that itself.
                 continue
 
     def _prepare(self) -> None:
         sys.stdout, sys.stderr = self.stdout, self.stderr
-        # Also for whatever puts another stream in place of one and goes back to it.
+        # Also for code that replaces a stream and restores it.
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
         sys.argv = [self._file, *self._config.arguments]
         replace(sys, "excepthook", self._thread_error, (3, 3))
@@ -186,26 +186,26 @@ class ProgramRunner:
         module = self._module
         module.__dict__.update(__file__=self._file, __builtins__=builtins)
         sys.modules["__main__"] = module
-        # What is prepared for the program costs it nothing.
+        # The prelude is free of charge.
         self._session.free += 1
         for part, code in compile_prelude(self._config.prelude):
             try:
                 exec(code, module.__dict__)
-            except Exception as error:  # such as a sensor that this robot has not
+            except Exception as error:  # such as a sensor that this robot does not have
                 if not part:
                     raise
                 module.__dict__[part] = MissingPart(part, error)
         self._session.free -= 1
-        # Not before: a program called logging.py is not what the library means by `import logging`.
+        # Not earlier: a program named logging.py is not what the library means by `import logging`.
         folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.python_path]
         find_modules_for(self._config.folder)
         if self._starts_in_own_folder:
-            # Of a run that is repeated after the folder was removed, only what it opens there is missing.
+            # If a repeated run's folder no longer exists, only files that it opens there are missing.
             with suppress(OSError):
                 os.chdir(folder)
         self.prepared |= {name: id(value) for name, value in module.__dict__.items()}
-        # What is there now stays; the program's own garbage is looked for from here on.
+        # Existing objects stay; only the program's own garbage is collected from here on.
         gc.freeze()
         gc.enable()
         if self._config.debugged:
@@ -232,7 +232,7 @@ class ProgramRunner:
         point_at_prelude(error)
         point_at_namesake(error, self._session.program_file)
         report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
-        self._tell(report.text)
+        self._write_error(report.text)
         end = "deadlock" if isinstance(error, Deadlock) else "raised"
         return Outcome(end, 1, report.summary, report.text, report.line)
 
@@ -241,10 +241,10 @@ class ProgramRunner:
             number = 0
         elif isinstance(code, int):
             number = int.__index__(code)
-            # As Python has it for what is no exit status at all.
+            # As Python does for invalid exit statuses.
             number = number if abs(number) < 1 << 31 else -1
         else:
-            self._tell(safe_text(str, code))
+            self._write_error(safe_text(str, code))
             number = 1
         return Outcome("finished", number, f"the program ended itself with exit code {number}" if number else "")
 
@@ -257,31 +257,31 @@ class ProgramRunner:
             return
         point_at_prelude(error)
         point_at_namesake(error, self._session.program_file)
-        self._tell(report_error(error, self._session.program_file, self._config.text).text)
+        self._write_error(report_error(error, self._session.program_file, self._config.text).text)
 
     def _ignored_error(self, ignored: Any) -> None:
-        """Tell an error that Python cannot raise, such as in a `__del__`; a stop is raised again elsewhere."""
+        """Report an error that Python cannot raise, such as in a `__del__`; a stop is raised again elsewhere."""
         if isinstance(ignored.exc_value, StopProgram):
             self._session.stop_lost()
             return
-        # The address would be another one in every run.
+        # The address differs in every run.
         where = _ADDRESS.sub("", safe_text(repr, ignored.object))
-        self._tell(f"{ignored.err_msg or 'Exception ignored in'}: {where}")
+        self._write_error(f"{ignored.err_msg or 'Exception ignored in'}: {where}")
         self._thread_error(ignored.exc_type, ignored.exc_value, ignored.exc_traceback)
 
-    def _tell(self, text: str) -> None:
-        """Write down what went wrong."""
+    def _write_error(self, text: str) -> None:
+        """Write an error message to standard error."""
         try:
             for line in text.rstrip("\n").split("\n"):
                 self._output.row(line, STDERR)
         except LogError:
-            # The file is full, and says so itself.
+            # The file is full, and reports that itself.
             return
 
     # Input
 
     def _input(self, prompt: object = "") -> str:
-        """The program's input(): scripted answers, or the user's."""
+        """Replacement for input(): returns scripted answers, or the user's."""
         self.stdout.write(str(prompt))
         asked = self.stdout.take_part()
         answer: str | None
@@ -292,7 +292,7 @@ class ProgramRunner:
         else:
             answer = self._users_answer(asked)
         self._output.row(asked + (answer or ""), INPUT)
-        # Answers that are there already let no time pass: a stop comes between them.
+        # Answers that exist already let no time pass: a stop is checked between them.
         self._output.after_write()
         if answer is None:
             raise EOFError(NO_ANSWER)
@@ -300,9 +300,9 @@ class ProgramRunner:
 
     def _users_answer(self, asked: str) -> str | None:
         session, steering = self._session, self._session.steering
-        if not steering.was_there(session, Answer):
+        if not steering.replay_next(session, Answer):
             if self._config.time_waits:
-                steering.stand_still_for(session, Answer, InputWanted(asked))
+                steering.wait_for_reply(session, Answer, InputWanted(asked))
             else:
                 session.channel.send(InputWanted(asked))
         tick_ns = NS_PER_S // session.sim.spec.profile.tick_hz

@@ -1,4 +1,4 @@
-"""Chance that comes from the run's seed: random, os.urandom, and what is built on them."""
+"""Randomness from the run's seed: random, os.urandom, and everything based on them."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from tuisim.runtime.replacement import replace
 
 
 def patch_urandom(seed: int) -> None:
-    """Let the system's random bytes come from the seed: uuid4, secrets and numpy draw on them."""
+    """Derive the system's random bytes from the seed: uuid4, secrets and numpy use them."""
     draws = count()
     real_urandom = os.urandom
 
     def urandom(size: Any) -> bytes:
         length = operator.index(size)
-        # For less than nothing the real one says what is wrong.
+        # For negative sizes the real function raises the proper error.
         return stream(seed, next(draws), "urandom", length) if length >= 0 else real_urandom(length)
 
     replace(os, "urandom", urandom, (1, 1))
     if hasattr(os, "getrandom"):
-        # Its flags say where the real one takes them from.
+        # Its flags select a source of the real function.
         replace(os, "getrandom", lambda size, flags=0: urandom(size), (1, 2))
 
 
 def finish_uuid(seed: int, module: types.ModuleType) -> None:
-    """Let `uuid1` and `getnode` depend on simulated time and the seed, not on the machine."""
+    """Make `uuid1` and `getnode` depend on simulated time and the seed, not on the machine."""
     made_up: Any = module
     made_up._generate_time_safe = made_up._UuidCreate = None
-    # RFC 9562, 6.10: a node number that belongs to no network card has the lowest bit of its first byte set.
+    # RFC 9562, 6.10: in a node number without a network card the lowest bit of the first byte is set.
     made_up._node = int.from_bytes(stream(seed, 0, "uuid node", 6), "big") | 1 << 40
 
 
 def finish_random(seed: int, module: types.ModuleType) -> None:
-    """Let a generator that is given no seed take one from the run's."""
+    """Make a generator without a seed take one from the run's seed."""
     generator: Any = module.Random
     seeds = count()
     real_seed: Callable[..., None] = generator.seed
@@ -48,7 +48,7 @@ def finish_random(seed: int, module: types.ModuleType) -> None:
     def seed_from_run(self: Any, a: Any = None, version: int = 2) -> None:
         real_seed(self, f"{seed}/{next(seeds)}" if a is None else a, version)
 
-    # The module's own functions belong to a generator that is there already.
+    # The module's own functions belong to a generator that exists already.
     module.seed(seed)
     generator.seed = seed_from_run
     vars(module)["seed"] = vars(module)["_inst"].seed

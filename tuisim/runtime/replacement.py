@@ -1,4 +1,4 @@
-"""What stands in for a builtin passes for one: in class bodies, in `inspect` and `pickle`, and when it is printed."""
+"""Replacements for builtins that look like builtins: in class bodies, in `inspect` and `pickle`, and in their repr."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import Any
 _SAME = ("__name__", "__qualname__", "__module__", "__doc__", "__self__", "__text_signature__")
 
 
-class _StandIn:
-    """A callable that, as a builtin and unlike a function, does not become a method in a class body.
+class _Replacement:
+    """A callable that, like a builtin and unlike a function, does not become a method in a class body.
 
     Args:
-        real: What it stands in for.
+        real: The builtin that it replaces.
     """
 
     def __init__(self, real: Any) -> None:
@@ -36,17 +36,17 @@ class _StandIn:
         return repr(self._real)
 
     def __reduce_ex__(self, _protocol: object) -> str:
-        # By its name, as builtins are pickled: a copy is the thing itself.
+        # By its name, as builtins are pickled: a copy is the same object.
         return str(self._real.__qualname__)
 
 
-def stand_in(real: Any, does: Callable[..., Any], takes: tuple[int, int] | None = None) -> Any:
-    """Return what stands in for a builtin function.
+def replacement_for(real: Any, does: Callable[..., Any], takes: tuple[int, int] | None = None) -> Any:
+    """Return a replacement for a builtin function.
 
     Args:
         real: The builtin.
-        does: What is done instead.
-        takes: Least and most arguments, all of them by position: for any others the builtin says what is wrong.
+        does: The function to call instead.
+        takes: Smallest and largest number of positional arguments; for any others the builtin raises its error.
             Without it, `does` has a signature of its own.
     """
     if takes is None:
@@ -60,21 +60,21 @@ def stand_in(real: Any, does: Callable[..., Any], takes: tuple[int, int] | None 
                 return real(*given, **named)
             return does(*given)
 
-    return type(type(real).__name__, (_StandIn,), {"__call__": staticmethod(call)})(real)
+    return type(type(real).__name__, (_Replacement,), {"__call__": staticmethod(call)})(real)
 
 
 def replace(
     module: types.ModuleType, name: str, does: Callable[..., Any], takes: tuple[int, int] | None = None
 ) -> None:
-    """Let a function of a module do something else, and that of the module that it comes from.
+    """Replace a function of a module, and of the module that it comes from.
 
     Args:
-        module: Such as `os`, which has most of its functions from `posix`.
-        name: Of the function, a builtin or one in Python.
-        does, takes: As for `stand_in`.
+        module: Such as `os`, most of whose functions come from `posix`.
+        name: Name of the function, a builtin or one in Python.
+        does, takes: As for `replacement_for`.
     """
     real = getattr(module, name)
-    replacement = wraps(real)(does) if isinstance(real, types.FunctionType) else stand_in(real, does, takes)
+    replacement = wraps(real)(does) if isinstance(real, types.FunctionType) else replacement_for(real, does, takes)
     for place in (module, sys.modules.get(real.__module__)):
         if getattr(place, name, None) is real:
             setattr(place, name, replacement)

@@ -1,4 +1,4 @@
-"""What a run folder says about the run to do."""
+"""The run's configuration, read from its folder."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class RunConfig:
     """The part of `run.json` that the child needs."""
 
     folder: Path
-    """Of the run."""
+    """The run folder."""
     spec: RunSpec
     field: FieldFiles
     name: str
@@ -44,12 +44,12 @@ class RunConfig:
 
     @property
     def own_folder(self) -> str:
-        """Where the program's own modules are: where its file is, or what it says, or where it was started."""
+        """Folder of the program's own modules: that of its file, or the configured one, or the working directory."""
         return self.module_folder or os.path.dirname(wallclock.absolute(self.path or self.name))
 
     @property
     def debugged(self) -> bool:
-        """Whether the debugger is wanted from the first line on."""
+        """Whether the debugger is needed from the first line on."""
         return bool(self.breaks) or self.trace_from_tick is not None or self.hold_at is not None
 
 
@@ -57,7 +57,7 @@ def read_config(folder: Path) -> RunConfig:
     """Read `run.json`.
 
     Raises:
-        OSError, ValueError, KeyError, TypeError: the folder was not prepared by the host.
+        OSError, ValueError, KeyError, TypeError: the host has not prepared the folder.
     """
     data = json.loads((folder / "run.json").read_text("utf-8"))
     program, options = data["program"], data["options"]

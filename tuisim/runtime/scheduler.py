@@ -1,9 +1,9 @@
-"""Threads, one at a time: whoever holds the baton runs, and it changes hands only on a wait.
+"""Cooperative threads: one thread runs at a time, and the scheduler switches only when it waits.
 
-A thread that waits for simulated time, a lock or a motor gives the baton to the next
-thread that is ready; if none is, the clock moves on to the earliest time that somebody
-waits for. So the order in which threads run depends on the program alone. When nobody
-is ready and nobody waits for a time, that is a deadlock, and it is said at once.
+A thread that waits for simulated time, a lock or a motor lets the next ready thread run;
+if none is ready, the clock advances to the earliest time that a thread waits for. So
+the order in which threads run depends on the program alone. If no thread is ready and
+none waits for a time, that is a deadlock, which raises an error at once.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tuisim.runtime.session import STOPPING, THREADS, Session
 from tuisim.runtime.stop import Deadlock, StopProgram
 
 MOST_THREADS = 1000
-"""Each is a real one, of which a machine has only so many."""
+"""Each is a real thread, and a machine has only so many."""
 FOREVER = -1
 """A wait without a time limit."""
 
@@ -34,7 +34,7 @@ class ScheduledThread:
 
     def __init__(self, daemon: bool) -> None:
         self.ident = 0
-        """Python's number of the thread, once it runs."""
+        """Python's identifier of the thread, once it runs."""
         self.gate = wallclock.allocate_lock()
         self.gate.acquire()
         self.daemon = daemon
@@ -43,7 +43,7 @@ class ScheduledThread:
         self.joiners: list[ScheduledThread] = []
         self.on_change = False
         self.order = 0
-        """Which wait of the heap is meant; an older entry is stale."""
+        """Number of the current wait; other heap entries of this thread are stale."""
         self.wake_ns = FOREVER
         self.woken = False
         """Whether another thread, not the clock, ended the wait."""
@@ -52,26 +52,26 @@ class ScheduledThread:
         self.interrupt: Callable[[], None] | None = None
         """Called in the thread when it runs again."""
         self.struck = False
-        """Whether that, not the clock or another thread, ended the wait."""
+        """Whether the interrupt, not the clock or another thread, ended the wait."""
 
 
 Queue = list[ScheduledThread] | deque[ScheduledThread]
-"""Threads that wait for the same."""
+"""Threads that wait for the same thing."""
 
 
 class Scheduler:
-    """The scheduler.
+    """Runs the program's threads, one at a time.
 
     Args:
         session: The program's clock.
-        parked: Told whether the main thread waits for the baton.
+        parked: Called with whether the main thread waits for its turn.
     """
 
     def __init__(self, session: Session, parked: Callable[[bool], None]) -> None:
         self._session = session
         self._parked = parked
         self.entered: Callable[[], None] | None = None
-        """Called in each thread when it begins to run, or runs again."""
+        """Called in each thread when it starts or continues to run."""
         self.main = ScheduledThread(daemon=False)
         self.main.ident = wallclock.get_ident()
         self.current = self.main
@@ -86,17 +86,17 @@ class Scheduler:
     # Waiting
 
     def sleep_until(self, until: int, on_change: bool = False) -> None:
-        """Let the current thread wait for a simulated time, or for a motor to end a move."""
+        """Block the current thread until a simulated time, or until a motor ends a move."""
         self.wait(until, on_change)
 
     def wait(self, until: int, on_change: bool = False, queue: Queue | None = None) -> bool:
-        """Let the current thread wait.
+        """Block the current thread.
 
         Args:
             until: Simulated ns, or FOREVER.
             on_change: Whether a motor that ends a move ends the wait.
-            queue: Where the thread stands as long as it waits, for another one to wake it. Such a wait also ends when
-                something was called in the thread: what it waits for may have come meanwhile.
+            queue: Holds the thread while it waits, so that another one can wake it. Such a wait also ends after
+                an interrupt was called in the thread: what it waits for may be available by then.
 
         Returns:
             Whether another thread (or a motor) ended the wait before its time.
@@ -121,11 +121,11 @@ class Scheduler:
                 return False
 
     def pause(self) -> None:
-        """Let the main thread wait until something was called in it."""
+        """Block the main thread until an interrupt was called in it."""
         self.wait(FOREVER, queue=[])
 
     def interrupt_main(self, call: Callable[[], None]) -> None:
-        """Call something in the main thread as soon as it waits; unless that raises, it waits on afterwards."""
+        """Call something in the main thread as soon as it waits; unless that raises, it continues to wait."""
         main = self.main
         main.interrupt = call
         if main.order:
@@ -133,11 +133,11 @@ class Scheduler:
             self._ready.appendleft(main)
 
     def _heed(self, me: ScheduledThread) -> None:
-        """Call what is to be called in this thread."""
+        """Call the pending interrupt of this thread."""
         if me.interrupt is None:
             return
         call, me.interrupt = me.interrupt, None
-        # It is the program's, wherever the thread waits.
+        # The call belongs to the program, wherever the thread waits.
         free, self._session.free = self._session.free, 0
         try:
             call()
@@ -149,12 +149,12 @@ class Scheduler:
         try:
             self._sleep(me)
         finally:
-            # Whoever stays would be woken later on, out of another wait.
+            # A thread that stays in the queue would be woken later, from another wait.
             if me in queue:
                 queue.remove(me)
 
     def _sleep(self, me: ScheduledThread) -> None:
-        """Run again when it is this thread's turn."""
+        """Block until it is this thread's turn."""
         session = self._session
         me.free, session.free = session.free, 0
         me.struck = False
@@ -169,7 +169,7 @@ class Scheduler:
             self._leave_if_stopping(me)
 
     def give_way(self) -> None:
-        """Let every thread that is ready run first, without time passing."""
+        """Let every ready thread run first, without time passing."""
         me = self.current
         self._order += 1
         me.order = self._order
@@ -197,7 +197,7 @@ class Scheduler:
         try:
             me.gate.acquire()
         finally:
-            # A stop raised here ends the wait without the baton: the run is being unwound.
+            # A stop raised here ends the wait out of turn: the run is being unwound.
             self._parked(False)
 
     def _choose(self) -> ScheduledThread:
@@ -231,12 +231,12 @@ class Scheduler:
         return self.main
 
     def hand_to_main(self, stop: StopProgram) -> None:
-        """Let the main thread run next and be stopped: the current one is about to end."""
+        """Let the main thread run next and be stopped; the current thread is about to end."""
         self._ready.appendleft(self._send_to_main(stop))
 
     @property
     def tasks(self) -> tuple[ScheduledThread, ...]:
-        """Every thread that is not over, the main one first."""
+        """All threads that have not ended, the main thread first."""
         return (self.main, *self._alive)
 
     def _leave_if_stopping(self, me: ScheduledThread) -> None:
@@ -250,7 +250,7 @@ class Scheduler:
         """Start a thread; it runs when the current one waits.
 
         Raises:
-            RuntimeError: there are as many as there may be, or the machine has no room for another one.
+            RuntimeError: too many threads, for the limit or for the machine.
         """
         count = len(self._alive) + 1
         if count > MOST_THREADS:
@@ -266,7 +266,7 @@ class Scheduler:
                     self.entered()
                 function()
             except StopProgram:
-                # The main thread tells why the run stopped; this one just goes.
+                # The main thread reports why the run stopped; this one only ends.
                 pass
             finally:
                 self._finish(task)
@@ -281,7 +281,7 @@ class Scheduler:
         return task
 
     def spawn_daemon(self, work: Callable[[], None]) -> None:
-        """Let something be done while the program goes on; it does not wait for it at its end."""
+        """Run `work` in a daemon thread."""
         self.spawn(work, daemon=True)
 
     def _finish(self, task: ScheduledThread) -> None:
@@ -295,54 +295,54 @@ class Scheduler:
         chosen.gate.release()
 
     def join(self, task: ScheduledThread, timeout_ns: int = FOREVER) -> None:
-        """Wait until a thread is over."""
+        """Block until a thread ends."""
         until = FOREVER if timeout_ns == FOREVER else self._session.now + timeout_ns
         while not task.done and (until == FOREVER or self._session.now < until):
             self.wait(until, queue=task.joiners)
 
     def join_all(self) -> None:
-        """Wait for every thread that is not a daemon, as Python does at the end of a program."""
+        """Block until every thread that is not a daemon ends, as Python does at the end of a program."""
         while remaining := [task for task in self._alive if not task.daemon]:
             self.join(remaining[0])
 
 
 class SimulatedLock:
-    """Stands in for `_thread.lock`: only one thread runs, so a flag and a queue are enough."""
+    """Replaces `_thread.lock`: only one thread runs at a time, so a flag and a queue are enough."""
 
-    def __init__(self, baton: Scheduler) -> None:
-        self._baton = baton
+    def __init__(self, scheduler: Scheduler) -> None:
+        self._scheduler = scheduler
         self._locked = False
         self._waiting: deque[ScheduledThread] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock; wait in simulated time if asked to."""
+        """Acquire the lock; block in simulated time if requested."""
         if timeout != -1:
-            # A lock that is free is given at once, unless something is wrong with the arguments.
+            # A free lock is acquired at once, unless the arguments are invalid.
             wallclock.allocate_lock().acquire(blocking, timeout)
-        baton = self._baton
-        until = FOREVER if timeout == -1 else baton._session.now + round(timeout * 1e9)
+        scheduler = self._scheduler
+        until = FOREVER if timeout == -1 else scheduler._session.now + round(timeout * 1e9)
         while self._locked:
             if not blocking or timeout == 0:
                 return False
-            # A release hands the lock over: it is free afterwards only if this thread was interrupted.
-            if baton.wait(until, queue=self._waiting):
+            # A release passes the lock on: it is free afterwards only if this thread was interrupted.
+            if scheduler.wait(until, queue=self._waiting):
                 return True
-            if self.locked() and baton._session.now >= until != FOREVER:
+            if self.locked() and scheduler._session.now >= until != FOREVER:
                 return False
         self._locked = True
         return True
 
     def release(self) -> None:
-        """Give the lock to the thread that has waited longest, or free it."""
+        """Pass the lock to the thread that has waited longest, or free it."""
         if not self._locked:
             raise RuntimeError("release unlocked lock")
         if self._waiting:
-            self._baton.wake(self._waiting.popleft())
+            self._scheduler.wake(self._waiting.popleft())
         else:
             self._locked = False
 
     def locked(self) -> bool:
-        """Whether somebody has the lock."""
+        """Return whether the lock is acquired."""
         return self._locked
 
     def __enter__(self) -> bool:

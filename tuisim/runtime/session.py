@@ -1,6 +1,6 @@
-"""The session: the program's clock, and what happens when time passes.
+"""The session: the program's clock, and what happens when simulated time passes.
 
-Time moves only in `_advance`. In a headless run with one thread the way there is short;
+Time advances only in `_advance`. In a headless run with one thread the path to it is short;
 any mode that needs more (live pacing, threads, a command, stopping) sets a bit in
 `slow`, so that it costs nothing while it is off.
 """
@@ -28,20 +28,20 @@ if TYPE_CHECKING:
     from tuisim.runtime.debugger.debugger import Debugger
 
 ATTENTION, THREADS, STOPPING, DEBUG = 2, 4, 8, 16
-"""Further bits of `Session.slow`: a command waits, more than one thread, unwinding, tracing has been switched."""
+"""Further bits of `Session.slow`: a command has arrived, several threads, unwinding, tracing has been switched."""
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
-"""So many calls that cost nothing cost this much together."""
+"""This number of calls without a cost costs this much together."""
 
 REPEATED_WAIT_NS = 10 * NS_PER_S
-"""Waits that follow each other anyway are done as one of this length."""
+"""Consecutive identical waits are combined into one of this length."""
 
 CHUNK_TICKS = 2000
-"""A long wait is done in pieces of so many ticks, to look for commands in between."""
+"""A long wait is split into parts of this number of ticks, to check for commands in between."""
 
 STOP_GRACE_NS = 2 * NS_PER_S
-"""Simulated time that a program's own cleaning up gets."""
+"""Simulated time for the program's cleanup after a stop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +59,10 @@ class Session:
     Args:
         sim: The simulation.
         field: The mat.
-        output: Where printed lines go.
+        output: Receives printed lines.
         channel: Pipes to the host.
         steering: Commands: pause, speed, user actions.
-        limits: When to give up.
+        limits: Limits of the run.
         program_file: File name of the program's own frames.
     """
 
@@ -80,7 +80,7 @@ class Session:
         self._field = field
         self._pen: PenMarks | None = None
         if sim.spec.world.pen_marks:
-            # Imported where it is wanted: most programs start sooner without it.
+            # Imported on demand: most programs start faster without it.
             from tuisim.core.pen_marks import PenMarks
 
             self._pen = PenMarks(field, sim.spec)
@@ -90,40 +90,40 @@ class Session:
         self.free = 0
         self.slow = LIVE if steering.wanted else 0
         self.pressed: frozenset[str] = frozenset()
-        """The brick's buttons that are held down."""
+        """The brick's buttons that are pressed."""
         self._due = sim.due_ns(1)
         hz = sim.spec.profile.tick_hz
         self._hz = hz
         self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz
-        """Length of a tick, 0 where that is no whole number."""
+        """Length of a tick; 0 if it is not a whole number."""
         self._limit_ns = limits.time_ns or 1 << 62
         self._quick_ns = self._limit_ns
-        """Up to here a wait needs nothing but ticks, as far as `slow` has no bits."""
+        """Up to this time a wait needs only ticks, while `slow` has no bits."""
         self._commands, self._commands_at = 0, -1
         self.replies = False
-        """Whether the host replies to `messages`."""
+        """Whether the host answers with `messages`."""
         self.stop_reason: StopProgram | None = None
         self._stop_raised_at: int | None = None
         self.debugger: Debugger | None = None
         self.make_debugger: Callable[[], Debugger] | None = None
         """Set once there is a program to debug."""
         self.sleep_threaded: Callable[[int, bool], None] | None = None
-        """Set by the baton: waits until a time (or a motor change) while other threads run."""
+        """Set by the scheduler: blocks until a time (or a motor change) while other threads run."""
         self.aside: Callable[[Callable[[], None]], None]
-        """Set by the baton: lets something be done while the program goes on."""
+        """Set by the scheduler: runs a function in the background while the program continues."""
 
     # What the shim calls
 
     @property
     def field(self) -> Field:
-        """The mat as it is now, with what the pen has drawn where that counts."""
+        """The mat in its current state, with pen marks if they are visible to sensors."""
         if self._pen is None:
             return self._field
         self._pen.take_in(self.sim.records_since(self._pen.records))
         return self._pen.field
 
     def spend(self, duration_ns: int) -> None:
-        """Let time pass."""
+        """Let simulated time pass, even where calls are free."""
         until = self.now + duration_ns
         if self.slow or until > self._quick_ns:
             self._pass(until, False)
@@ -132,8 +132,8 @@ class Session:
         else:
             sim = self.sim
             sim.line = self.program_line()
-            # Most readings make just one tick due, and whole ticks can be counted up.
-            # As `sim.due_ns(sim.tick + 2)` says it.
+            # Most readings make exactly one tick due, and whole tick lengths can be added up.
+            # Same value as `sim.due_ns(sim.tick + 2)`.
             following = self._due + self._tick_ns if self._tick_ns else -(-(sim.tick + 2) * NS_PER_S // self._hz)
             if until < following:
                 sim.tick_once()
@@ -147,12 +147,12 @@ class Session:
                 self.now, self._due = until, sim.due_ns(sim.tick + 1)
 
     def charge(self, cost_ns: int) -> None:
-        """Let the cost of a call pass, unless calls are free now."""
+        """Let the time of a call pass, unless calls are free."""
         if not self.free:
             self.spend(cost_ns)
 
     def command(self) -> None:
-        """Count a call that costs nothing; a burst of them costs a little."""
+        """Count a call without a cost; a burst of them costs a little."""
         if self._commands_at != self.now:
             self._commands_at, self._commands = self.now, 0
         self._commands += 1
@@ -163,33 +163,33 @@ class Session:
             self.checkpoint()
 
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
-        """Wait until a motor ends a move, at most so long.
+        """Block until a motor ends a move or the timeout is over.
 
         Args:
-            timeout_ns: How long.
-            again: The caller does nothing but wait again when the time is up.
+            timeout_ns: The timeout.
+            again: The caller only waits again after the timeout.
         """
         if again and not self.slow & THREADS:
-            # Nobody else can change anything meanwhile, so many short waits are as good as one long one.
+            # Nothing else can change meanwhile, so many short waits are equivalent to one long wait.
             timeout_ns *= max(1, REPEATED_WAIT_NS // max(1, timeout_ns))
         self._pass(self.now + timeout_ns, True)
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
-        """Show what is heard and wait for so long; the others are as in `protocol.Spoke`."""
+        """Record a sound and block for `wait_ns`; the other arguments are as in `protocol.Spoke`."""
         self.output.row(text, SPEECH)
         self.channel.send(Spoke(text, self.now, tones, file))
         self.spend(wait_ns)
 
     def show(self, row: str, stream: int) -> None:
-        """Write down what the brick shows."""
+        """Record what the brick shows."""
         self.output.row(row, stream)
 
     def messages(self) -> list[Any]:
-        """Return what the host's responder has said so far; it is asked first, and no time passes meanwhile."""
+        """Return all answers of the host's responder; waits for pending ones, without simulated time passing."""
         self.command()
         steering = self.steering
-        if not steering.was_there(self, Reply) and self.replies and self.stop_reason is None:
-            steering.stand_still_for(self, Reply, ReplyWanted())
+        if not steering.replay_next(self, Reply) and self.replies and self.stop_reason is None:
+            steering.wait_for_reply(self, Reply, ReplyWanted())
         return list(steering.messages)
 
     # Passing time
@@ -208,11 +208,11 @@ class Session:
             self.advance(until, on_change)
 
     def advance(self, until: int, on_change: bool) -> bool:
-        """Move the clock on.
+        """Advance the clock.
 
         Args:
             until: Simulated time in ns.
-            on_change: Come back early when a motor ends a move.
+            on_change: Return early when a motor ends a move.
 
         Returns:
             Whether a motor ended the wait.
@@ -225,7 +225,7 @@ class Session:
                 raise self.request_stop("time_limit", f"stopped at the limit of {limit_s:g} s simulated time")
         else:
             changed = self._run_ticks(until, on_change)
-        # A wait that a motor ended is over at the tick in which the motor stood still.
+        # A wait that a motor ended is over at the tick in which the motor stopped.
         self.now = max(self.now, self.sim.due_ns(self.sim.tick)) if changed else until
         self._due = self.sim.due_ns(self.sim.tick + 1)
         return changed
@@ -255,7 +255,7 @@ class Session:
         if not steering.wanted:
             self.slow &= ~LIVE
         while sim.tick < target:
-            # Never ahead of the last tick of this wait: user actions belong right before a tick.
+            # Never beyond the last tick of this wait: user actions take effect right before a tick.
             self.now = max(self.now, sim.due_ns(sim.tick))
             ticks = steering.before_ticks(self, target - sim.tick)
             sim.advance(ticks, on_change)
@@ -266,12 +266,12 @@ class Session:
         return False
 
     def rush_to(self, tick: int) -> None:
-        """Ask the steering nothing before a tick falls due."""
+        """Do not call the control before this tick is due."""
         self.slow &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.due_ns(tick) - 1)
 
     def debug(self) -> Debugger:
-        """Return the debugger, which is made when it is first wanted."""
+        """Return the debugger; it is created on first use."""
         if self.debugger is None:
             assert self.make_debugger is not None
             self.debugger = self.make_debugger()
@@ -280,14 +280,14 @@ class Session:
     # Stopping
 
     def checkpoint(self, before_tick: bool = False) -> None:
-        """Look for commands; raise if the program is to stop.
+        """Process commands; raise if the program has to stop.
 
         Args:
-            before_tick: A tick is about to be done, and nothing of the program comes before it: a place that can be
-                found again.
+            before_tick: Whether a tick is about to run and no code of the program comes before it: a position that a
+                re-run can find again.
 
         Raises:
-            StopProgram: first when stopping is asked for, then again once the grace time is over.
+            StopProgram: when a stop is requested, and again once the grace period is over.
         """
         self.slow &= ~ATTENTION
         self.steering.receive(self)
@@ -303,27 +303,27 @@ class Session:
             raise reason
 
     def request_stop(self, end: str, summary: str) -> StopProgram:
-        """Note that the run ends, and why; the first reason stays. Returns what to raise."""
+        """Record that the run ends, and why; the first reason is kept. Return the exception to raise."""
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary)
-            self.steering.stop_asked()
+            self.steering.begin_grace()
         self._stop_raised_at = self.now if self._stop_raised_at is None else self._stop_raised_at
         self.slow |= STOPPING
         return self.stop_reason
 
     def ask_stop(self, end: str, summary: str) -> None:
-        """Note that the run is to end at the next checkpoint."""
+        """Record that the run has to end at the next checkpoint."""
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary)
-            self.steering.stop_asked()
+            self.steering.begin_grace()
         self.slow |= STOPPING
 
     def stop_lost(self) -> None:
-        """Let the stop be raised again at the next checkpoint: Python has dropped it, such as in a `__del__`."""
+        """Raise the stop again at the next checkpoint: Python has dropped it, such as in a `__del__`."""
         self._stop_raised_at = None
 
     def program_line(self) -> int:
-        """Return the line of the program that is being carried out, 0 if none is."""
+        """Return the line of the program that is running; 0 if there is none."""
         frame: types.FrameType | None = sys._getframe(1)
         file = self.program_file
         while frame is not None:

@@ -1,6 +1,6 @@
-"""What a program sees of its own stack: its frames and those of the library, nothing of the runtime.
+"""The stack as the program sees it: its frames and those of the library, without those of the runtime.
 
-`traceback`, `inspect` and `faulthandler` are where a program meets them.
+Affects `traceback`, `inspect` and `faulthandler`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tuisim.runtime.interrupts import PACKAGE_FOLDER
 from tuisim.runtime.replacement import replace
 
 _BOTTOM = os.path.join(PACKAGE_FOLDER, "runtime", "__main__.py")
-"""Calls everything else of the process."""
+"""File of the outermost frame of the process."""
 
 
 _every_frame = False
@@ -26,7 +26,7 @@ _every_frame = False
 
 @contextmanager
 def every_frame() -> Iterator[None]:
-    """Let `traceback` walk over all frames in the body, also over those that a program does not see."""
+    """Let `traceback` walk over all frames in the body, including those hidden from the program."""
     global _every_frame
     _every_frame = True
     try:
@@ -36,7 +36,7 @@ def every_frame() -> Iterator[None]:
 
 
 def _seen(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
-    """Yield what belongs to frames that a program may see: none of ours, and none of those below the program."""
+    """Yield items whose frames a program may see: none of the runtime, and none below the program."""
     for one in walk:
         file = file_of(one)
         if file == _BOTTOM:
@@ -52,14 +52,14 @@ def _frames_from(frame: types.FrameType | None) -> Iterator[types.FrameType]:
 
 
 def finish_traceback(module: types.ModuleType) -> None:
-    """Let `traceback` walk over the frames that a program may see."""
+    """Restrict `traceback` to the frames that a program may see."""
     changed: Any = module
 
     def walk_stack(f: types.FrameType | None) -> Iterator[tuple[types.FrameType, int]]:
         """Walk a stack yielding the frame and line number for each frame."""
         frames = _frames_from(sys._getframe(1) if f is None else f)
         for frame in _seen(frames, lambda frame: frame.f_code.co_filename):
-            # Without a frame it begins at the caller, which this module has called for.
+            # Without a frame it starts at the caller of this module's function.
             if f is not None or frame.f_code.co_filename != module.__file__:
                 yield frame, frame.f_lineno
 
@@ -69,7 +69,7 @@ def finish_traceback(module: types.ModuleType) -> None:
 
 
 def finish_inspect(module: types.ModuleType) -> None:
-    """Let `inspect` list the frames that a program may see."""
+    """Restrict `inspect` to the frames that a program may see."""
     changed: Any = module
     for name in ("getouterframes", "getinnerframes"):
         setattr(changed, name, _listed(_filtered(getattr(changed, name), lambda info: str(info.filename))))
@@ -92,9 +92,9 @@ def _listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]]:
 
 
 def patch_faulthandler() -> None:
-    """Let a program switch on what is on already: a crash is written down for the host, and its line is told.
+    """Let a program enable what is always enabled: crashes are written for the host, and their line is reported.
 
-    What would write the stack after a real time or at a signal does nothing: time in a run is simulated, its limits
+    Functions that write the stack after a real time or on a signal do nothing: time in a run is simulated, its limits
     are the host's, and the signals are the runtime's.
     """
     on = False
@@ -108,7 +108,7 @@ def patch_faulthandler() -> None:
         switch(True)
 
     def dump_traceback(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
-        _write(_told(sys._getframe(1), all_threads), sys.stderr if file is None else file)
+        _write(_stacks_text(sys._getframe(1), all_threads), sys.stderr if file is None else file)
 
     replace(faulthandler, "enable", enable)
     replace(faulthandler, "disable", lambda: switch(False), (0, 0))
@@ -119,16 +119,16 @@ def patch_faulthandler() -> None:
     replace(faulthandler, "unregister", lambda _number: False, (1, 1))
 
 
-def _told(frame: types.FrameType, all_threads: bool) -> str:
-    """Return the stacks of the threads, the current one first, in the words of `faulthandler`."""
+def _stacks_text(frame: types.FrameType, all_threads: bool) -> str:
+    """Return the stacks of the threads, the current one first, in the format of `faulthandler`."""
     if not all_threads:
         return _stack_text("Stack", frame)
     import threading
 
     frames, here = sys._current_frames(), threading.current_thread()
     others = [one for one in threading.enumerate() if one is not here and one.ident in frames]
-    told = [_stack_text(f"Thread {one.name}", frames[one.ident or 0]) for one in others]
-    return "\n".join([_stack_text(f"Current thread {here.name}", frame), *told])
+    others_text = [_stack_text(f"Thread {one.name}", frames[one.ident or 0]) for one in others]
+    return "\n".join([_stack_text(f"Current thread {here.name}", frame), *others_text])
 
 
 def _stack_text(heading: str, frame: types.FrameType) -> str:
@@ -138,7 +138,7 @@ def _stack_text(heading: str, frame: types.FrameType) -> str:
 
 
 def _write(text: str, file: Any) -> None:
-    """Write a text to a file, which may be a number as in the real function."""
+    """Write to a file, which may be a descriptor as in the real function."""
     if isinstance(file, int):
         os.write(file, text.encode("utf-8", "backslashreplace"))
     else:

@@ -1,16 +1,16 @@
-"""How a run is ended from outside the program."""
+"""How a run is stopped from outside the program."""
 
 from __future__ import annotations
 
 DISK_FULL = "disk_full"
-"""How a run ends that cannot be written down any further."""
+"""How a run ends that cannot be recorded any further."""
 
 
 class StopProgram(BaseException):
-    """Unwinds the program. Not an `Exception`, so that ordinary handlers let it pass.
+    """Unwinds the program. Not an `Exception`, so that the program's handlers do not catch it.
 
     Args:
-        end: Why, as in `protocol.Ended.end`.
+        end: The reason, as in `protocol.Ended.end`.
         summary: One line for the user.
     """
 

@@ -1,4 +1,4 @@
-"""Puts the program's `threading` and `_thread` on the baton."""
+"""Runs the program's `threading` and `_thread` on the scheduler."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tuisim.runtime.replacement import replace
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler, SimulatedLock
 
 
-def patch_threads(baton: Scheduler) -> None:
+def patch_threads(scheduler: Scheduler) -> None:
     """Replace the lock and start functions, then import `threading` over them.
 
     Must run before anything imports `threading`.
@@ -20,16 +20,16 @@ def patch_threads(baton: Scheduler) -> None:
     low: Any = _thread
 
     class LockType(SimulatedLock):
-        """The type that the program sees as its lock."""
+        """The type of locks that the program sees."""
 
         def __init__(self) -> None:
-            super().__init__(baton)
+            super().__init__(scheduler)
 
         def __reduce_ex__(self, _protocol: object) -> Any:
             raise TypeError("cannot pickle '_thread.lock' object")
 
         def __repr__(self) -> str:
-            # As Python's own, but for the address, which no two runs have in common.
+            # As Python's own, without the address, which differs in every run.
             return f"<{'locked' if self.locked() else 'unlocked'} _thread.lock object>"
 
     LockType.__module__, LockType.__name__, LockType.__qualname__ = "_thread", "lock", "lock"
@@ -41,9 +41,9 @@ def patch_threads(baton: Scheduler) -> None:
             raise TypeError("2nd arg must be a tuple")
         if not isinstance(kwargs, dict | None):
             raise TypeError("optional 3rd arg must be a dictionary")
-        task = baton.spawn(lambda: _run_bare(function, args, kwargs or {}), daemon=True)
-        # The library spins until its new thread has begun: let it begin.
-        baton.give_way()
+        task = scheduler.spawn(lambda: _run_bare(function, args, kwargs or {}), daemon=True)
+        # The library busy-waits until its new thread has started: let it start.
+        scheduler.give_way()
         return task.ident
 
     for name in ("allocate_lock", "allocate"):
@@ -53,7 +53,7 @@ def patch_threads(baton: Scheduler) -> None:
     low.LockType = LockType
     if hasattr(low, "lock"):
         low.lock = LockType
-    # Without the C queue, `queue` falls back on its own locks, which are these.
+    # Without the C queue, `queue` falls back to its own locks, which are simulated.
     sys.modules["_queue"] = None  # type: ignore[assignment]
 
     import threading
@@ -61,20 +61,20 @@ def patch_threads(baton: Scheduler) -> None:
     module: Any = threading
     module._CRLock = None
     module.RLock = module._RLock = module._PyRLock
-    _patch_thread_class(baton, module.Thread)
+    _patch_thread_class(scheduler, module.Thread)
 
 
 def _run_bare(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any) -> None:
     try:
         function(*args, **kwargs)
     except SystemExit:
-        # As in Python: it ends the thread, silently.
+        # As in Python: it ends the thread silently.
         pass
-    except Exception as error:  # the thread ends, the program goes on: Python's own rule
+    except Exception as error:  # as in Python, the thread ends and the program continues
         sys.excepthook(type(error), error, error.__traceback__)
 
 
-def _patch_thread_class(baton: Scheduler, thread: Any) -> None:
+def _patch_thread_class(scheduler: Scheduler, thread: Any) -> None:
     tasks: dict[int, ScheduledThread] = {}
 
     @wraps(thread.start)
@@ -89,7 +89,7 @@ def _patch_thread_class(baton: Scheduler, thread: Any) -> None:
         with limbo._active_limbo_lock:
             limbo._limbo[self] = self
         try:
-            tasks[id(self)] = baton.spawn(self._bootstrap, daemon=bool(self.daemon))
+            tasks[id(self)] = scheduler.spawn(self._bootstrap, daemon=bool(self.daemon))
         except RuntimeError:
             del limbo._limbo[self]
             raise
@@ -102,10 +102,10 @@ def _patch_thread_class(baton: Scheduler, thread: Any) -> None:
         if not self._started.is_set():
             raise RuntimeError("cannot join thread before it is started")
         task = tasks.get(id(self))
-        if task is baton.current:
+        if task is scheduler.current:
             raise RuntimeError("cannot join current thread")
         if task is not None:
-            baton.join(task, FOREVER if timeout is None else max(0, round(timeout * 1e9)))
+            scheduler.join(task, FOREVER if timeout is None else max(0, round(timeout * 1e9)))
 
     @wraps(thread.is_alive)
     def is_alive(self: Any) -> bool:
@@ -115,6 +115,6 @@ def _patch_thread_class(baton: Scheduler, thread: Any) -> None:
         return task is None or not task.done
 
     thread.start, thread.join, thread.is_alive = start, join, is_alive
-    # Python's own end-of-thread lock is a real one: nobody waits for it here.
+    # Python's own end-of-thread lock is a real one: nothing waits for it here.
     thread._set_tstate_lock = lambda self: None
     thread._wait_for_tstate_lock = lambda self, block=True, timeout=-1: None

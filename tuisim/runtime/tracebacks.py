@@ -1,4 +1,4 @@
-"""How a program's uncaught error is told: its own frames, nothing of the runtime."""
+"""Reports of a program's uncaught error: its own frames, without those of the runtime."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tuisim.source import source_lines
 
 _OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.stop.")
 MOST_LINKED = 10
-"""Of a longer chain of causes so many are told at either end."""
+"""Of a longer chain of causes, this many are shown at either end."""
 _HEADING = "Traceback (most recent call last):\n"
 
 
@@ -25,15 +25,15 @@ class ErrorReport:
     """An uncaught error."""
 
     text: str
-    """The traceback as Python prints it, without frames that are not the program's."""
+    """The traceback as Python prints it, reduced to the program's frames."""
     line: int
-    """Last line of the program in it, 0 if there is none."""
+    """Last line of the program in it; 0 if there is none."""
     summary: str
-    """One line: what and where."""
+    """Error and location in one line."""
 
 
 def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
-    """Return how to tell an error.
+    """Return the report of an error.
 
     Args:
         error: What the program raised.
@@ -42,12 +42,12 @@ def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
     """
     remember_source(file, source)
     try:
-        # All frames: an error without any was made but never raised.
+        # All frames: an error without any was created but never raised.
         with every_frame():
-            told = traceback.TracebackException.from_exception(error, compact=True)
-        chain = _keep_program_frames(told, own_files(file))
-        text, stack, summary = _text_of(chain), told.stack, _summary(told)
-    except Exception as problem:  # an error may be anything, and nested too deeply: it is told all the same
+            trace = traceback.TracebackException.from_exception(error, compact=True)
+        chain = _keep_program_frames(trace, own_files(file))
+        text, stack, summary = _text_of(chain), trace.stack, _summary(trace)
+    except Exception as problem:  # an error may be anything, and nested too deeply: it is reported nevertheless
         stack = traceback.StackSummary.from_list(
             [frame for frame in traceback.extract_tb(error.__traceback__) if own_files(file)(frame.filename)]
         )
@@ -61,32 +61,32 @@ def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
 
 
 def remember_source(file: str, source: str) -> None:
-    """Let whoever shows a line of the program take it from the text that runs, not from the file as it is by now."""
+    """Make tracebacks show the text that runs, not the current contents of the file."""
     import linecache
 
     linecache.cache[file] = (len(source), None, [line + "\n" for line in source_lines(source)], file)
 
 
 def _kind_of(error: BaseException) -> str:
-    """Return the name of an error's class, whatever its own metaclass makes of that."""
+    """Return the name of an error's class, even if its metaclass redefines it."""
     return str(type.__dict__["__name__"].__get__(type(error)))
 
 
 def _line_of(error: BaseException) -> int:
-    """Return the line of a syntax error, 0 if it is none or has none."""
+    """Return the line of a syntax error; 0 if it has none or is another error."""
     line = error.lineno if isinstance(error, SyntaxError) else None
     return line if isinstance(line, int) else 0
 
 
-def _summary(told: traceback.TracebackException) -> str:
-    """Kind and message in one line."""
-    only = source_lines("".join(told.format_exception_only()).strip())
-    # A syntax error shows its place first; of a message of several lines the first says most.
+def _summary(trace: traceback.TracebackException) -> str:
+    """Return type and message in one line."""
+    only = source_lines("".join(trace.format_exception_only()).strip())
+    # A syntax error starts with its location; of a message of several lines the first is the most useful.
     return only[-1] if only[0].startswith("File ") else only[0]
 
 
 def own_files(file: str) -> Callable[[str], bool]:
-    """Return a function that says which files are the program's: itself, what is beside it, what it has imported."""
+    """Return a function that tests for the program's files: itself, those beside it, and those it has imported."""
     beside = os.path.dirname(wallclock.absolute(file)) + os.sep
 
     def own(name: str) -> bool:
@@ -98,11 +98,11 @@ def own_files(file: str) -> Callable[[str], bool]:
     return own
 
 
-Told = traceback.TracebackException
+Trace = traceback.TracebackException
 
 
 def point_at_namesake(error: BaseException, file: str) -> None:
-    """Say with an error of an import or a name if a module beside the program has taken the place of one of Python's.
+    """Add a note to an error if a module beside the program shadows one of Python's.
 
     Args:
         error: What the program raised.
@@ -113,19 +113,19 @@ def point_at_namesake(error: BaseException, file: str) -> None:
     own = own_files(file)
     for name, module in list(sys.modules.items()):
         if name in sys.stdlib_module_names and own(str(getattr(module, "__file__", None) or "<builtin>")):
-            error.add_note(f"{name}.py beside the program stands in the place of Python's own {name}: rename it.")
+            error.add_note(f"{name}.py beside the program shadows Python's own {name}: rename it.")
 
 
-def _keep_program_frames(told: Told, own: Callable[[str], bool]) -> list[Told]:
-    """Take all other frames out of an error and of what it is linked to; return it and its causes, newest first."""
-    chains = [[told]]
+def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace]:
+    """Remove all other frames from an error and the errors linked to it; return it and its causes, newest first."""
+    chains = [[trace]]
     for chain in chains:
         for one in chain:
             was_raised = bool(one.stack)
             one.stack = traceback.StackSummary.from_list([frame for frame in one.stack if own(frame.filename)])
             chains += [[inner] for inner in getattr(one, "exceptions", None) or ()]
             before = chain[-2] if one is not chain[0] else None
-            # An error that never touched the program's code is a detail of ours or of the library.
+            # An error that never touched the program's code is a detail of the runtime or of the library.
             if before is not None and was_raised and not one.stack:
                 before.__cause__ = before.__context__ = None
                 chain.pop()
@@ -134,13 +134,13 @@ def _keep_program_frames(told: Told, own: Callable[[str], bool]) -> list[Told]:
     return chains[0]
 
 
-def _linked(told: Told) -> Told | None:
-    """Return the error that is told before this one."""
-    return told.__cause__ or (None if told.__suppress_context__ else told.__context__)
+def _linked(trace: Trace) -> Trace | None:
+    """Return the error that is printed before this one."""
+    return trace.__cause__ or (None if trace.__suppress_context__ else trace.__context__)
 
 
-def _text_of(chain: list[Told]) -> str:
-    """Return an error and its causes as Python prints them; of very many, those at either end."""
+def _text_of(chain: list[Trace]) -> str:
+    """Return an error and its causes as Python prints them; of a long chain, only both ends."""
     left_out = len(chain) - 2 * MOST_LINKED
     if left_out <= 0:
         return "".join(chain[0].format())

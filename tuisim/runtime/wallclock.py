@@ -1,4 +1,4 @@
-"""The real clock and the real thread functions, kept before the program's are replaced.
+"""The real clock and the real thread functions, saved before the program's are replaced.
 
 Import this before anything else of the runtime.
 """
@@ -23,7 +23,7 @@ select_files = select.select
 exit_process = os._exit
 fork, getpid = os.fork, os.getpid
 signals: Any = import_module("_signal")
-"""What `signal` has its functions from; no type checker knows it."""
+"""The C module behind `signal`; type checkers do not know it."""
 set_signal, set_timer = signals.signal, signals.setitimer
 settrace, gettrace = sys.settrace, sys.gettrace
 
@@ -32,14 +32,14 @@ def _start_folder() -> str:
     try:
         return os.getcwd()
     except OSError:
-        # It is gone already.
+        # It no longer exists.
         return os.sep
 
 
 start_folder = _start_folder()
-"""Where the process was started: a program may go elsewhere, and delete its folder."""
+"""Working directory at the start: a program may change it, and delete the folder."""
 
 
 def absolute(path: str) -> str:
-    """Return the whole path of a file as it was named at the start."""
+    """Return the absolute path of a file that was named at the start."""
     return os.path.normpath(os.path.join(start_folder, path))

@@ -1,1 +1,1 @@
-"""Holding a program at a line, an instant or an event, and looking at it. Loaded when it is first wanted."""
+"""The debugger: pauses a program at a line, an instant or an event, and inspects it. Loaded on first use."""

@@ -1,4 +1,4 @@
-"""Which lines of a program have code: only these are ever about to run."""
+"""The lines of a program that have code: a breakpoint on any other line would never be hit."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ class CodeLines:
     """The lines of one program.
 
     Args:
-        code: The program, None if there is none.
+        code: The program; None if there is none.
     """
 
     def __init__(self, code: types.CodeType | None) -> None:
@@ -18,9 +18,9 @@ class CodeLines:
         self._lines: list[int] | None = None
 
     def from_here(self, line: int) -> int:
-        """Return the line, or if it is blank, a comment or the like, the next one that has code.
+        """Return `line` or, if it has no code, the next line that has.
 
-        Behind the last such line, and for 0, the line itself.
+        After the last such line, and for 0, return `line`.
         """
         if self._lines is None:
             self._lines = sorted(_lines_of(self._code)) if self._code else []
@@ -29,7 +29,7 @@ class CodeLines:
 
 
 def _lines_of(code: types.CodeType) -> set[int]:
-    """The lines of a piece of code and of all functions and classes in it."""
+    """Return the lines of a code object and of all functions and classes in it."""
     found: set[int] = set()
     left = [code]
     while left:

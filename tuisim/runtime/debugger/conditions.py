@@ -1,4 +1,4 @@
-"""Conditions of breaks: at once where nothing of the program's own can run, otherwise in a copy of the process."""
+"""Breakpoint conditions: evaluated in place if no code of the program can run, otherwise in a copy of the process."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Apart = Callable[[Callable[[], bytes]], bytes | None]
 
 
 class Condition:
-    """The condition of one break.
+    """The condition of one breakpoint.
 
     Args:
-        text: An expression, already known to be one.
+        text: A syntactically valid expression.
     """
 
     def __init__(self, text: str) -> None:
@@ -32,15 +32,15 @@ class Condition:
         nodes = list(ast.walk(tree))
         self._code = compile(tree, "<break>", "eval", dont_inherit=True)
         self._names = tuple({node.id for node in nodes if isinstance(node, ast.Name)})
-        # Of text, % and + with their like can make no more than what is there, * and ** could.
+        # On strings, % and + produce at most the combined length of their operands; * and ** could produce far more.
         self._plain = all(isinstance(node, _PLAIN_NODES) for node in nodes)
 
     def holds(self, frame: types.FrameType, apart: Apart) -> str:
-        """Return why the run is to hold, empty if it is not to.
+        """Return why the run has to pause; empty if it does not.
 
         Args:
             frame: Where the expression is evaluated.
-            apart: Does something in a copy of the process.
+            apart: Calls a function in a copy of the process.
         """
         names: Mapping[str, Any] = frame.f_locals
         if self._plain and type(names) is dict:
@@ -59,7 +59,7 @@ class Condition:
         try:
             return "is true" if eval(self._code, {"__builtins__": {}}, values) else ""
         except NameError:
-            # What does not exist yet is not so yet.
+            # Names that do not exist yet make the condition false.
             return ""
-        except Exception as error:  # an expression can fail in any way; that is worth holding for
+        except Exception as error:  # an expression can fail in any way; worth pausing for
             return f"cannot be evaluated: {type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""Breaks that are no lines: values after each tick, printed rows. Nothing is looked at while there are none."""
+"""Breakpoints without a line: values after each tick, printed rows. They cost nothing while there are none."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _COLOR_PARTS: dict[str, Callable[[ColorReading], float]] = {
 
 
 class Relation:
-    """Whether a value meets a break: it does when it begins to, not while it goes on to."""
+    """Edge detection for a value: it matches when the relation becomes true, not while it stays true."""
 
     __slots__ = ("_before", "_met", "_number", "_relation")
 
@@ -49,7 +49,7 @@ class Relation:
         self._met = False
 
     def meets(self, value: float) -> bool:
-        """Take the next value and say whether the run is to hold."""
+        """Process the next value; return whether the run has to pause."""
         if self._relation == SEEN:
             return True
         if self._relation == CHANGES:
@@ -60,7 +60,7 @@ class Relation:
 
 
 class Watcher:
-    """The breaks of one run that are on no line.
+    """The breakpoints of one run that have no line.
 
     Args:
         session: The run.
@@ -69,21 +69,21 @@ class Watcher:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._after_tick: dict[str, Callable[[], str]] = {}
-        """By text, what says how the break is met now; empty if it is not."""
+        """By text, a function that returns the value that matches now; empty without a match."""
         self._on_row: dict[str, Callable[[str], str]] = {}
 
     @property
     def ticks(self) -> bool:
-        """Whether each tick must be looked at."""
+        """Whether each tick must be checked."""
         return bool(self._after_tick)
 
     @property
     def rows(self) -> bool:
-        """Whether each printed row must be looked at."""
+        """Whether each printed row must be checked."""
         return bool(self._on_row)
 
     def set(self, breaks: Iterable[Breakpoint]) -> None:
-        """Watch for these; one that was there before goes on from what it has seen."""
+        """Replace the breakpoints; those that stay keep their state."""
         ticks, rows = self._after_tick, self._on_row
         self._after_tick, self._on_row = {}, {}
         for one in breaks:
@@ -96,16 +96,16 @@ class Watcher:
                         self._after_tick[one.text] = check
 
     def after_tick(self) -> tuple[str, str] | None:
-        """Return text and value of a break that this tick meets."""
+        """Return text and value of a breakpoint that matches after this tick."""
         return _first((text, check()) for text, check in self._after_tick.items())
 
     def after_row(self, row: str, stream: int) -> tuple[str, str] | None:
-        """Return text and value of a break that this printed row meets."""
+        """Return text and value of a breakpoint that matches this printed row."""
         if stream != STDOUT:
             return None
         return _first((text, check(row)) for text, check in self._on_row.items())
 
-    # What is looked at
+    # Checks
 
     def _row_check(self, rule: SampleBreak | PrintBreak) -> Callable[[str], str]:
         if isinstance(rule, PrintBreak):
@@ -127,7 +127,7 @@ class Watcher:
                 value: Value | None = self._time_s
                 relation = Relation(">=", time_s - 0.5 / NS_PER_S)
                 if self._time_s() >= time_s:
-                    # It has passed already: it does not come again.
+                    # That time has passed already and does not come again.
                     relation.meets(time_s)
             case StallBreak():
                 value, relation = self._stalled, Relation(">", 0.0)
@@ -151,7 +151,7 @@ class Watcher:
         return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in (sim.left, sim.right, *sim.others)))
 
     def _value_of(self, quantity: str) -> Value | None:
-        """Return what gives a quantity now, None if this robot does not have it."""
+        """Return a function that reads a quantity; None if this robot does not have it."""
         session = self._session
         sim = session.sim
         for kind, sensor in mounted(sim.spec.robot):
@@ -177,7 +177,7 @@ class Watcher:
         return self._motion(quantity)
 
     def _column(self, kind: SensorKind, sensor: Any, at: int) -> float:
-        """Return one of the values that the telemetry has of a sensor."""
+        """Return one telemetry value of a sensor."""
         sim = self._session.sim
         return kind.measure(sensor, sim.instant(), sim.spec, self._session.field)[at]
 
@@ -191,7 +191,7 @@ class Watcher:
 
 
 def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
-    """Return the first that is met; every check has its look all the same."""
+    """Return the first match; every check is called nevertheless."""
     met = [(text, value) for text, value in found if value]
     return met[0] if met else None
 

@@ -1,4 +1,4 @@
-"""The debugger of one run: what its commands do, and when the run is to hold."""
+"""The debugger of one run: its commands, and when the run pauses."""
 
 from __future__ import annotations
 
@@ -26,35 +26,35 @@ if TYPE_CHECKING:
     from tuisim.runtime.run_config import RunConfig
 
 CONDITION_LIMIT_S = 0.2
-"""Real seconds that a condition gets."""
+"""Time limit of a condition, in real seconds."""
 
 Instant = tuple[int, int]
-"""Tick and ordinal."""
+"""Tick, and ordinal of the line in that tick."""
 
 
 class Debugger:
-    """Everything the debugger knows of a run.
+    """The debugger's state for one run.
 
     Args:
         session: The run.
-        baton: Its threads.
-        module: Gives the global names of the program.
-        prepared: By name, the identity of what was there before the program.
+        scheduler: The program's threads.
+        module: Holds the program's global names.
+        prepared: Identities of the objects that existed before the program, by name.
         code: The program itself.
     """
 
     def __init__(
         self,
         session: Session,
-        baton: Scheduler,
+        scheduler: Scheduler,
         module: Mapping[str, Any],
         prepared: Mapping[str, int],
         code: types.CodeType | None,
     ) -> None:
-        self._session, self._baton = session, baton
+        self._session, self._scheduler = session, scheduler
         self._lines = CodeLines(code)
-        self._tracer = Tracer(session, baton, self._at_line)
-        self._looker = Looker(session, baton, self._tracer, module, prepared)
+        self._tracer = Tracer(session, scheduler, self._at_line)
+        self._looker = Looker(session, scheduler, self._tracer, module, prepared)
         self._watcher = Watcher(session)
         self._by_line: dict[int, list[tuple[Breakpoint, Condition | None]]] = {}
         self._step: Step | None = None
@@ -65,37 +65,37 @@ class Debugger:
         self._looks: list[Message] = []
 
     def begin(self, config: RunConfig) -> None:
-        """Take over what is known before the program's first line."""
+        """Apply the settings that are known before the program's first line."""
         self._set_breaks(parse_breakpoints(config.breaks))
         self._trace_from = config.trace_from_tick
         if config.hold_at is not None:
             self._set_instant(*config.hold_at)
-            self._session.steering.let_on(at_full_speed=True)
+            self._session.steering.resume(at_full_speed=True)
         self._trace(at_tick=True)
-        self._tell_session()
+        self._update_session()
         if self._instant == (0, AFTER_TICK):
             self._hold(Paused(0, 0, 0, "instant", ordinal=AFTER_TICK))
 
     # Commands
 
     def take(self, command: Message) -> None:
-        """Do what a command asks; the caller sees to pausing and going on."""
+        """Process a command; the caller handles pausing and resuming."""
         steering = self._session.steering
         match command:
             case protocol.StepLine(how=how):
                 self._forget_goals()
-                # A run that stands still waits for commands in the thread that was held.
+                # A paused run waits for commands in the thread that was paused.
                 depth = self._tracer.depth_of(sys._getframe())
-                self._step = step_from(how, self._baton.current, depth) if steering.holding else NEXT_LINE
-                steering.let_on()
+                self._step = step_from(how, self._scheduler.current, depth) if steering.holding else NEXT_LINE
+                steering.resume()
             case protocol.RunToLine(line=line):
                 self._forget_goals()
                 self._line = self._lines.from_here(line)
-                steering.let_on()
+                steering.resume()
             case protocol.RunToInstant(tick=tick, ordinal=ordinal):
                 self._forget_goals()
                 self._set_instant(tick, ordinal)
-                steering.let_on(at_full_speed=True)
+                steering.resume(at_full_speed=True)
             case protocol.SetBreaks(breaks=texts):
                 self._set_breaks(parse_breakpoints(texts))
             case protocol.Inspect() | protocol.RequestHistory():
@@ -103,16 +103,16 @@ class Debugger:
                     self._looks.append(command)
         if not steering.holding:
             self._trace(at_tick=False)
-            self._tell_session()
+            self._update_session()
 
     def go_on(self) -> None:
-        """Prepare for what comes next: the run stood still and goes on."""
-        # Held between ticks, the next one is counted from its start.
+        """Prepare for resuming from a pause."""
+        # When paused between ticks, lines of the next tick are counted from its start.
         self._trace(at_tick=self._session.steering.between_ticks)
-        self._tell_session()
+        self._update_session()
 
     def answer(self) -> None:
-        """Answer what was asked while the run stands still."""
+        """Answer the requests received while paused."""
         looks, self._looks = self._looks, []
         for asked in looks:
             if isinstance(asked, protocol.Inspect):
@@ -122,19 +122,19 @@ class Debugger:
                 self._session.channel.send(protocol.LineHistory(lines))
 
     def _take_more(self) -> bool:
-        """Take the commands that come in while something is looked at; False if it need not be any more."""
+        """Process commands that arrive during an inspection; return False if it is no longer needed."""
         self._session.steering.receive(self._session)
         return self._session.stop_reason is None
 
     def forget_goals(self) -> None:
-        """Give up steps and goals: the user has asked for something else."""
+        """Cancel steps and goals: the user has requested something else."""
         self._forget_goals()
         if not self._session.steering.holding:
             self._trace(at_tick=False)
-            self._tell_session()
+            self._update_session()
 
     def pause(self) -> None:
-        """Hold at the next line that is met, if that comes before the next tick."""
+        """Pause at the next line, if it is reached before the next tick."""
         self.forget_goals()
         if self._tracer.on and not self._session.steering.holding:
             self._step, self._step_reason = NEXT_LINE, "asked"
@@ -161,7 +161,7 @@ class Debugger:
         self._session.output.watch = self._after_row if self._watcher.rows else None
 
     def _trace(self, at_tick: bool) -> None:
-        """Trace if that is wanted now."""
+        """Switch tracing on or off as needed."""
         tracer, tick = self._tracer, self._session.sim.tick
         counting = self._trace_from is not None and tick >= self._trace_from
         line_goal = bool(self._line or self._step)
@@ -169,8 +169,8 @@ class Debugger:
         tracer.closely = self._step is not None or self._instant is not None
         tracer.switch(bool(self._by_line) or line_goal or counting, at_tick)
 
-    def _tell_session(self) -> None:
-        """Let the session ask at ticks where that is wanted, and only there."""
+    def _update_session(self) -> None:
+        """Let the session call the debugger at ticks only when needed."""
         session, goals = self._session, self._goal_ticks()
         session.steering.debugged = self._watcher.ticks or bool(goals)
         session.slow |= DEBUG
@@ -180,27 +180,27 @@ class Debugger:
             session.slow |= LIVE
 
     def _goal_ticks(self) -> list[int]:
-        """Return the ticks at which something is to be done."""
+        """Return the ticks at which the debugger has to act."""
         goals = [] if self._instant is None else [self._instant[0]]
         return goals if self._trace_from is None or self._tracer.on else [*goals, self._trace_from]
 
     # Ticks
 
     def most_ticks(self, most: int) -> int:
-        """Return how many ticks may be done before `after_ticks` has to be called."""
+        """Return the number of ticks that may run before `after_ticks` has to be called."""
         tick = self._session.sim.tick
         if self._watcher.ticks:
             return 1
         return min([most, *(goal - tick for goal in self._goal_ticks() if goal > tick)])
 
     def before_tick(self) -> None:
-        """Hold if this is the instant; right before a tick, when actions are done."""
+        """Pause if the goal is reached. Called right before a tick, after user actions."""
         tick = self._session.sim.tick
         if self._instant is not None and self._instant <= (tick, BEFORE_NEXT_TICK):
             self._hold_at_tick("instant", BEFORE_NEXT_TICK)
 
     def after_ticks(self) -> None:
-        """Hold if the tick that was just done meets something."""
+        """Pause if a breakpoint matches the tick that was just run."""
         tick = self._session.sim.tick
         met = self._watcher.after_tick() if self._watcher.ticks else None
         self._trace(at_tick=True)
@@ -214,18 +214,18 @@ class Debugger:
         return self._instant == (tick, AFTER_TICK) or self._instant[0] < tick
 
     def at_end(self) -> None:
-        """Hold at the end of the program if an instant was wanted that never came."""
+        """Pause at the end of the program if a requested instant was never reached."""
         if self._instant is not None:
             self._hold_at_tick("end", self._tracer.ordinal)
 
     def enter(self) -> None:
-        """Trace the thread that runs now as is wanted."""
+        """Switch tracing in the current thread on or off as needed."""
         self._tracer.enter()
 
     # Lines and rows
 
     def _at_line(self, frame: types.FrameType, line: int) -> None:
-        """See whether the run is to hold at a line that is about to run."""
+        """Check whether to pause at a line that is about to run."""
         session = self._session
         if session.slow & ATTENTION:
             session.checkpoint()
@@ -236,7 +236,7 @@ class Debugger:
         depth = self._tracer.depth_of(frame) if self._step is not None else 0
         if self._instant is not None and self._is_reached(self._tracer.ordinal):
             reason = "instant"
-        elif self._step is not None and self._step.is_done(self._baton.current, depth):
+        elif self._step is not None and self._step.is_done(self._scheduler.current, depth):
             reason = self._step_reason
         elif own and line == self._line:
             reason = "line"
@@ -264,15 +264,15 @@ class Debugger:
             self._hold_in_thread(self._moment(line, "break", *met, self._tracer.ordinal))
 
     def _apart(self, work: Callable[[], bytes]) -> bytes | None:
-        return apart(self._session, self._baton, work, CONDITION_LIMIT_S, self._take_more)
+        return apart(self._session, self._scheduler, work, CONDITION_LIMIT_S, self._take_more)
 
-    # Holding
+    # Pausing
 
     def _moment(
         self, line: int, reason: str, text: str = "", value: str = "", ordinal: int = 0, file: str = ""
     ) -> Paused:
         session = self._session
-        thread = self._looker.name_of(self._baton.current)
+        thread = self._looker.name_of(self._scheduler.current)
         return Paused(session.sim.tick, session.now, line, reason, text, value, ordinal, thread, file)
 
     def _hold_at_tick(self, reason: str, ordinal: int, text: str = "", value: str = "") -> None:
@@ -281,23 +281,23 @@ class Debugger:
         self._hold(self._moment(session.sim.line, reason, text, value, ordinal))
 
     def _hold_in_thread(self, moment: Paused) -> None:
-        """Stand still in the midst of what a thread does: a stop there ends all of them at once.
+        """Pause inside a thread; a stop during the pause ends all threads at once.
 
         Raises:
-            StopProgram: the run is to stop.
+            StopProgram: the run has to stop.
         """
         try:
             self._hold(moment)
         except StopProgram as stop:
-            if self._baton.current is not self._baton.main:
-                self._baton.hand_to_main(stop)
+            if self._scheduler.current is not self._scheduler.main:
+                self._scheduler.hand_to_main(stop)
             raise
 
     def _hold(self, moment: Paused) -> None:
-        """Stand still until told to go on.
+        """Pause; block until resumed.
 
         Raises:
-            StopProgram: the run is to stop.
+            StopProgram: the run has to stop.
         """
         session = self._session
         self._trace_from = None if self._tracer.on else self._trace_from

@@ -1,7 +1,7 @@
-"""Carries something out in a copy of the process, so that nothing of it stays.
+"""Runs a function in a forked copy of the process, so that it has no side effects.
 
-What a program's own `__repr__`, property or comparison does, whether it loops, prints,
-changes itself or eats memory, happens to the copy, which is thrown away.
+A `__repr__`, property or comparison of the program may loop, print, change state or use up
+memory: that happens only in the copy, which is discarded.
 """
 
 from __future__ import annotations
@@ -20,44 +20,44 @@ from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Session
 
 MOST_BYTES = 4 << 20
-"""A longer answer is not taken."""
+"""A longer answer is discarded."""
 BLOCKED_LIMIT_S = 2.0
-"""Real seconds after which a copy is ended that uses no processor time, for instance one that waits for a lock."""
+"""Real seconds after which a copy that uses no CPU time is killed, for instance when it waits for a lock."""
 
 
 class TooLong(BaseException):
-    """A value takes too long to be looked at. No `Exception`, so that the program's handlers let it pass."""
+    """Evaluating a value takes too long. Not an `Exception`, so that the program's handlers do not catch it."""
 
 
 def apart(
-    session: Session, baton: Scheduler, work: Callable[[], bytes], limit_s: float, go_on: Callable[[], bool]
+    session: Session, scheduler: Scheduler, work: Callable[[], bytes], limit_s: float, go_on: Callable[[], bool]
 ) -> bytes | None:
-    """Return what `work` gives in a copy of this process.
+    """Return the result of `work` from a copy of this process.
 
     Args:
-        session: The run, which is frozen in the copy.
-        baton: Its threads.
-        work: What to do there.
-        limit_s: Seconds of processor time after which the copy is ended: a busy machine changes no answer.
-        go_on: Called when a command has come; False gives up.
+        session: The run, frozen in the copy.
+        scheduler: The program's threads.
+        work: Function to call in the copy.
+        limit_s: CPU seconds after which the copy is killed: load on the machine changes no result.
+        go_on: Called when a command has arrived; False cancels.
 
     Returns:
-        Its answer, None if there is none in time.
+        The result; None if there is none in time.
     """
     try:
         answer_fd, answer_write = os.pipe()
     except OSError:
-        # The program has used up its files.
+        # The program has no file descriptors left.
         return None
     try:
         pid = wallclock.fork()
     except OSError:
-        # It has used up the machine.
+        # The machine has no processes left.
         os.close(answer_fd)
         os.close(answer_write)
         return None
     if not pid:
-        _be_the_copy(session, baton, work, answer_write, limit_s)
+        _be_the_copy(session, scheduler, work, answer_write, limit_s)
     os.close(answer_write)
     try:
         return _answer(session.channel, answer_fd, wallclock.monotonic() + BLOCKED_LIMIT_S, go_on)
@@ -84,10 +84,10 @@ def _answer(channel: Channel, fd: int, until_s: float, go_on: Callable[[], bool]
 
 
 def _be_the_copy(
-    session: Session, baton: Scheduler, work: Callable[[], bytes], answer_fd: int, limit_s: float
+    session: Session, scheduler: Scheduler, work: Callable[[], bytes], answer_fd: int, limit_s: float
 ) -> NoReturn:
     try:
-        # Whatever goes wrong here, also inside a long C call, ends without help from outside.
+        # These end the copy in any case, even inside a long C call.
         for number, timer, seconds in (
             (signal.SIGPROF, signal.ITIMER_PROF, limit_s),
             (signal.SIGALRM, signal.ITIMER_REAL, 2 * BLOCKED_LIMIT_S),
@@ -95,20 +95,20 @@ def _be_the_copy(
             wallclock.set_signal(number, int(signal.SIG_DFL))
             wallclock.set_timer(timer, seconds)
         wallclock.settrace(None)
-        _freeze(session, baton)
+        _freeze(session, scheduler)
         data = work()
         while data:
             data = data[os.write(answer_fd, data) :]
-    except BaseException:  # an answer that does not come is told by the parent
+    except BaseException:  # the parent handles a missing answer
         pass
     finally:
         wallclock.exit_process(0)
 
 
-def _freeze(session: Session, baton: Scheduler) -> None:
-    """Let nothing move or be written in the copy; what is read of the devices costs nothing there."""
+def _freeze(session: Session, scheduler: Scheduler) -> None:
+    """Disable motion and writing in the copy; reading devices is free of charge there."""
     frozen: Any = session
-    threads: Any = baton
+    threads: Any = scheduler
     session.free = 1
     for name in ("spend", "advance", "command", "wait_for_motor", "speak", "show", "_pass"):
         setattr(frozen, name, _refuse)
@@ -122,12 +122,12 @@ def _freeze(session: Session, baton: Scheduler) -> None:
 
 
 def _refuse(*_args: object, **_kwargs: object) -> NoReturn:
-    raise RuntimeError("the program stands still: no time can pass and nothing can move while it is looked at")
+    raise RuntimeError("the program is paused: no time can pass and nothing can move while it is inspected")
 
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raise `TooLong` in the body after so many real seconds, again and again; only in a copy."""
+    """Raise `TooLong` in the body after `seconds` of real time, repeatedly; only for use in a copy."""
 
     def too_long(_number: int, _frame: object) -> None:
         raise TooLong

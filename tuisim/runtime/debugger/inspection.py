@@ -1,4 +1,4 @@
-"""Answers a look at a program that stands still."""
+"""Inspection of a paused program: threads, frames, variables, watches."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from tuisim.runtime.scheduler import ScheduledThread, Scheduler
 from tuisim.runtime.session import Session
 
 LOOK_LIMIT_S = 0.3
-"""Real seconds that the program's own code gets to show itself, all values together."""
+"""Time for the program's own code to render all values together, in real seconds."""
 TOO_LONG = "values that are worked out by the program's own code take too long"
 MOST_NAMES = 200
 MOST_FRAMES = 200
 MOST_WATCHES = 50
 _UNSHOWN = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
-"""Kinds of global names that are left out: what the program has imported and defined, not what it works on."""
+"""Types of globals that are not listed: imports and definitions, not data."""
 
 Names = list[tuple[str, str, str]]
-"""Name, kind and text."""
+"""Name, type and text."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """What is looked at."""
+    """The thread and frame to inspect."""
 
     task: ScheduledThread
     top: types.FrameType | None
-    """Innermost frame of the thread, whosever it is."""
+    """Innermost frame of the thread, including library and runtime frames."""
     frames: list[types.FrameType]
-    """The program's own, innermost first."""
+    """The program's own frames, innermost first."""
     at: int
 
     @property
@@ -48,30 +48,35 @@ class _Place:
 
 
 class Looker:
-    """Looks at a run that stands still.
+    """Inspects a paused run.
 
     Args:
         session: The run.
-        baton: Its threads.
+        scheduler: The program's threads.
         tracer: Knows which code is the program's own.
-        module: Gives the global names of the program.
-        prepared: By name, the identity of what was there before the program: it is not shown.
+        module: Holds the program's global names.
+        prepared: Identities of the objects that existed before the program, by name; they are not listed.
     """
 
     def __init__(
-        self, session: Session, baton: Scheduler, tracer: Tracer, module: Mapping[str, Any], prepared: Mapping[str, int]
+        self,
+        session: Session,
+        scheduler: Scheduler,
+        tracer: Tracer,
+        module: Mapping[str, Any],
+        prepared: Mapping[str, int],
     ) -> None:
         self._prepared = prepared
-        self._session, self._baton, self._tracer, self._module = session, baton, tracer, module
+        self._session, self._scheduler, self._tracer, self._module = session, scheduler, tracer, module
         self._seen: dict[tuple[str, str], dict[str, str]] = {}
-        """By scope, the texts of the names at the last look."""
+        """Texts of the names at the last inspection, by scope."""
 
     def look(self, wanted: Inspect, go_on: Callable[[], bool]) -> Inspected:
         """Return the state of the run.
 
         Args:
-            wanted: What is asked.
-            go_on: Called when a command comes in meanwhile; False gives up on the values.
+            wanted: The request.
+            go_on: Called when a command arrives meanwhile; False cancels the values.
         """
         tops = sys._current_frames()
         place = self._place(wanted, tops)
@@ -86,7 +91,7 @@ class Looker:
             thread=self.name_of(place.task),
             frame=place.at,
             waiting=waiting_note(self._session, place.task, place.top),
-            threads=tuple(self._thread_state(task, tops) for task in self._baton.tasks),
+            threads=tuple(self._thread_state(task, tops) for task in self._scheduler.tasks),
             stack=tuple(self._frame_state(found) for found in place.frames[:MOST_FRAMES]),
             variables=variables,
             globals=found_globals,
@@ -101,55 +106,55 @@ class Looker:
         name = getattr(thread, "_name", "")
         return cut(str(name), 60) if isinstance(name, str) and name else f"thread {task.ident}"
 
-    # Where
+    # Selection
 
     def _place(self, wanted: Inspect, tops: Mapping[int, types.FrameType]) -> _Place:
-        tasks = self._baton.tasks
+        tasks = self._scheduler.tasks
         task = next((task for task in tasks if wanted.thread and self.name_of(task) == wanted.thread), None)
-        task = task or self._baton.current
+        task = task or self._scheduler.current
         top = tops.get(task.ident)
         frames = self._tracer.own_frames(top)
         return _Place(task, top, frames, max(0, min(wanted.frame, len(frames) - 1)))
 
     def _thread_state(self, task: ScheduledThread, tops: Mapping[int, types.FrameType]) -> ThreadState:
         top = tops.get(task.ident)
-        held = task is self._baton.current
+        paused = task is self._scheduler.current
         file = self._session.program_file
         frames = [frame for frame in self._tracer.own_frames(top) if frame.f_code.co_filename == file]
         line = frames[0].f_lineno if frames else 0
-        return ThreadState(self.name_of(task), line or 0, waiting_note(self._session, task, top), held)
+        return ThreadState(self.name_of(task), line or 0, waiting_note(self._session, task, top), paused)
 
     def _frame_state(self, frame: types.FrameType) -> FrameState:
         file = frame.f_code.co_filename
         shown = "" if file == self._session.program_file else file
         return FrameState(frame.f_code.co_name, frame.f_lineno or 0, shown)
 
-    # What
+    # Variables
 
     def _values(self, place: _Place, watches: tuple[str, ...], go_on: Callable[[], bool]) -> tuple[dict[str, Any], str]:
         frame = place.frame
-        # The locals of a frame of this thread are taken in the copy: taken here, they would live longer.
-        local = None if frame is None or place.task is self._baton.current else frame.f_locals
+        # The locals of a frame of this thread are read in the copy: read here, they would be kept alive.
+        local = None if frame is None or place.task is self._scheduler.current else frame.f_locals
 
         def shown(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:
             def work() -> bytes:
                 return json.dumps(self._shown(frame, local, expressions, seconds)).encode("utf-8", "replace")
 
-            answer = apart(self._session, self._baton, work, LOOK_LIMIT_S, go_on)
+            answer = apart(self._session, self._scheduler, work, LOOK_LIMIT_S, go_on)
             found: dict[str, Any] | None = None if answer is None else json.loads(answer)
             return found
 
         whole = shown(LOOK_LIMIT_S / 2, watches)
         if whole is not None:
             return whole, ""
-        # Once more without the program's own code, which may be what does not come back.
+        # Again without the program's own code, which may be what does not return.
         plain = shown(0.0, ()) or {"locals": [], "globals": []}
         return {**plain, "watches": [(text, "", "takes too long") for text in watches]}, TOO_LONG
 
     def _shown(
         self, frame: types.FrameType | None, local: Mapping[str, Any] | None, watches: tuple[str, ...], seconds: float
     ) -> dict[str, Any]:
-        """Return names and watches as plain data. Done in the copy."""
+        """Return names and watches as plain data. Runs in the copy."""
         inside = self._module if frame is None else frame.f_globals
         names = inside if frame is None else frame.f_locals if local is None else local
         own_module = names is inside
@@ -168,7 +173,7 @@ class Looker:
         return {name: value for name, value in names.items() if prepared.get(name) != id(value)}
 
     def _marked(self, scope: tuple[str, ...], names: Names) -> tuple[Variable, ...]:
-        """Return names with the mark of those whose text is another one than before."""
+        """Return variables, marked if their text has changed."""
         key = (scope[0], "\0".join(scope[1:]))
         before = self._seen.get(key)
         if names:
@@ -179,7 +184,7 @@ class Looker:
 
 
 def _plain(names: Mapping[str, Any]) -> dict[str, Any]:
-    """Return names as a plain dictionary; a class body may have a mapping of the program's own."""
+    """Return names as a dict; a class body may use a mapping of the program."""
     try:
         return dict(names)
     except Exception:  # the mapping's own code may raise anything
@@ -187,7 +192,7 @@ def _plain(names: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _texts(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
-    """Return names with their values as text; hidden ones, and unless `whole` is asked modules and such, left out."""
+    """Return names with their values as text; without hidden names and, unless `whole`, without modules etc."""
     found: Names = []
     for name, value in list(names.items()):
         if not isinstance(name, str) or name.startswith(("__", ".")):

@@ -1,4 +1,4 @@
-"""Steps: at which of the lines that are met one of them is done."""
+"""Steps: at which line a step is complete."""
 
 from __future__ import annotations
 
@@ -9,31 +9,31 @@ from tuisim.runtime.scheduler import ScheduledThread
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step that is under way."""
+    """A step in progress."""
 
     task: ScheduledThread | None
-    """Thread that is stepped; None ends it at the next line of any thread."""
+    """Thread that is stepped; None completes it at the next line of any thread."""
     most_depth: int
-    """It ends where at most so many calls of the program's own code are open."""
+    """Largest number of open calls of the program's own code at which it is complete."""
 
     def is_done(self, task: ScheduledThread, depth: int) -> bool:
-        """Whether a line that is about to run ends it."""
+        """Return whether a line that is about to run completes the step."""
         if self.task is None or self.task.done:
             return True
         return task is self.task and depth <= self.most_depth
 
 
 ENDLESS_DEPTH = 1 << 30
-"""Deeper than any stack."""
+"""Larger than the depth of any stack."""
 
 
 def step_from(how: str, task: ScheduledThread, depth: int) -> Step:
-    """Return the step that begins at a line.
+    """Return the step that starts at a line.
 
     Args:
         how: One of `protocol.STEPS`.
-        task: Thread that is held there.
-        depth: How many calls of the program's own code are open.
+        task: Thread that is paused there.
+        depth: Number of open calls of the program's own code.
     """
     if how == "into":
         return Step(task, ENDLESS_DEPTH)
@@ -41,4 +41,4 @@ def step_from(how: str, task: ScheduledThread, depth: int) -> Step:
 
 
 NEXT_LINE = Step(None, ENDLESS_DEPTH)
-"""Ends at the next line of any thread."""
+"""Complete at the next line of any thread."""

@@ -1,7 +1,7 @@
-"""Counts the program's lines and finds those at which it is to hold.
+"""Counts the program's lines and finds those at which it has to pause.
 
-Trace functions are installed only while this is wanted: otherwise a program runs as if
-there were no debugger. Only code of the program's own files gets line events.
+Trace functions are installed only while they are needed: otherwise a program runs as if
+there were no debugger. Only code in the program's own files gets line events.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ class Tracer:
 
     Args:
         session: The run.
-        baton: Tells which thread runs, and when another one begins to.
-        check: Called for each line that `closely` or `lines` ask for; may hold the run.
+        scheduler: Knows the current thread, and calls back when a thread starts to run.
+        check: Called for each line that `closely` or `lines` select; may pause the run.
     """
 
-    def __init__(self, session: Session, baton: Scheduler, check: LineCheck) -> None:
-        self._session, self._baton, self._check = session, baton, check
+    def __init__(self, session: Session, scheduler: Scheduler, check: LineCheck) -> None:
+        self._session, self._scheduler, self._check = session, scheduler, check
         self._sim = session.sim
         self._own = own_files(session.program_file)
         self._own_by_file: dict[str, bool] = {}
@@ -43,22 +43,22 @@ class Tracer:
         self.closely = False
         """Whether every line is checked."""
         self.lines: frozenset[int] = frozenset()
-        """Lines that are checked in any case."""
+        """Lines that are always checked."""
         self._tick, self._ordinal = -1, 0
         self._uncounted_tick = -1
-        """The tick in which counting began too late."""
+        """The tick in which counting started too late."""
         self._frame_id, self._depth = 0, 0
         self._met: deque[tuple[int, int, int, ScheduledThread, int]] = deque(maxlen=HISTORY_LINES)
-        baton.entered = self.enter
+        scheduler.entered = self.enter
 
     # On and off
 
     def switch(self, on: bool, at_tick: bool) -> None:
-        """Begin or end tracing.
+        """Switch tracing on or off.
 
         Args:
-            on: What is wanted.
-            at_tick: Whether a tick has just been done, or the next one is right before us.
+            on: Whether to trace.
+            at_tick: Whether a tick has just been run or is about to run.
         """
         if on == self.on:
             return
@@ -70,10 +70,10 @@ class Tracer:
         self.enter()
 
     def enter(self) -> None:
-        """Let the thread that begins to run be traced, or not, as is wanted."""
+        """Switch tracing in the thread that starts to run on or off as needed."""
         found = wallclock.gettrace()
         if found is not None and getattr(found, "__self__", None) is not self:
-            # The program traces itself: it keeps what it has set.
+            # The program traces itself: keep its trace function.
             return
         self._frame_id = 0
         if not self.on:
@@ -89,11 +89,11 @@ class Tracer:
             wallclock.settrace(self._on_call)
 
     def is_own(self, frame: types.FrameType) -> bool:
-        """Whether a frame is of the program's own files."""
+        """Whether a frame belongs to the program's own files."""
         file = frame.f_code.co_filename
         own = self._own_by_file.get(file)
         if own is None:
-            # Code that a program makes itself may be of any file; lines that nobody can see are not shown.
+            # Generated code may claim any file; lines that the user cannot see are not shown.
             seen = file == self._session.program_file or file in OWN_FILES
             own = seen or (self._own(file) and os.path.isfile(file))
             self._own_by_file[file] = own
@@ -102,7 +102,7 @@ class Tracer:
     # Events
 
     def _on_call(self, frame: types.FrameType, _event: str, _arg: Any) -> Any:
-        # Called for every call of the library too: looked up here, without another call.
+        # Called for every call in the library, too: inlined look-up, without another call.
         own = self._own_by_file.get(frame.f_code.co_filename)
         if own or (own is None and self.is_own(frame)):
             self._frame_id = 0
@@ -117,27 +117,27 @@ class Tracer:
                 self._tick, self._ordinal = tick, 0
             self._ordinal += 1
             if id(frame) != self._frame_id:
-                # Every call and return clears it, so that no frame is taken for another one.
+                # Every call and return clears it, so that no frame is mistaken for another.
                 self._frame_id, self._depth = id(frame), self.depth_of(frame)
-            self._met.append((tick, self._ordinal, line, self._baton.current, self._depth))
+            self._met.append((tick, self._ordinal, line, self._scheduler.current, self._depth))
             if self.closely or line in self.lines:
                 self._check(frame, line)
         elif event == "return":
             self._frame_id = 0
         return self._on_event
 
-    # What is known
+    # State
 
     @property
     def ordinal(self) -> int:
-        """How many lines were met since the last tick was done."""
+        """Number of lines since the last tick."""
         tick = self._session.sim.tick
         if not self.on or tick == self._uncounted_tick:
             return UNKNOWN_ORDINAL
         return self._ordinal if tick == self._tick else 0
 
     def depth_of(self, frame: types.FrameType | None) -> int:
-        """Return how many calls of the program's own code are open in a thread."""
+        """Return the number of open calls of the program's own code in a thread."""
         depth = 0
         while frame is not None:
             depth += self.is_own(frame)
@@ -154,7 +154,7 @@ class Tracer:
         return found
 
     def history(self, count: int, name_of: Callable[[ScheduledThread], str]) -> tuple[ExecutedLine, ...]:
-        """Return the lines that were met last and whose place in their tick is known."""
+        """Return the last lines whose position in their tick is known."""
         met = [row for row in self._met if row[0] != self._uncounted_tick]
         return tuple(
             ExecutedLine(tick, ordinal, line, name_of(task), depth)

@@ -1,4 +1,4 @@
-"""Values as short texts, whatever they are. Runs in a copy of the process (`apart`)."""
+"""Short texts for arbitrary values. Runs in a copy of the process (`apart`)."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ MOST_CHARACTERS = 400
 MOST_ITEMS = 24
 MOST_DEPTH = 3
 VALUE_LIMIT_S = 0.04
-"""CPU time that the program's own code gets for one value."""
+"""CPU time for the program's own code to render one value."""
 MOST_DIGITS = 200
-"""Whole numbers with more digits are told by their size: writing them takes long."""
+"""Integers with more digits are shown by their size: converting them takes long."""
 
 _ADDRESS = re.compile(r" at 0x[0-9a-f]{6,}")
-"""Says nothing to anybody, and is another one in every run."""
+"""Meaningless to the user, and different in every run."""
 _BRACKETS = {list: ("[", "]"), tuple: ("(", ")"), set: ("{", "}"), frozenset: ("{", "}"), dict: ("{", "}")}
 
 
@@ -31,15 +31,15 @@ def kind_of(value: object) -> str:
 
 
 def cut(text: str, most: int = MOST_CHARACTERS) -> str:
-    """Return a text on one line, cut to a length."""
+    """Return a text on one line, truncated."""
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
 class Renderer:
-    """Renders values until their time is used up.
+    """Renders values until the time limit is reached.
 
     Args:
-        seconds: CPU time that the program's own code gets for all of them.
+        seconds: CPU time for the program's own code, for all values together.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -110,17 +110,17 @@ def _own_text(value: Any) -> str:
     kind: Any = type(value)
     if kind.__module__ == "numpy" and kind.__name__ == "ndarray":
         return cut(f"array(shape={value.shape}, dtype={value.dtype})")
-    # An exact string, whatever class of the program's own the text is of.
+    # An exact str, even if the program returned a subclass.
     text = _ADDRESS.sub("", str.__str__(repr(value))[: 2 * MOST_CHARACTERS])
     return cut(text[:MOST_CHARACTERS] + ("…" if len(text) > MOST_CHARACTERS else ""))
 
 
 def describe(error: BaseException) -> str:
-    """Return kind and message of an error; never raises."""
+    """Return type and message of an error; never raises."""
     try:
         with time_limit(VALUE_LIMIT_S):
             message = str(error)
-    except BaseException:  # the message may be the program's own code too
+    except BaseException:  # formatting the message may run code of the program
         message = ""
     return cut(f"{kind_of(error)}: {message}" if message else kind_of(error), 200)
 
@@ -131,7 +131,7 @@ def evaluate(renderer: Renderer, text: str, names: Mapping[str, Any], builtin: A
     Args:
         renderer: Renders the value.
         text: The expression.
-        names: What its names stand for.
+        names: Values of its names.
         builtin: The program's builtins.
     """
     try:
@@ -145,9 +145,9 @@ def evaluate(renderer: Renderer, text: str, names: Mapping[str, Any], builtin: A
 
 
 def evaluate_truth(text: str, names: Mapping[str, Any], builtin: Any) -> str:
-    """Return `.` and, if an expression is true or cannot be evaluated, what is to be said of it.
+    """Return `.`, followed by a reason to pause if an expression is true or cannot be evaluated.
 
-    One with a name that does not exist yet is not true yet.
+    An expression with an undefined name is not true.
     """
     code = compile(text.strip(), "<break>", "eval", dont_inherit=True)
     try:
@@ -155,7 +155,7 @@ def evaluate_truth(text: str, names: Mapping[str, Any], builtin: Any) -> str:
             return ".is true" if eval(code, {"__builtins__": builtin, **names}) else "."
     except TooLong:
         return ".takes too long"
-    except BaseException as error:  # any error of the condition is worth holding for
+    except BaseException as error:  # any error of the condition is worth pausing for
         if isinstance(error, NameError) and error.name in code.co_names:
             return "."
         return f".cannot be evaluated: {describe(error)}"

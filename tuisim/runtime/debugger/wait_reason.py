@@ -1,4 +1,4 @@
-"""What a thread of a program that stands still is waiting for, read off its stack."""
+"""What a thread of a paused program is waiting for, derived from its stack."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LIBRARY = os.sep + "ev3dev2" + os.sep
 
 
 def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType | None) -> str:
-    """Return what a thread waits for and until when, empty if it could run on.
+    """Return what a thread waits for and until when; empty if it is ready to run.
 
     Args:
         session: The run.
@@ -52,7 +52,7 @@ def _is_library(file: str) -> bool:
 
 
 def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameType]) -> int | None:
-    """Return when the wait is over; None if that has no time, or there is no wait."""
+    """Return when the wait ends; None if it has no end time, or there is no wait."""
     if task.order:
         return None if task.wake_ns == FOREVER else task.wake_ns
     for frame in frames:
@@ -63,7 +63,7 @@ def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameT
 
 
 def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str) -> str:
-    """Return what one call of ours waits for, empty if it is not what says it."""
+    """Return what a call of the runtime or the library waits for; empty if this frame does not show it."""
     code = frame.f_code
     if not code.co_filename.startswith(PACKAGE_FOLDER):
         return ""
@@ -94,7 +94,7 @@ def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameTy
 
 
 def _lock_owner(outer: list[types.FrameType]) -> str:
-    """Return what the lock that is waited for belongs to."""
+    """Return the owner of the lock that is waited for."""
     names = [(os.path.basename(frame.f_code.co_filename), frame.f_code.co_qualname) for frame in outer]
     for file, name in names:
         if file == "queue.py":
@@ -133,10 +133,10 @@ def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> s
 
 def _paths(owner: object) -> list[str]:
     """Return the device folders of a motor or a set of motors of the library."""
-    held = getattr(owner, "__dict__", {})
-    if isinstance(path := held.get("_path"), str):
+    attributes = getattr(owner, "__dict__", {})
+    if isinstance(path := attributes.get("_path"), str):
         return [path]
-    motors = held.get("motors")
+    motors = attributes.get("motors")
     return [path for motor in motors.values() for path in _paths(motor)] if isinstance(motors, dict) else []
 
 
