@@ -139,7 +139,7 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
         await until(pilot, lambda: "The edited program" in screen_text(app))
         await pilot.press("y")
         await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 260)
-        await until(pilot, lambda: any("went another way from 0." in notice for notice in notices(app)))
+        await until(pilot, lambda: any("it differs from 0." in notice for notice in notices(app)))
         await stop(pilot, app)
 
 
@@ -164,7 +164,7 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         to_tick(app, 80)
         await pilot.press("y", "y")
         await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == ENDED)
-        await until(pilot, lambda: any("of the edited program: it went another way" in n for n in notices(app)))
+        await until(pilot, lambda: any("of the edited program: it differs" in n for n in notices(app)))
 
 
 @pytest.mark.slow

@@ -196,7 +196,7 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         await pilot.press("g")
         app.screen.query_one(Input).value = "nowhere"
         await pilot.press("enter")
-        await until(pilot, lambda: "'nowhere' is no place in time" in screen_text(app))
+        await until(pilot, lambda: "'nowhere' is not an instant" in screen_text(app))
         await pilot.press("escape", "home")
         recording = app.bridge.timeline.recording
         assert recording is not None

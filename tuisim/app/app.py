@@ -1,4 +1,4 @@
-"""The app: panels, keys, and one run at a time."""
+"""The app: wires panels, keys and one run at a time together."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ if TYPE_CHECKING:
     from tuisim.core.field import Field
 
 AFTER_FIRST_PAINT_S = 0.05
-"""The screen is painted more than once at the start; what is large is sent after that."""
+"""Large data is sent this much later: the screen is painted more than once at startup."""
 _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
-"""Between two looks at what the run has written while nothing happens."""
+"""Seconds between two polls of the run while nothing happens."""
 _AWAKE_S = 1.0
-"""So long it is looked at as often as there are frames after something has happened."""
+"""Seconds to keep polling at frame rate after something has happened."""
 
 
 def _palette() -> type[Provider]:
@@ -97,15 +97,15 @@ class LabApp(PanelMessages):
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
 
-    # Life
+    # Lifecycle
 
     def compose(self) -> ComposeResult:
-        """Lay out the desk and the footer."""
+        """Lay out the panel area and the footer."""
         yield self.desk
         yield self.key_footer
 
     def on_ready(self) -> None:
-        """Begin what costs time, after the first paint."""
+        """Start the expensive work after the first paint."""
         if self.is_headless:
             self.pacer.asks = False
         self.situation_changed()
@@ -121,18 +121,18 @@ class LabApp(PanelMessages):
         else:
             self.loading.prepare_mat()
             self.loading.begin()
-        # Breaks hold, and are kept, whether or not a panel shows the program.
+        # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugging.program_changed(self.bridge.program)
         self._beats = self.set_interval(1 / self.settings.fps, self._beat)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.loading.look)
 
     def suspending(self) -> None:
-        """Let nothing move while the app is stopped, and nothing go on by itself after that."""
+        """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""
         time_travel.stand_still(self)
 
     def on_unmount(self) -> None:
-        """Leave no child behind, and no unsaved work."""
+        """Kill the child process and save unsaved work as a draft."""
         self.work.keep()
         self.debugging.close()
         self.bridge.close()
@@ -141,7 +141,7 @@ class LabApp(PanelMessages):
     # The world
 
     def mat_ready(self, pixels: Pixels | None) -> None:
-        """The mat has been prepared; its picture, unless it lies there already."""
+        """Show the image of the mat that has been prepared, unless it is shown already."""
         if pixels is not None and (world := self.desk.world):
             world.set_mat(pixels)
         self.draw(force=True)
@@ -151,7 +151,7 @@ class LabApp(PanelMessages):
                 self.start_run()
 
     def plan_changed(self) -> None:
-        """Show that the next run will be another."""
+        """Update the panels after the plan of the next run has changed."""
         self._introduce_program()
         self.desk.show_plan(self.bridge.plan)
         self.situation_changed()
@@ -160,7 +160,7 @@ class LabApp(PanelMessages):
     # A run
 
     def start_run(self, held: bool = False) -> bool:
-        """Start the program, as soon as the mat is ready; whether it has started.
+        """Start the program, as soon as the mat is ready. Return whether it has started.
 
         Args:
             held: Hold it at its first line.
@@ -181,7 +181,7 @@ class LabApp(PanelMessages):
         return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
-        """Make the panels ready for another run, which may be over already and have ended with some words."""
+        """Prepare the panels for another run, which may have ended already with some last words."""
         recording = self.bridge.timeline.recording
         self.feed = Feed(recording) if recording else None
         self._last_words = last_words
@@ -194,13 +194,13 @@ class LabApp(PanelMessages):
         self.situation_changed()
 
     def _beat(self) -> None:
-        """Take what the run has written, and show a frame if the terminal has shown the last one."""
+        """Process what the run has written, and draw a frame if the terminal has shown the last one."""
         try:
             news = self.bridge.poll()
             self._take(news)
             time_travel.beat(self)
             self.debugging.beat()
-            # A frame that has to wait is as good as drawn.
+            # A frame that has to wait counts as drawn.
             drew = not self.pacer.ready() or self.draw()
             if drew or news or self.debugging.busy:
                 self._wake()
@@ -223,13 +223,13 @@ class LabApp(PanelMessages):
         return time.monotonic() < self._awake_until_s
 
     def _wake(self) -> None:
-        """Look often at what the run has written: something has happened."""
+        """Poll the run at frame rate for a while: something has happened."""
         self._awake_until_s = time.monotonic() + _AWAKE_S
         if self._beats is not None:
             self._beats.resume()
 
     async def on_event(self, event: events.Event) -> None:
-        """Be awake while the user does something."""
+        """Poll at frame rate while the user does something."""
         if isinstance(event, events.InputEvent):
             self._wake()
         await super().on_event(event)
@@ -280,7 +280,7 @@ class LabApp(PanelMessages):
         self.notify(words, severity="information" if good else "error", markup=False)
         self.debugging.ended()
         self.work.run_ended_at(ended.error_line)
-        # What was wrong is among the rows already, as a traceback.
+        # The traceback is among the rows already.
         known = ended.end in ("finished", "raised")
         self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
         self.situation_changed()
@@ -289,7 +289,7 @@ class LabApp(PanelMessages):
     # The picture
 
     def draw(self, force: bool = False) -> bool:
-        """Show the newest moment in every panel; whether it was not what they show already."""
+        """Show the current moment in every panel. Return whether it differs from what they show already."""
         snapshot = self.bridge.snapshot()
         now = (
             (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
@@ -318,14 +318,14 @@ class LabApp(PanelMessages):
             self._append(self.feed.chart_series(field))
 
     def _charted_field(self) -> Field | None:
-        """The mat that the chart's readings are taken from; None where there is nothing to draw them with, or in."""
+        """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
         mat = self.bridge.mat
         if self.feed is None or mat is None or not self.desk.shown("chart"):
             return None
         return mat.field if mat.serves(self.feed.recording.spec) else None
 
     def painted(self, size: int) -> None:
-        """Ask the terminal to tell when it has shown what it was sent; that comes as a `CursorPosition` event."""
+        """Ask the terminal to report when it has shown what it was sent; the answer is a `CursorPosition` event."""
         if self.pacer.painted(size) and self._driver is not None:
             self._driver.write(_CURSOR_QUERY)
 
@@ -334,14 +334,14 @@ class LabApp(PanelMessages):
         self.pacer.answered()
 
     def situation_changed(self) -> None:
-        """Bring the footer up to date."""
+        """Update the footer."""
         self._wake()
         show_footer(self, self.bridge.snapshot())
 
     # Panels
 
     def on_panel_area_added(self, message: PanelArea.Added) -> None:
-        """Tell a panel that has just come what it has missed."""
+        """Bring a newly mounted panel up to date."""
         if message.panel == "world" and (world := self.desk.world):
             world.show_rays = self.settings.rays
             if self.bridge.mat:
@@ -357,7 +357,7 @@ class LabApp(PanelMessages):
         self.call_after_refresh(self.draw, force=True)
 
     def on_panel_area_rearranged(self) -> None:
-        """Panels came, went or moved."""
+        """Handle panels that were shown, hidden or moved."""
         self.mark_box()
         self.call_after_refresh(self.draw, force=True)
 
@@ -368,7 +368,7 @@ class LabApp(PanelMessages):
     # What the user does
 
     def action_act(self, name: str) -> None:
-        """Do what a key stands for, or say why it does nothing now."""
+        """Run the action of a key, or say why it is unavailable now."""
         if is_leaving(self):
             return
         action = ACTIONS[name]
@@ -378,11 +378,11 @@ class LabApp(PanelMessages):
         action.do(self)
 
     def on_act(self, message: Act) -> None:
-        """A word in the footer or on a panel was clicked on."""
+        """Run an action whose word in the footer or on a panel was clicked."""
         self.action_act(message.action)
 
     def action_leave_field(self) -> None:
-        """Leave an input field; from the world, come back from the past."""
+        """Leave an input field; from the world, return from the past."""
         if self.debugging.is_away and self.focused in (None, self.desk.world):
             time_travel.to_now(self)
         self.desk.focus_world()
@@ -393,7 +393,7 @@ class LabApp(PanelMessages):
         self.action_leave_field()
 
     def on_click(self, event: events.Click) -> None:
-        """A click beside every field leaves it."""
+        """Leave the input field when the user clicks elsewhere."""
         in_a_dialog = self.screen is not self.desk.screen
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             self.action_leave_field()
@@ -408,10 +408,10 @@ class LabApp(PanelMessages):
 
 
 def _choose_colors(colors: str) -> None:
-    """Fix the colours that the terminal is sent; `auto` leaves the choice to Textual."""
+    """Set the colour depth of the terminal; `auto` leaves the choice to Textual."""
     system = {"truecolor": "truecolor", "256": "256", "16": "standard"}.get(colors)
     if system:
-        # Textual looks at the environment when it is imported, and that was before the settings were known.
+        # Textual reads the environment when it is imported, before the settings are known.
         constants.COLOR_SYSTEM = system  # type: ignore[misc]
     if colors == "none":
         os.environ["NO_COLOR"] = "1"
@@ -426,16 +426,16 @@ def run_app(settings: AppSettings) -> int:
 
 
 _BUTTONS = re.compile(r"^[^#\n]*\bev3dev2(\.|\s+import\s.*\b)button\b", re.MULTILINE)
-"""How a program comes by the buttons."""
+"""The hint to open the brick panel when a program uses the brick."""
 
 
 def looks_at_buttons(program: str) -> bool:
-    """Return whether the text of a program asks for the brick's buttons."""
+    """Return whether the text of a program uses the brick's buttons."""
     return bool(_BUTTONS.search(program))
 
 
 class BrickHint:
-    """One for the app.
+    """Suggests the brick panel, once per run.
 
     Args:
         lab: The app.
@@ -446,12 +446,12 @@ class BrickHint:
         self._told = False
 
     def started(self, program: str) -> None:
-        """A program was started; its text tells whether it looks at the buttons."""
+        """Check whether the text of a started program uses the brick's buttons."""
         if not self._told and looks_at_buttons(program):
             self._tell("looks at the brick's buttons")
 
     def shown(self, rows: Iterable[OutputRow]) -> None:
-        """The program has written these rows."""
+        """Check the rows that the program has written."""
         if not self._told and any(row.stream in (DISPLAY, CONSOLE) for row in rows):
             self._tell("shows something on the brick")
 

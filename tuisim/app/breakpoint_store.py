@@ -1,4 +1,4 @@
-"""Breakpoints and watches, kept with each program in the user's data folder."""
+"""Breakpoints and watches, stored per program in the user's data folder."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tuisim.source import source_lines
 
 FOLDER = "breaks"
 MAX_KEPT = 200
-"""Breaks and watches of one program."""
+"""Breakpoints and watches of one program."""
 
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What is kept of one program."""
+    """The stored breakpoints and watches of one program."""
 
     breaks: tuple[Breakpoint, ...] = ()
     watches: tuple[str, ...] = ()
@@ -32,7 +32,7 @@ def _file(program: str) -> Path:
 
 
 def load_kept(program: str) -> Kept:
-    """Return what is kept of a program; nothing if there is none, or what is there cannot be read.
+    """Return what is stored for a program; empty if there is nothing or it cannot be read.
 
     Args:
         program: Its path, or its name if it is in no file.
@@ -46,7 +46,7 @@ def load_kept(program: str) -> Kept:
 
 
 def keep(program: str, kept: Kept) -> None:
-    """Keep the breaks and watches of a program.
+    """Store the breakpoints and watches of a program.
 
     Raises:
         ConfigError: they cannot be written.
@@ -62,7 +62,7 @@ def keep(program: str, kept: Kept) -> None:
 
 
 def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
-    """Return breaks on the same lines of a text that was edited in one place; those on lines that went are gone."""
+    """Move breakpoints along with their lines after one edit of the text; those on deleted lines are dropped."""
     old, new = source_lines(before), source_lines(now)
     shift = len(new) - len(old)
     if not shift:

@@ -14,17 +14,17 @@ if TYPE_CHECKING:
 
 
 ROOMY_COLUMNS, ROOMY_ROWS = 86, 15
-"""A smaller code panel grows while one types: lines of 79 characters are seen whole."""
+"""A code panel smaller than this grows while the user types, so that lines of 79 characters are visible."""
 
 
 class CodeMessages(TerminalApp):
-    """The part of the app that answers the code panel; Textual finds the methods by their names."""
+    """Message handlers of the app for the code panel; Textual finds the methods by name."""
 
     work: Document
     desk: PanelArea
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
-        """While one types, the text gets room, and the footer tells the editor's keys."""
+        """While the user types, give the code panel room and show the editor's keys in the footer."""
         cast("LabApp", self).situation_changed()
         if not message.typing:
             self.desk.give_all("")
@@ -32,18 +32,18 @@ class CodeMessages(TerminalApp):
             self.desk.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
 
     def on_code_edited(self, message: Code.Edited) -> None:
-        """The text was changed."""
+        """Handle an edit of the text."""
         self.work.edited(message.text)
         cast("LabApp", self).debugging.edited(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
-        """A key of the editor was pressed."""
+        """Handle a key of the editor."""
         match message.what:
             case "save":
                 self.work.save()
             case "run":
                 cast("LabApp", self).action_act("run")
-                # The robot is to be seen, or where the text is wrong.
+                # Make the robot visible, or the place of the error in the text.
                 if self.desk.alone and not (self.desk.code and self.desk.code.error_line):
                     self.desk.give_all("")
             case "new" | "open":

@@ -1,4 +1,4 @@
-"""Debugging: breaks and watches, where the program stands, and what it looks like there, now or in the past."""
+"""The app's side of debugging: breakpoints, watches, and where the program is paused, now or in the past."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ if TYPE_CHECKING:
     from tuisim.runs.handle import Program
 
 SHOWS_PANELS = ("step", "line", "break")
-"""Reasons of a pause for which the panels of debugging come by themselves."""
+"""Pause reasons that open the debug panels automatically."""
 
 
 @dataclass(frozen=True, slots=True)
 class DebugView:
-    """Where a program stands and what it looks like."""
+    """Where a program is paused, and its frames and variables there."""
 
     paused: Paused
     looked: Inspected
     past: bool
-    """Whether that is an instant that is looked back at."""
+    """Whether this is a past instant."""
 
 
 class AppDebugger:
-    """One for the app.
+    """The debugger of the app.
 
     Args:
         lab: The app.
@@ -44,34 +44,35 @@ class AppDebugger:
         self.breaks: tuple[Breakpoint, ...] = ()
         self.watches: tuple[str, ...] = ()
         self.standing: DebugView | None = None
-        """What is shown; None while the program runs, or before it stands anywhere."""
+        """What is shown; None while the program runs, or before it is first paused."""
         self._program = ""
         self._text = ""
         self._paused: Paused | None = None
-        """Where the run at work stands."""
+        """Where the live run is paused."""
         self._position: Position | None = None
-        """The instant that is looked back at, to the line."""
+        """The past instant that is viewed, exact to the line."""
         self._frame, self._thread = 0, ""
         self._stand_in = ReplayDebugger(self._arrived, self._not_there, self._came_to_now)
         self._wanted: Position | None = None
-        """The instant that the stand-in was last sent to."""
+        """The instant that the replay debugger was last sent to."""
         self._first: Message | None = None
-        """To be done when a run that was started for it stands at its first line."""
+        """Called when a run that was started for it pauses at its first line."""
         self._more_back = 0
-        """So many further lines back were asked for while the first ones were being worked out."""
+        """Number of further lines back that were requested while the first ones were being computed."""
         self._panels_came = False
         self._untold = False
-        """Whether the run at work was not told the breaks, as a branch is only on its instant."""
+        """Whether the live run has not yet received the breakpoints, because a branch is still on the way to its
+        instant."""
 
-    # Breaks and watches
+    # Breakpoints and watches
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The breaks as the run is told them."""
+        """The breakpoints as sent to the run."""
         return tuple(one.written() for one in self.breaks)
 
     def program_changed(self, program: Program | None) -> None:
-        """Another program is open, or its text is another one."""
+        """Update the breakpoints for another program or another text."""
         key = (program.path or program.name) if program else ""
         if key != self._program:
             self._program = key
@@ -81,21 +82,21 @@ class AppDebugger:
         self.mark()
 
     def edited(self, text: str) -> None:
-        """The text was edited: breaks stay on their lines."""
+        """Keep the breakpoints on their lines after an edit of the text."""
         breaks = breakpoint_store.following(self.breaks, self._text, text)
         self._text = text
         if breaks != self.breaks:
             self.set_breaks(breaks)
 
     def set_breaks(self, breaks: tuple[Breakpoint, ...]) -> None:
-        """From now on these breaks hold the run."""
+        """Set the breakpoints, in the run as well, and store them."""
         self.breaks = breaks
         self._tell_breaks()
         self._keep()
         self.mark()
 
     def _tell_breaks(self) -> None:
-        """Tell the run at work its breaks, each on its line of the text that runs."""
+        """Send the breakpoints to the live run, each on its line of the text that runs."""
         lines, texts = self._lab.work.lines(), []
         for one in self.breaks:
             shown = break_line_of(one)
@@ -105,7 +106,7 @@ class AppDebugger:
         self._lab.bridge.debug(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
-        """From now on these expressions are watched."""
+        """Set the watched expressions and store them."""
         self.watches = watches
         self._keep()
         self._look_again()
@@ -118,13 +119,13 @@ class AppDebugger:
                 self._lab.complain(error)
 
     def mark(self) -> None:
-        """Show the breaks in the code."""
+        """Show the breakpoints in the code."""
         if code := self._lab.desk.code:
             marks = {line: _mark(one) for line, one in break_lines(self.breaks).items()}
             code.set_marks(marks)
 
     def toggle_line(self, line: int) -> None:
-        """Put a breakpoint on a line, or take it away; one that is switched off is switched on."""
+        """Set or remove the breakpoint on a line; a disabled one is enabled."""
         there = break_lines(self.breaks).get(line)
         if there is None:
             self.set_breaks((*self.breaks, parse_break(str(line))))
@@ -136,7 +137,7 @@ class AppDebugger:
     # What comes from the run
 
     def run_changed(self) -> None:
-        """There is another run, or none."""
+        """Reset the state for another run, or none."""
         self._paused = self._position = self.standing = self._lab.bridge.held_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_came, self._untold = False, bool(self.breaks)
@@ -145,14 +146,14 @@ class AppDebugger:
         self.show()
 
     def ended(self) -> None:
-        """The run is over: it stands nowhere any more; a former instant is looked at as before."""
+        """Handle the end of the run: it is no longer paused; a past instant stays in view."""
         self._paused = None
         if not self.is_away:
             self.standing = self._lab.bridge.held_line = None
             self.show()
 
     def take(self, event: Message) -> None:
-        """The run stands still, goes on, or has told what it looks like."""
+        """Handle a report that the run has paused, has resumed, or sends its frames and variables."""
         if self._untold:
             self._untold = False
             self._tell_breaks()
@@ -182,7 +183,7 @@ class AppDebugger:
         self._look_again()
 
     def _come(self) -> None:
-        """Let the panels of debugging come, once a run."""
+        """Open the debug panels, once per run."""
         if self._panels_came:
             return
         self._panels_came = True
@@ -190,36 +191,36 @@ class AppDebugger:
             if not self._lab.desk.shown(panel):
                 self._lab.desk.toggle(panel)
 
-    # Looking
+    # Inspect
 
     @property
     def looks_back(self) -> bool:
-        """Whether a former instant is looked at, be it of this very tick."""
+        """Whether a past instant is viewed, even one within the newest tick."""
         return self._position is not None or self._lab.bridge.in_past
 
     @property
     def busy(self) -> bool:
-        """Whether a former instant is still being worked out."""
+        """Whether a past instant is still being computed."""
         return self._stand_in.busy
 
     @property
     def is_away(self) -> bool:
-        """Whether a former instant is looked at, or will be once it is worked out."""
+        """Whether a past instant is viewed, or will be once it is computed."""
         return self.looks_back or self.busy
 
     @property
     def look(self) -> protocol.Inspect:
-        """What is asked of a program that stands still."""
+        """Return the request that asks a paused program for its frames and variables."""
         return protocol.Inspect(self.watches, self._thread, self._frame)
 
     def choose_frame(self, by: int) -> None:
-        """Look at the caller of the frame, or at what it called."""
+        """Select the caller of the current frame, or the function that it called."""
         if self.standing:
             self._frame = min(max(0, self._frame + by), max(0, len(self.standing.looked.stack) - 1))
             self._look_again()
 
     def choose_thread(self) -> None:
-        """Look at the next thread."""
+        """Select the next thread."""
         if self.standing and (threads := self.standing.looked.threads):
             names = [thread.name for thread in threads]
             at = names.index(self.standing.looked.thread) if self.standing.looked.thread in names else -1
@@ -233,7 +234,7 @@ class AppDebugger:
             self._lab.bridge.debug(self.look)
 
     def beat(self) -> None:
-        """Follow the instant that is looked at, and take what has been worked out."""
+        """Follow the instant in view and process what has been computed."""
         self._stand_in.beat()
         timeline = self._lab.bridge.timeline
         if self._position is not None and timeline.at not in (None, self._position.tick):
@@ -246,10 +247,10 @@ class AppDebugger:
             self._follow(Position(timeline.at))
 
     def to_now(self) -> None:
-        """Look at the newest instant again, also if only lines of its own tick were looked back at."""
+        """Return to the newest instant, also from earlier lines of its own tick."""
         self._position, self._more_back = None, 0
         if self._stand_in.busy:
-            # What it is on its way to is not wanted any more.
+            # The result still being computed is no longer wanted.
             self._stand_in.close()
             self._wanted = None
             self.show()
@@ -276,7 +277,7 @@ class AppDebugger:
             self._position = here
             timeline.go(paused.tick)
         elif timeline.at != self._wanted.tick:
-            # Somebody has gone elsewhere meanwhile.
+            # The user has gone elsewhere meanwhile.
             self._wanted = None
             return
         self._set_standing(DebugView(paused, looked, True))
@@ -285,7 +286,7 @@ class AppDebugger:
             self.lines_back(0)
 
     def _is_past(self, at: Position) -> bool:
-        """Whether an instant is a former one; a re-run may come farther than the run at hand."""
+        """Return whether an instant is in the past; a re-run may get farther than the current run."""
         now = self._paused
         if now is None or now.ordinal == UNKNOWN_ORDINAL:
             return at.tick <= (self._lab.bridge.timeline.newest if now is None else now.tick)
@@ -308,14 +309,14 @@ class AppDebugger:
         self._lab.draw(force=True)
 
     def show(self) -> None:
-        """Bring the panel up to date."""
+        """Update the debug panel."""
         if panel := self._lab.desk.debug:
             panel.show_debugging(self)
 
     # Steps
 
     def _here(self) -> Position | None:
-        """Where the run is looked at, to the line as far as it is known."""
+        """Return the instant in view, exact to the line as far as that is known."""
         timeline = self._lab.bridge.timeline
         if self._position is not None:
             return self._position
@@ -326,11 +327,11 @@ class AppDebugger:
         return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
 
     def step(self, how: str) -> None:
-        """Go on to the next line: of the program, or as recorded."""
+        """Step to the next line: of the live program, or as recorded."""
         self.go_on(protocol.StepLine(how))
 
     def run_to(self, line: int) -> None:
-        """Go on until a line is about to run."""
+        """Continue until a line is about to run."""
         bridge = self._lab.bridge
         runs = self._lab.work.lines().to_run(line) if bridge.in_run or self.is_away else line
         if runs:
@@ -339,14 +340,14 @@ class AppDebugger:
             self._lab.say("This line is not in the text that runs")
 
     def go_on(self, command: Message) -> None:
-        """Carry out a command that lets the program go on and stand still again."""
+        """Send a command that continues the program until it pauses again."""
         lab = self._lab
         if self.is_away:
             self._in_past(command)
         elif lab.bridge.in_run:
             lab.bridge.debug(command)
         else:
-            # At the first line it stands anyway.
+            # A program started for this pauses at its first line anyway.
             first = None if isinstance(command, protocol.StepLine) else command
             if lab.start_run(held=True):
                 self._first = first
@@ -364,7 +365,7 @@ class AppDebugger:
         self.show()
 
     def lines_back(self, count: int) -> None:
-        """Go to where so many lines before this instant were about to run."""
+        """Go back by a number of executed lines."""
         lab = self._lab
         here, recording = self._here(), lab.bridge.timeline.recording
         if here is None or recording is None:
@@ -381,7 +382,7 @@ class AppDebugger:
             self.show()
 
     def close(self) -> None:
-        """Leave no process behind."""
+        """Stop the debugger's processes."""
         self._stand_in.close()
 
 

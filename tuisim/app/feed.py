@@ -1,4 +1,4 @@
-"""What the chart and the pen trace are fed: the part of a recording not yet shown, thinned."""
+"""The data for the chart and the pen trace: the part of a recording not yet shown, thinned."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ Points = tuple[list[float], list[float]]
 """x and y in mm, NaN where the pen was lifted."""
 
 POINTS_A_FEED = 60
-"""Most telemetry moments that one call measures; each costs a reading of every sensor."""
+"""Most telemetry moments that one call measures; each one costs a reading of every sensor."""
 POINTS_OF_A_RUN = 1500
-"""About so many moments are measured of a run that was there before anybody looked."""
+"""Approximate number of moments measured of a run that began before the panel was shown."""
 TRACE_POINTS_A_FEED = 4000
 _JUMP_MM = 25.0
-"""No wheel carries the pen so far in a tick: the robot was put somewhere else."""
+"""No wheel moves the pen this far in one tick: the robot was placed elsewhere."""
 
 
 def sample_series(rows: Iterable[OutputRow]) -> Series:
@@ -52,17 +52,17 @@ class Feed:
     _charted: int = field(default=0, init=False)
     _traced: int = field(default=0, init=False)
     _lifted: bool = field(default=False, init=False)
-    """Whether the pen was up in the last record that was traced."""
+    """Whether the pen was up in the last traced record."""
     _last_xy_mm: tuple[float, float] | None = field(default=None, init=False)
-    """Where the robot was in the last record that was traced."""
+    """Where the robot was in the last traced record."""
 
     @property
     def is_behind(self) -> bool:
-        """Whether the chart has not been given all of the run yet."""
+        """Whether part of the run has not been passed to the chart yet."""
         return self._charted < self.recording.telemetry.count
 
     def chart_series(self, mat: Field) -> Series:
-        """Return telemetry traces of the ticks since the last call, of a long stretch only its first part."""
+        """Return telemetry traces of the ticks since the last call; of a long stretch, only the first part."""
         from tuisim.runs.views import instant_of
 
         run = self.recording
@@ -94,14 +94,14 @@ class Feed:
         kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
         xs, ys, lifted = _pen_points(records, self.recording.spec.robot.pen)
-        # Of a stretch with the pen up one gap is enough.
+        # One gap is enough for a stretch with the pen up.
         kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
         self._lifted = bool(lifted[-1])
         return _with_gaps(xs[kept], ys[kept], jumps[kept])
 
 
 def trace_until(run: Recording, tick: int) -> Points:
-    """Return where the pen of a run had drawn when a tick was done, thinned alike for all ticks."""
+    """Return where the pen of a run had drawn by the end of a tick, thinned in the same way for all ticks."""
     import numpy as np
 
     records = run.telemetry.array()
@@ -117,19 +117,19 @@ def trace_until(run: Recording, tick: int) -> Points:
 
 
 def _jumps(records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None) -> npt.NDArray[np.int64]:
-    """Count how often the robot was put somewhere else, up to each record."""
+    """Count the placements of the robot up to each record."""
     import numpy as np
 
     before_x, before_y = before_mm or (np.nan, np.nan)
     way = np.hypot(np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y))
-    # NaN, before the first record, counts as a jump: the traces of two runs are not joined.
+    # NaN, before the first record, counts as a jump, so that the traces of two runs are not joined.
     return np.cumsum(~(way < _JUMP_MM))
 
 
 def _pen_points(
     records: np.ndarray[Any, Any], pen: PenSpec
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
-    """Return where the pen was at each record, NaN where it was up, and whether it was up."""
+    """Return where the pen was at each record (NaN where it was up) and whether it was up."""
     import numpy as np
 
     turn = np.radians(records["heading_deg"] - 90.0)
@@ -148,7 +148,7 @@ def _with_gaps(xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: 
 
 
 def _thinned(start: int, end: int, most: int) -> list[int]:
-    """Return at most `most` evenly spread positions from start to end, the last one among them."""
+    """Return at most `most` evenly spread positions from start to end, including the last one."""
     span = end - start
     if span <= most:
         return list(range(start, end))

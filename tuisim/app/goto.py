@@ -1,4 +1,4 @@
-"""Instants in words: what `go to` understands, and where in the run that is."""
+"""Parses what the user types into `go to` and finds that instant in the run."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 FORMS = (
     ("3.5", "a time in seconds"),
     ("tick 120", "a tick"),
-    ("line 12", "the next time that line 12 is met"),
+    ("line 12", "the next time that line 12 runs"),
     ("sample Colour", "the next sample of that name, or of any"),
-    ("sample Colour < 90", "the next that is so: < <= > >= = !="),
+    ("sample Colour < 90", "the next that matches: <<= > >= = !="),
     ("print REGEX", "the next printed line that matches"),
     ("start, end", "the first instant, and now"),
-    ("… back", "line, sample or print: the last before, as at the end"),
+    ("… back", "line, sample or print: the last one before"),
 )
-"""What is understood, and what it means."""
+"""The accepted forms, with what they mean."""
 
 _HINT = "3.5, tick 120, line 12, sample NAME, sample NAME < 90, print REGEX, start or end"
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
@@ -41,7 +41,7 @@ _SIGNS: Mapping[str, Callable[[float, float], bool]] = {
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """Where one searches from, and in which direction."""
+    """Where a search begins, and in which direction."""
 
     recording: Recording
     at: int
@@ -56,7 +56,7 @@ class _Search:
         return f"{self.side} {self.at / self.recording.spec.profile.tick_hz:.2f} s"
 
     def tick_of(self, fits: Callable[[OutputRow], bool]) -> int | None:
-        """Return the tick of the next row that fits, at another tick than this one."""
+        """Return the tick of the next matching row that is at another tick than the current one."""
         rows = self.recording.rows
         found: Iterable[OutputRow] = (
             rows.rows(rows.until(self.at - 1) - 1, -1) if self.back else rows.rows(rows.until(self.at))
@@ -64,13 +64,13 @@ class _Search:
         return next((row.tick for row in found if fits(row)), None)
 
     def nearest(self, ticks: list[int]) -> int | None:
-        """Return the next of some ticks, which are in order."""
+        """Return the next of some sorted ticks."""
         where = bisect_left(ticks, self.at) - 1 if self.back else bisect_right(ticks, self.at)
         return ticks[where] if 0 <= where < len(ticks) else None
 
 
 def find(text: str, timeline: Timeline) -> int:
-    """Return the tick that words stand for, seen from the instant that is looked at.
+    """Return the tick that an expression means, relative to the instant in view.
 
     Args:
         text: One of `FORMS`.
@@ -81,7 +81,7 @@ def find(text: str, timeline: Timeline) -> int:
     """
     recording = timeline.recording
     if recording is None or recording.newest < 0:
-        raise ConfigError("there is no run yet to go about in")
+        raise ConfigError("there is no run yet")
     word, _, rest = text.strip().partition(" ")
     rest, back = re.subn(r"(?:^|\s+)back$", "", rest.strip())
     word = word.lower()
@@ -92,7 +92,7 @@ def find(text: str, timeline: Timeline) -> int:
     if not back and word == "tick" and rest.isdecimal():
         return _within(int(rest), recording)
     at = recording.newest if timeline.at is None else timeline.at
-    # After the newest instant there is nothing to be found.
+    # Nothing can be found after the newest instant.
     search = _Search(recording, at, bool(back) or at >= recording.newest)
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
@@ -100,14 +100,14 @@ def find(text: str, timeline: Timeline) -> int:
         return _sample(search, wanted)
     if word == "print" and rest:
         return _printed(search, rest)
-    raise ConfigError(f"{text.strip()!r} is no place in time" if text.strip() else "where to?", _HINT)
+    raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "where to?", _HINT)
 
 
 def _within(tick: int, recording: Recording) -> int:
     hz = recording.spec.profile.tick_hz
     if tick > recording.newest:
         newest = recording.newest
-        raise ConfigError(f"the run has come to {newest / hz:.2f} s, tick {newest}, so far", "an earlier instant")
+        raise ConfigError(f"the run has reached{newest / hz:.2f} s, tick {newest}, so far", "an earlier instant")
     return tick
 
 
@@ -118,12 +118,12 @@ def _line(search: _Search, line: int) -> int:
     if not 1 <= line <= lines:
         raise ConfigError(f"the program has no line {line}", f"1 … {lines}")
     at_it = search.recording.telemetry.array()["line"] == line
-    # Of a stretch of ticks at one line the first is meant: that is when the program came there.
+    # Of consecutive ticks at one line, the first is meant: that is when the program reached the line.
     came = np.flatnonzero(at_it & ~np.concatenate(([False], at_it[:-1]))).tolist()
     tick = search.nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
     if tick is None:
-        hint = "only lines that let time pass, or print, are found"
-        raise ConfigError(f"line {line} is not met {search.words}", hint)
+        hint = "only lines that let time pass, or print, can be found"
+        raise ConfigError(f"line {line} does not run{search.words}", hint)
     return tick
 
 

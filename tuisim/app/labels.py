@@ -12,10 +12,10 @@ _END_LABELS = {"raised": "error", "time_limit": "time limit", "output_limit": "o
 
 
 def speed_label(speed: float) -> str:
-    """Return a speed as people write it: ¼×, 2×, max."""
+    """Return a speed as users read it: ¼×, 2×, max."""
     return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
 
 
 def end_label(end: str) -> str:
-    """Return how a run ended in words."""
+    """Return in words how a run ended."""
     return _END_LABELS.get(end, end)

@@ -1,4 +1,4 @@
-"""Where the panels go: a pure function from the size of the terminal to boxes."""
+"""The layout of the panels: a pure function from the size of the terminal to boxes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 BORDER = 2
 """Rows or columns that the two edges of a border take."""
 MIN_STRIP_COLS = 36
-"""A panel of the bottom strip is not made narrower than this to fit another beside it."""
+"""A panel of the bottom strip is not made narrower than this to fit another one next to it."""
 
 
 @dataclass(frozen=True, slots=True)
 class PanelBox:
-    """Where a panel is, in cells from the upper left."""
+    """The box of a panel, in cells from the upper left corner."""
 
     x: int
     y: int
@@ -27,7 +27,7 @@ class PanelBox:
 
 @dataclass(frozen=True, slots=True)
 class PanelLayout:
-    """Boxes by panel id, and the panels for which there was no room."""
+    """Boxes by panel id, and the panels that did not fit."""
 
     boxes: dict[str, PanelBox]
     left_out: tuple[str, ...] = ()
@@ -43,19 +43,19 @@ def size_class(width: int, height: int) -> str:
 
 
 def side_width(width: int) -> int:
-    """Return how wide the column at the side is: two sensor discs fit beside each other from 112 columns on."""
+    """Return the width of the side column: two sensor discs fit side by side from 112 columns on."""
     if width < 112:
         return max(26, min(34, width * 28 // 80))
     return 42 if width < 170 else 46
 
 
 def _in_place(panels: Sequence[str], place: str) -> list[str]:
-    """The panels of one place, in the order of the table."""
+    """Return the panels of one area, in the order of the table."""
     return [info.id for info in PANELS.values() if info.place == place and info.id in panels]
 
 
 def _share(panels: Sequence[str], wanted: Sequence[str], rows: int) -> list[int]:
-    """Divide `rows` among stacked panels: the least, what is good to the most wanted first, the rest to the topmost."""
+    """Divide `rows` among stacked panels: the minimum, then preferred heights by priority, the rest to the topmost."""
     heights = {panel: PANELS[panel].min_rows for panel in panels}
     spare = rows - sum(heights.values())
     for panel in sorted(panels, key=wanted.index):
@@ -67,7 +67,7 @@ def _share(panels: Sequence[str], wanted: Sequence[str], rows: int) -> list[int]
 
 
 def _strip_rows(strip: Sequence[str], width: int) -> list[list[str]]:
-    """Cut the bottom strip into rows of panels that stand side by side."""
+    """Cut the bottom strip into rows of panels that are side by side."""
     if not strip:
         return []
     columns = max(1, min(len(strip), width // MIN_STRIP_COLS))
@@ -93,14 +93,14 @@ def _fits(panels: Sequence[str], width: int, height: int) -> bool:
 
 
 def _main_rows(width: int, height: int, strip_least: int) -> int:
-    """Rows for the world: what its shape asks for, if the strip below keeps its least."""
-    # A cell is two half blocks high, and a half block is about square.
+    """Return the rows for the world: as many as its shape needs, if the strip below keeps its minimum."""
+    # A cell is two half blocks high, and a half block is roughly square.
     ideal = ceil((width - BORDER) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2) + BORDER
     return min(ideal, height - strip_least)
 
 
 def _place_strip(boxes: dict[str, PanelBox], rows: list[list[str]], top: int, width: int, height: int) -> None:
-    # Rows of panels share the height as panels in a column do, but for the rest, which goes to all.
+    # Rows of panels share the height as panels in a column do, except that the rest goes to all of them.
     least = [_row_least(row) for row in rows]
     good = [max(PANELS[panel].good_rows for panel in row) for row in rows]
     spare = height - sum(least)

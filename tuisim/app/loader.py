@@ -1,4 +1,4 @@
-"""Loads mats, programs, robots and worlds into the app, and again when their files change."""
+"""Loads mats, programs, robots and worlds into the app, and reloads them when their files change."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NOT_NOW = "Not during a run: S stops it"
 
 
 class Loader:
-    """What brings things into one app.
+    """Loads files and settings into the app.
 
     Args:
         lab: The app.
@@ -36,20 +36,20 @@ class Loader:
         self._lab = lab
         self._watch = Watch()
         self._good: tuple[NextRun, Mat] | None = None
-        """The last mat that could be prepared, with its plan."""
+        """The last mat that was prepared, with its plan."""
         self.world_file: Path | None = lab.settings.world_file
-        """The world file that was opened or saved last."""
+        """The world file that was last opened or saved."""
         self._world_said: Mapping[str, Any] = {}
         self._world_refers: tuple[Path, ...] = ()
         self._magic_said: Mapping[str, Any] = {}
-        """What world file and magic line said when they were last read, to tell what changes in them."""
+        """Settings of the world file and the magic line when last read, to detect what changes in them."""
         self._prelude_said = ""
-        """The prelude that the program's file asks for; the command line may have chosen another."""
+        """The prelude that the program's file asks for; the command line may have chosen another one."""
         self._later: list[Path] = []
         """Files that changed during the run."""
 
     def begin(self) -> None:
-        """Learn what the command line has opened already, and watch it."""
+        """Register what the command line has opened, and watch those files."""
         program = self._lab.bridge.program
         try:
             if self.world_file is not None:
@@ -57,7 +57,7 @@ class Loader:
             if program and program.path:
                 self._note_program(*_read_program(program.path))
         except TuisimError:
-            # It was read a moment ago and is wrong now: looking for changes will tell.
+            # It was read a moment ago and is invalid now: the next check reports that.
             pass
         self._follow()
         self._lab.work.begin()
@@ -66,12 +66,12 @@ class Loader:
 
     @property
     def mat_is_ready(self) -> bool:
-        """Whether the mat lies there, prepared for the robot's sensors."""
+        """Whether the mat is prepared for the robot's sensors."""
         mat = self._lab.bridge.mat
         return mat is not None and mat.serves(self._lab.bridge.plan.spec)
 
     def prepare_mat(self) -> None:
-        """Prepare the mat off the event loop; `LabApp.mat_ready` follows."""
+        """Prepare the mat in the background; `LabApp.mat_ready` is called when done."""
         work = partial(self._prepare_in_thread, self._lab.bridge.plan.spec)
         self._lab.run_worker(work, thread=True, group="mat", exclusive=True)
 
@@ -86,7 +86,7 @@ class Loader:
         self._lab.call_from_thread(self._prepared, mat)
 
     def _unprepared(self, spec: RunSpec, error: TuisimError) -> None:
-        """Say what is wrong with a mat, and lay the one before out again."""
+        """Report the error in a mat, and restore the previous mat."""
         self._lab.complain(error)
         bridge = self._lab.bridge
         if self._good is not None and not bridge.in_run and mat_key(bridge.plan.spec) == mat_key(spec):
@@ -102,7 +102,7 @@ class Loader:
             self._lab.mat_ready(None if same_picture else mat.pixels)
 
     def lay_out(self, plan: NextRun, program: Program | None, mat: Mat) -> None:
-        """Take a plan and a program together with their mat, which has been prepared already."""
+        """Set a plan and a program together with their mat, which must have been prepared already."""
         self._lab.bridge.mat = mat
         self._good = plan, mat
         self._note_program(program, _said_in(program))
@@ -112,7 +112,7 @@ class Loader:
     # What the user chooses
 
     def attempt(self, make: Callable[[NextRun], NextRun]) -> bool:
-        """Change the plan, or say what is wrong; the robot stays where it is. Returns whether it was changed."""
+        """Change the plan, or report the error; the robot stays where it is. Return whether the plan was changed."""
         try:
             self.take(self.change(make))
         except TuisimError as error:
@@ -121,7 +121,7 @@ class Loader:
         return True
 
     def change(self, make: Callable[[NextRun], NextRun]) -> NextRun:
-        """Return what a change makes of the plan.
+        """Return the plan with a change applied.
 
         Raises:
             TuisimError: there is a run, or the change is impossible.
@@ -131,7 +131,7 @@ class Loader:
         return make(self._lab.bridge.plan)
 
     def take(self, plan: NextRun) -> None:
-        """Take a plan that differs in other things than the start."""
+        """Set a plan that differs in other things than the start."""
         if plan.robot != self._lab.bridge.plan.robot:
             for note in plan.robot.notes:
                 self._lab.say(note)
@@ -139,16 +139,16 @@ class Loader:
         self._loaded()
 
     def change_mat(self, name: str) -> None:
-        """Lay out another mat; the robot goes to its start."""
+        """Change the mat; the robot goes to its start."""
         try:
             self._load(plans.with_mat(self._lab.bridge.plan, name), self._lab.bridge.program)
         except TuisimError as error:
             self._lab.complain(error)
 
     def open_file(self, path: str) -> None:
-        """Open a program, with the world that it asks for, or a world, with the program that it names.
+        """Open a program with the world that it asks for, or a world with the program that it names.
 
-        With unsaved changes of the program that is open, after a question.
+        If the open program has unsaved changes, a dialog asks first.
         """
         self._lab.work.when_safe(partial(self._open_file, path))
 
@@ -180,7 +180,7 @@ class Loader:
         try:
             named = self._read_world(Path(path))
             program, magic = _read_program(named) if named else (lab.bridge.program, {})
-            # A world is a whole: what was chosen before does not show through it.
+            # A world file replaces everything: earlier choices do not show through.
             fresh = plans.with_choices(plans.plan_of(Settings()), magic)
             plan = plans.with_choices(fresh, self._world_said)
         except TuisimError:
@@ -191,7 +191,7 @@ class Loader:
         lab.say(f"{Path(path).name} is open" + (": R runs its program" if named else ""))
 
     def _read_world(self, path: Path) -> str | None:
-        """Read a world file and keep what it said; returns the path of its program."""
+        """Read a world file and remember its settings. Return the path of its program."""
         from tuisim.config.worlds import load_world
 
         world = load_world(path, self._lab.bridge.plan.settings.mats)
@@ -224,11 +224,11 @@ class Loader:
         self._watch.follow(dict.fromkeys(paths))
 
     def saved(self, path: Path) -> None:
-        """A file was written from here: that is no change to tell of."""
+        """Note that the app itself wrote a file, so that the change is not reported."""
         self._watch.note(path)
 
     def saved_world(self, path: Path) -> None:
-        """The world was written to a file, which is followed from now on."""
+        """Note that the world was written to a file; watch that file from now on."""
         try:
             self._read_world(path)
         except TuisimError as error:
@@ -237,7 +237,7 @@ class Loader:
         self._watch.note(path)
 
     def look(self) -> None:
-        """Take in what has changed on the disk; during a run, at its end."""
+        """Reload the files that have changed on disk; during a run, when it ends."""
         changed = self._watch.changed()
         if self._lab.bridge.in_run:
             for path in changed:
@@ -251,7 +251,7 @@ class Loader:
                 self.reload(path)
 
     def reload(self, path: Path) -> None:
-        """Take in a file as it is now."""
+        """Reload a file."""
         lab = self._lab
         try:
             known = self._reread(path)
@@ -262,7 +262,7 @@ class Loader:
             lab.say(f"{path.name} changed on disk: reloaded")
 
     def _reread(self, path: Path) -> bool:
-        """Read a file again; returns whether it still plays a part."""
+        """Read a file again. Return whether it is still in use."""
         lab, plan = self._lab, self._lab.bridge.plan
         program = lab.bridge.program
         if program and program.path and Path(program.path) == path:
@@ -285,7 +285,7 @@ class Loader:
         return bool(fields)
 
     def take_text(self, text: str, path: str, name: str) -> None:
-        """Take the edited text of the program that is open. Not during a run.
+        """Apply the edited text of the open program. Not during a run.
 
         Args:
             text: As it would stand in the file.
@@ -300,7 +300,7 @@ class Loader:
         self._take_program(*_program_of(program_of_text(text, Path(path) if path else None, name)))
 
     def take_new(self, text: str, name: str) -> None:
-        """Take a new program without a file and without a magic line. Not during a run."""
+        """Open a new program without a file and without a magic line. Not during a run."""
         from tuisim.config.program_file import program_of_text
 
         program, said = _program_of(program_of_text(text, None, name))
@@ -309,7 +309,7 @@ class Loader:
         self._loaded()
 
     def _take_program(self, new: Program, said: Mapping[str, Any]) -> None:
-        """Take another text of the program that is open, with what its magic line says anew."""
+        """Apply another text of the open program, with the changes in its magic line."""
         program = self._lab.bridge.program
         as_said = new.prelude if new.prelude != self._prelude_said or program is None else program.prelude
         folder = program.module_folder if program and not new.path else ""
@@ -319,7 +319,7 @@ class Loader:
         self._show_as_said(before, said)
 
     def _show_as_said(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
-        """Take what a magic line says anew of the app: panels, rays and speed."""
+        """Apply the changes in a magic line that concern the app: panels, rays and speed."""
         lab, panels = self._lab, _panels_said(now)
         lab.desk.ask({panel: panels.get(panel) for panel, _ in _panels_said(before).items() ^ panels.items()})
         if now.get("rays") and not before.get("rays") and lab.desk.world:
@@ -328,7 +328,7 @@ class Loader:
             lab.bridge.set_speed(now["speed"])
 
     def _take_said(self, differences: Mapping[str, Any], program: Program | None) -> None:
-        """Take what a file says anew; what it says as before stays as the user has made it since."""
+        """Apply changed settings of a file; unchanged ones keep what the user has set since."""
         lab = self._lab
         plan = plans.with_choices(lab.bridge.plan, differences)
         if differences.keys() & {"background", *plans.POSE_FIELDS}:
@@ -339,7 +339,7 @@ class Loader:
 
 
 def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
-    """Read a program; returns it and what its magic line says."""
+    """Read a program. Return it with the settings of its magic line."""
     from tuisim.config.program_file import read_program
 
     return _program_of(read_program(Path(path).expanduser()))
@@ -352,7 +352,7 @@ def _program_of(file: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
 
 
 def _said_in(program: Program | None) -> Mapping[str, Any]:
-    """What the magic line of a program says that is there already; nothing if it is wrong by now."""
+    """Return the settings of the magic line of the open program; empty if the line is invalid by now."""
     from tuisim.config.program_file import program_of_text
 
     if program is None:
@@ -365,7 +365,7 @@ def _said_in(program: Program | None) -> Mapping[str, Any]:
 
 
 def _program_path(word: str) -> str:
-    """The path of a program that a world file names: a path, or an example by its name."""
+    """Return the path of a program that a world file names: a path, or the name of an example."""
     from tuisim.config.assets import programs
 
     examples = {name: path for name, path, _ in programs()}
@@ -375,7 +375,7 @@ def _program_path(word: str) -> str:
 
 
 def _panels_said(said: Mapping[str, Any]) -> dict[str, bool]:
-    """The panels that a magic line shows, and those that it hides."""
+    """Return the panels that a magic line shows (True) and hides (False)."""
     return {**dict.fromkeys(said.get("panels_on", ()), True), **dict.fromkeys(said.get("panels_off", ()), False)}
 
 
@@ -386,45 +386,45 @@ def _is_file_word(word: str) -> bool:
 
 
 def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
-    """What a file says now and did not say before; what it says no longer is as without it."""
+    """Return the settings of a file that have changed; removed ones get their default."""
     bare = Settings()
     gone = {field: getattr(bare, field) for field in before.keys() - now.keys() if field in plans.WORLD_FIELDS}
     return gone | {field: value for field, value in now.items() if field not in before or before[field] != value}
 
 
 PERIOD_S = 1.0
-"""How often the app looks."""
+"""Seconds between two checks for changed files."""
 
 _Stamp = tuple[int, int, int]
 
 
 def _stamp(path: Path) -> _Stamp | None:
-    """What tells one version of a file from the next, None while there is no file."""
+    """Return what tells two versions of a file apart, or None if there is no file."""
     try:
         found = os.stat(path)
     except (OSError, ValueError):
         return None
-    # Editors write a new file and rename it: that has another inode, whatever its time and size.
+    # Editors write a new file and rename it: that one has another inode, whatever its time and size.
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
 class Watch:
-    """Remembers files as they were. Looking costs one `stat` a file; nothing is read."""
+    """Detects changed files. A check costs one `stat` per file; nothing is read."""
 
     def __init__(self) -> None:
         self._known: dict[Path, _Stamp | None] = {}
 
     def follow(self, paths: Iterable[Path]) -> None:
-        """Watch these files from now on, and no others; those already watched keep what is known of them."""
+        """Watch these files and no others; files already watched keep their state."""
         self._known = {path: self._known[path] if path in self._known else _stamp(path) for path in paths}
 
     def note(self, path: Path) -> None:
-        """Take a file as it is now: it was changed from here."""
+        """Accept the current version of a file: the app itself changed it."""
         if path in self._known:
             self._known[path] = _stamp(path)
 
     def changed(self) -> list[Path]:
-        """Return the files that are new or other than at the last look. One that is gone may come again."""
+        """Return the files that are new or changed since the last call. A deleted file may come back."""
         found = []
         for path, known in self._known.items():
             now = _stamp(path)

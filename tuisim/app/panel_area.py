@@ -1,4 +1,4 @@
-"""The place where the panels are: mounts them when they are first shown, and lays them out."""
+"""The container of the panels: mounts them when first shown, and lays them out."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class PanelArea(Container):
-    """All panels.
+    """The area of all panels.
 
     Args:
         on: Ids of panels shown whatever the size.
@@ -35,10 +35,10 @@ class PanelArea(Container):
     """
 
     class Rearranged(Message):
-        """Panels came, went or moved."""
+        """Posted when panels were shown, hidden or moved."""
 
     class Added(Message):
-        """A panel was made."""
+        """Posted when a panel was mounted."""
 
         def __init__(self, panel: str) -> None:
             super().__init__()
@@ -47,64 +47,64 @@ class PanelArea(Container):
     def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
         super().__init__(id="desk")
         self.panels: dict[str, Widget] = {}
-        """Those that have been shown once, by id."""
+        """The panels that have been mounted, by id."""
         asked = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
         self._asked = {panel: asked[panel] for panel in PANELS if panel in asked}
-        """What was asked for, the latest last."""
+        """Panels that were asked for, the latest last."""
         self.alone = ""
-        """Id of the panel that has the whole place, empty for none."""
+        """Id of the maximized panel, empty for none."""
         self._roomy: tuple[str, int, int] | None = None
-        """The panel that is to have so many columns and rows."""
+        """The panel that needs a number of columns and rows."""
         self._left_out: tuple[str, ...] = ()
 
-    # A hidden panel still takes what it is fed; one never shown is None.
+    # A hidden panel is still fed; one that was never shown is None.
 
     @property
     def world(self) -> World | None:
-        """The world, if it has been made."""
+        """The world panel, if mounted."""
         return cast("World | None", self.panels.get("world"))
 
     @property
     def output(self) -> Output | None:
-        """The output, if it has been made."""
+        """The output panel, if mounted."""
         return cast("Output | None", self.panels.get("output"))
 
     @property
     def chart(self) -> Chart | None:
-        """The chart, if it has been made."""
+        """The chart panel, if mounted."""
         return cast("Chart | None", self.panels.get("chart"))
 
     @property
     def code(self) -> Code | None:
-        """The code, if it has been made."""
+        """The code panel, if mounted."""
         return cast("Code | None", self.panels.get("code"))
 
     @property
     def controls(self) -> Controls | None:
-        """The simulator controls, if they have been made."""
+        """The panel of the simulator controls, if mounted."""
         return cast("Controls | None", self.panels.get("controls"))
 
     @property
     def debug(self) -> Debug | None:
-        """Debugging, if it has been made."""
+        """The debug panel, if mounted."""
         return cast("Debug | None", self.panels.get("debug"))
 
     @property
     def brick(self) -> Brick | None:
-        """The brick, if it has been made."""
+        """The brick panel, if mounted."""
         return cast("Brick | None", self.panels.get("brick"))
 
     @property
     def obstacles(self) -> Obstacles | None:
-        """The list of obstacles, if it has been made."""
+        """The obstacles panel, if mounted."""
         return cast("Obstacles | None", self.panels.get("obstacles"))
 
     def shown(self, panel: str) -> bool:
-        """Whether a panel is on the screen."""
+        """Return whether a panel is on the screen."""
         return panel in self.panels and self.panels[panel].display
 
     def clear_log(self) -> None:
-        """Wipe what was logged off the panels."""
+        """Clear the logged output and traces from the panels."""
         if self.output:
             self.output.clear()
         if self.chart:
@@ -115,13 +115,13 @@ class PanelArea(Container):
         return [cast(Panel, widget) for widget in self.panels.values() if widget.display]
 
     def toggle(self, panel: str) -> None:
-        """Show a panel, or hide it."""
+        """Show or hide a panel."""
         show = not self.shown(panel) or bool(self.alone)
         self.alone, self._roomy = "", None
         self.ask({panel: show})
 
     def ask(self, wanted: Mapping[str, bool | None]) -> None:
-        """Show and hide panels; those asked for last are given room first, None leaves one to the terminal's size."""
+        """Show and hide panels. Later requests get room first; None leaves a panel to the size of the terminal."""
         for panel, show in wanted.items():
             self._asked.pop(panel, None)
             if show is not None:
@@ -139,19 +139,19 @@ class PanelArea(Container):
             self.app.notify(f"{came} takes the room of {names}")
 
     def give_all(self, panel: str) -> None:
-        """Let one panel have the whole place; with an empty id the others are back."""
+        """Maximize one panel; an empty id restores the others."""
         if panel != self.alone or self._roomy:
             self.alone, self._roomy = panel, None
             self.lay_out()
 
     def make_room(self, panel: str, columns: int, rows: int) -> None:
-        """Let a panel of the bottom strip have that alone; if it is still smaller than asked for, the whole place."""
+        """Give a panel of the bottom strip the whole strip, or the whole area if that is still too small."""
         if panel != self.alone:
             self._roomy = panel, columns, rows
             self.lay_out()
 
     def _wanted(self) -> list[str]:
-        """Ids of the panels to show, the most wanted first."""
+        """Return the ids of the panels to show, by priority."""
         if self._roomy:
             panel, columns, rows = self._roomy
             wanted = with_room(panel, self._usually_wanted(), (columns, rows), (self.size.width, self.size.height))
@@ -166,7 +166,7 @@ class PanelArea(Container):
         return asked + rest
 
     def lay_out(self) -> None:
-        """Place every panel anew."""
+        """Lay out every panel."""
         if not self.size:
             return
         arrangement = arrange(self._wanted(), self.size.width, self.size.height)
@@ -190,17 +190,17 @@ class PanelArea(Container):
         return self.panels[panel]
 
     def show_plan(self, plan: NextRun) -> None:
-        """Let the panels that edit the plan of the next run show it, on the screen or not."""
+        """Update the panels that edit the plan of the next run, on the screen or not."""
         for widget in self.panels.values():
             if isinstance(widget, PlanPanel):
                 widget.show_plan(plan)
 
     def focus_world(self) -> None:
-        """Give the focus among the panels to the world, if it is shown; that of a dialog above them stays."""
+        """Focus the world if it is shown; the focus of a dialog above the panels stays."""
         self.screen.set_focus(self.world if self.shown("world") else None)
 
     def ensure(self, *panels: str) -> None:
-        """Make panels that are to be fed from the start, shown or not."""
+        """Mount the panels that need data from the start, shown or not."""
         for panel in panels:
             if panel not in self.panels:
                 self._panel(panel).display = False
@@ -210,15 +210,15 @@ class PanelArea(Container):
         self.lay_out()
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
-        """Mark the panel that hears the keys.
+        """Mark the panel that has the focus.
 
-        By a class, which changes only when the keys go to another panel: `:focus-within` would have Textual work out
-        the style of every field of a form at each step from one field to the next.
+        By a class, which changes only when the focus moves to another panel: `:focus-within` would make Textual restyle
+        every field of a form at each move from one field to the next.
         """
         self._mark(event.widget)
 
     def on_descendant_blur(self) -> None:
-        """Mark no panel once none hears the keys."""
+        """Remove the mark when no panel has the focus."""
         if self.screen.focused is None:
             self._mark(None)
 
@@ -228,7 +228,7 @@ class PanelArea(Container):
             panel.set_class(panel in around, "-hears-keys")
 
     def show(self, snapshot: Snapshot) -> None:
-        """Let every panel on the screen show a moment."""
+        """Show a moment in every panel on the screen."""
         for panel in self.on_screen():
             if cast(Widget, panel).is_attached:
                 panel.show(snapshot)

@@ -1,4 +1,4 @@
-"""A former instant in those panels that show more than one moment: trace, output, marks of the time bar."""
+"""Shows a past instant in the panels that show more than one moment: trace, output, markers of the time bar."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from tuisim.app.timeline import Timeline
 
 PAST_ROWS = 200
-"""So many rows of output are shown of what there was at a former time."""
+"""Number of output rows shown of a past instant."""
 
 
 class Lookback:
-    """Keeps panels at the instant that is looked at.
+    """Keeps panels at the instant in view.
 
     Args:
-        desk: Where the panels are.
-        timeline: Says which instant that is.
+        desk: The panel area.
+        timeline: Provides that instant.
     """
 
     def __init__(self, desk: PanelArea, timeline: Timeline) -> None:
@@ -29,7 +29,7 @@ class Lookback:
         self._printed: object = None
 
     def show(self) -> None:
-        """Bring the panels there, if they show another instant."""
+        """Update the panels if they show another instant."""
         desk, timeline = self._desk, self._timeline
         recording, tick = timeline.recording, timeline.at
         if world := desk.world:

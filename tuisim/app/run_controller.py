@@ -1,4 +1,4 @@
-"""Between the app and a run: starts it, sends commands, and receives its events."""
+"""Starts runs, sends them commands, and receives their events."""
 
 from __future__ import annotations
 
@@ -25,29 +25,29 @@ FIRST_LINE = (0, 1)
 """Tick and ordinal at which the first line of a program is about to run."""
 
 ROWS_A_POLL = 4000
-"""Most output rows that one poll takes, so that a flood of prints leaves the app fluid."""
+"""Most output rows that one poll reads, so that a flood of prints does not block the app."""
 
 
 class RunController(RunView):
-    """The run at hand, or the robot at rest.
+    """The current run, or the robot before a run.
 
     Args:
-        settings: What the app was started with.
+        settings: The options that the app was started with.
     """
 
     def __init__(self, settings: AppSettings) -> None:
         super().__init__(settings)
         self.propose: Callable[[protocol.Message], None] = lambda _: None
-        """Called instead of a user action while a former instant is looked at: it can only be done in a branch."""
+        """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
 
     # What the user does
 
     def start(self, breaks: tuple[str, ...] = (), held: bool = False) -> None:
-        """Start the program from where the robot was last put.
+        """Start the program from where the robot was last placed.
 
         Args:
-            breaks: What holds it.
-            held: Hold it at its first line.
+            breaks: The breakpoints.
+            held: Pause at the first line.
 
         Raises:
             TuisimError: the run cannot be started.
@@ -67,7 +67,7 @@ class RunController(RunView):
         self._look_at(Recording(self.run))
 
     def branch(self, branch: Branch) -> None:
-        """Do a run again up to an instant of it, and go on from there. Ends the run at hand.
+        """Repeat a run up to an instant of it, and continue from there. Ends the current run.
 
         Raises:
             TuisimError: the run cannot be started.
@@ -76,22 +76,22 @@ class RunController(RunView):
         run = branch.start(self.speed)
         self.close()
         self.run, self._end = run, ""
-        # The noise of the run at hand is that of the next one, as if it had been chosen now.
+        # The noise of the current run is that of the next one, as if chosen now.
         self.plan = plans.with_noise(self.plan, noise)
         self._look_at(Recording(run, branch.of.answers))
         self._branch = branch
 
     def _branch_is_there(self, held: protocol.Paused | None = None) -> Branch | None:
-        """Leave the former run, in the midst of which the new one is held at the instant of the branch, or has ended.
+        """Switch from the former run to the new one, which is paused at the instant of the branch or has ended.
 
-        A program that comes to its end before that is held there.
+        A program that ends before that instant is paused at its end.
         """
         branch, self._branch = self._branch, None
         if branch is not None and held is not None:
             early = held.tick < branch.tick
             self._send(protocol.SetSpeed(self.speed))
             if branch.of.pressed_at(branch.tick + 1) and not early:
-                # Whoever held them then has let go meanwhile.
+                # Buttons that were held then have been released meanwhile.
                 self._send(protocol.SetButtons(()))
             if branch.then is not None and not early:
                 self._send(branch.then)
@@ -100,7 +100,7 @@ class RunController(RunView):
         return branch
 
     def replay(self, run: StoredRun) -> None:
-        """Show a run from the store as one that is over. Not during a run."""
+        """Show a stored run, as one that has ended. Not during a run."""
         self.close()
         self._end = run.state
         self._look_at(Recording(run))
@@ -112,33 +112,33 @@ class RunController(RunView):
         self._moved = False
 
     def stop(self) -> None:
-        """End the program; the end comes with a later poll."""
+        """Ask the program to stop; the end arrives with a later poll."""
         if self.run:
             self.run.stop()
 
     def stop_now(self) -> None:
-        """End the program without waiting for it; its run stays the one at hand."""
+        """Stop the program without waiting for it; its run stays the current one."""
         if self.run:
             self.run.close()
 
     def pause(self) -> None:
-        """Let the run stand still."""
+        """Pause the run."""
         self._send(protocol.Pause())
 
     def resume(self) -> None:
-        """Let the run go on."""
+        """Resume the run."""
         self._send(protocol.Resume())
 
     def step(self) -> None:
-        """Let one tick pass."""
+        """Run one tick."""
         self._send(protocol.StepTicks(1))
 
     def debug(self, command: protocol.Message) -> None:
-        """Send a command of debugging."""
+        """Send a debug command."""
         self._send(command)
 
     def set_speed(self, speed: float) -> None:
-        """Change the pace: 1.0 real time, 0 as fast as possible."""
+        """Change the speed: 1.0 is real time, 0 as fast as possible."""
         self.speed = speed
         self._send(protocol.SetSpeed(speed))
 
@@ -155,7 +155,7 @@ class RunController(RunView):
         self.plan = plans.with_pen(self.plan, down)
 
     def press(self, buttons: frozenset[str]) -> None:
-        """Hold these of the brick's buttons down, and no others."""
+        """Hold down these buttons of the brick, and no others."""
         if buttons == self.pressed:
             return
         self.pressed = buttons
@@ -180,13 +180,13 @@ class RunController(RunView):
         self._still = replace(self._still, seed=seed)
 
     def place(self, pose: Pose) -> None:
-        """Put the robot somewhere: during a run as a user action, else as the start of the next run."""
+        """Place the robot: during a run as a user action, else as the start of the next run."""
         command = protocol.SetPose(pose.x_mm, pose.y_mm, pose.heading_deg)
         if self.in_past:
             self.propose(command)
             return
         if self.in_run:
-            # Where time stands still, to put it where it is would only be noted as one thing more that was done.
+            # While paused, placing the robot where it already is would only add a needless action to the record.
             if not self._stands_still or pose != self.pose:
                 self._act(command)
             return
@@ -198,22 +198,22 @@ class RunController(RunView):
         self._moved = True
 
     def load(self, plan: NextRun, program: Program | None) -> None:
-        """Take another world or program; the robot goes to its start. Not during a run."""
+        """Load another world or program; the robot goes to its start. Not during a run."""
         self.timeline.go(None)
         self.plan, self.program, self.home = plan, program, plan.spec.world.start
         self._start_at(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
-        """Take a plan that differs in other things than the start; the robot stays where it is. Not during a run.
+        """Set a plan that differs in other things than the start; the robot stays where it is. Not during a run.
 
-        What was changed is seen now, not in the past.
+        The view returns from the past, so that the change is visible.
         """
         self.timeline.go(None)
         self.plan = plan
         self._still = replace(self._still, noise=plan.spec.world.noise, seed=plan.spec.seed)
 
     def close(self) -> None:
-        """Let go of the run; a child still at work is killed."""
+        """Release the run; a child process that still runs is killed."""
         if self.run:
             if self.run.ended is None:
                 self.run.kill()
@@ -223,7 +223,7 @@ class RunController(RunView):
         self.timeline.take(None)
 
     def _act(self, action: protocol.Message) -> None:
-        """Send what changes the world; where time stands still that is shown before it has taken effect."""
+        """Send an action that changes the world; while paused, show it before it has taken effect."""
         record = self._record()
         if record is not None and self._branch is None and self._stands_still:
             self._pending.note(record, action)
@@ -234,18 +234,18 @@ class RunController(RunView):
         return self.run is not None and self.run.paused
 
     def _send(self, command: protocol.Message) -> None:
-        # On its way to its instant a branch is done again exactly as it was.
+        # On the way to its instant, a branch must repeat the run exactly.
         if self.run is not None and (self._branch is None or isinstance(command, protocol.Answer)):
             self.run.send(command)
 
     # What comes from the run
 
     def poll(self) -> RunUpdate:
-        """Take what has arrived; never waits.
+        """Process what has arrived; never blocks.
 
         Raises:
-            HostError: the child sent rubbish.
-            LogError: its recording is damaged.
+            HostError: the child sent malformed data.
+            LogError: the recording is damaged.
         """
         recording = self.timeline.recording
         if recording is None:
@@ -280,16 +280,16 @@ class RunUpdate:
     skipped: int = 0
     """Rows left out before `rows`."""
     ended: protocol.Ended | None = None
-    """Set once, in the poll in which the end is learnt."""
+    """Set once, in the poll that receives the end."""
     spoken: tuple[protocol.Spoke, ...] = ()
-    """What the program said."""
+    """Texts and sounds from the program."""
     prompt: str | None = None
     """The prompt while the program waits in `input()`."""
     branched: Branch | None = None
-    """Set once, when a branch has come to its instant, or has ended before."""
+    """Set once, when a branch has reached its instant, or has ended before it."""
     held: tuple[protocol.Message, ...] = ()
-    """That the program stands still or goes on, and what it looks like."""
+    """Reports that the program has paused or resumed, and its frames and variables."""
 
     def __bool__(self) -> bool:
-        """Whether anything has come; that the program still waits for an answer is nothing new."""
+        """Return whether anything has arrived; a prompt that is still open does not count."""
         return bool(self.rows or self.ended or self.spoken or self.branched or self.held)

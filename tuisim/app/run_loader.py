@@ -1,4 +1,4 @@
-"""Stored runs on their way into the app, where they are shown as runs that are over."""
+"""Loads stored runs into the app, where they are shown as runs that have ended."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def program_of(run: StoredRun) -> Program:
-    """Return the program of a run as it was then; it stands for its file only if that still says the same."""
+    """Return the program of a run as it was then; with its file only if that still has the same text."""
     from tuisim.config.program_file import read_program
 
     stored = run.program
@@ -34,7 +34,7 @@ def program_of(run: StoredRun) -> Program:
 
 
 def open_run(lab: LabApp, run: str | StoredRun) -> None:
-    """Show a stored run, given by itself or by its number or id; what is wrong with it is said."""
+    """Show a stored run, given as an object or by number or id; errors are shown to the user."""
     if lab.bridge.in_run:
         lab.say(NOT_NOW)
         return
@@ -51,7 +51,7 @@ def _prepare_in_thread(lab: LabApp, word: str | StoredRun) -> None:
             raise LogError(
                 run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder)
             )
-        # What is packed is unpacked here, where that may take its time, and may fail.
+        # Packed recordings are unpacked here, which may be slow and may fail.
         run.telemetry.record(0)
         next(run.output.rows(), None)
     except TuisimError as error:
@@ -77,7 +77,7 @@ def _show(lab: LabApp, run: StoredRun, mat: Mat) -> None:
     lab.run_changed(words, run.end.error_line if run.end else 0)
     for note in run.notes:
         lab.say(note)
-    lab.say(f"{_title(run)} is open: , < and g go back in it, R runs it anew")
+    lab.say(f"{_title(run)} is open: , < and g go back in it, R runs it again")
     lab.draw(force=True)
 
 

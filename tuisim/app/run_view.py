@@ -1,4 +1,4 @@
-"""The view of a run: the present one or the robot before a run, with actions that are not yet carried out."""
+"""The view of a run: its current state, or the robot before a run, with actions not yet carried out."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Pending:
-    """The user's actions that the newest record does not know yet."""
+    """User actions that the newest record does not contain yet."""
 
     _after: tuple[int, int] = (-1, 0)
-    """Tick of the record after which they were done, and how many actions it counts."""
+    """Tick of the record after which they were sent, and the number of actions that it counts."""
     _pose: Pose | None = None
     _noise: NoiseSpec | None = None
     _pen_down: bool | None = None
 
     def note(self, record: TickRecord, action: protocol.Message) -> None:
-        """Take an action that was sent while this was the newest record."""
+        """Add an action that was sent while this was the newest record."""
         if self._after != _key(record):
             self.forget()
             self._after = _key(record)
@@ -47,13 +47,13 @@ class Pending:
                 self._pen_down = down
 
     def forget(self) -> None:
-        """There are none."""
+        """Drop all pending actions."""
         self._after, self._pose, self._noise, self._pen_down = (-1, 0), None, None, None
 
     def done_to(self, record: TickRecord, instant: Instant, pen_down: bool) -> tuple[Instant, bool]:
-        """Return the instant of the newest record and its pen with what the user did since.
+        """Return the instant of the newest record and its pen with the pending actions applied.
 
-        The gyro goes on showing its angle, as it does when the robot is lifted.
+        The gyro keeps its angle, as it does when the robot is lifted.
         """
         if self._after != _key(record):
             return instant, pen_down
@@ -75,55 +75,55 @@ def _first_plan(settings: AppSettings) -> NextRun:
 
 
 class RunView:
-    """The reading side of the bridge: nothing here changes a run.
+    """The reading side of the run controller: nothing here changes a run.
 
     Args:
-        settings: What the app was started with.
+        settings: The options that the app was started with.
     """
 
     def __init__(self, settings: AppSettings) -> None:
         self.program: Program | None = settings.program
         self.plan: NextRun = _first_plan(settings)
-        """What the next run will be."""
+        """The settings of the next run."""
         self.home: Pose = self.plan.spec.world.start
-        """Where `back to start` puts the robot."""
+        """The pose that `back to start` uses."""
         self.speed = settings.speed
         self.mat: Mat | None = None
         self.run: RunHandle | None = None
-        """The run at work or the last one; None before the first, and while one from the store is shown."""
+        """The live run or the last one; None before the first one, and while a stored run is shown."""
         self.timeline = Timeline()
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that the user holds down."""
         self._branch: Branch | None = None
-        """What the run at hand is becoming, while it is done again up to its instant."""
+        """The branch that the current run becomes, while the run is repeated up to its instant."""
         self._still = self._at_rest(self.home)
         self._end = ""
         """How the run ended."""
         self._moved = True
-        """Whether the robot was placed since the last run, so that the run's last record no longer holds."""
+        """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
         self.held_line: tuple[int, int] | None = None
-        """Tick and line at which the program was held: more exact than the record of that tick."""
+        """Tick and line at which the program is paused: more exact than the record of that tick."""
 
     @property
     def spec(self) -> RunSpec:
-        """What is shown: the run's own specification while it goes on or is looked back at, else the next run's."""
+        """The specification in view: the run's own while it is live or viewed in the past, else the next run's."""
         recording = self.timeline.recording
         return recording.spec if recording and (self.in_run or self.in_past) else self.plan.spec
 
     @property
     def in_run(self) -> bool:
-        """Whether there is a child at work."""
+        """Whether a child process runs."""
         return self.run is not None and self.run.ended is None
 
     @property
     def in_past(self) -> bool:
-        """Whether an instant before the newest is looked at."""
+        """Whether an instant before the newest is viewed."""
         return self.timeline.at is not None
 
     @property
     def state(self) -> str:
-        """One of the states of `ui.snapshot`."""
+        """One of the states of `app.snapshot`."""
         run = self.run
         if run is None:
             return ENDED if self.timeline.recording else IDLE
@@ -139,26 +139,26 @@ class RunView:
 
     @property
     def run_id(self) -> str:
-        """Id of the run at hand or the last one, empty if there was none."""
+        """Id of the current or last run, empty if there was none."""
         return self.timeline.recording.run_id if self.timeline.recording else ""
 
     @property
     def pose(self) -> Pose:
-        """Where the robot is."""
+        """The pose of the robot."""
         return self._moment()[0].pose
 
     @property
     def pen_down(self) -> bool:
-        """Whether the pen draws."""
+        """Whether the pen is down."""
         return self._moment()[2]
 
     def snapshot(self) -> Snapshot:
-        """Return the picture of the moment that is looked at."""
+        """Return the snapshot of the instant in view."""
         record, recording = self._record(), self.timeline.recording
         instant, line, pen_down = self._moment()
         newest = recording.telemetry.last() if recording and self.in_past else None
         face = self.timeline.face()
-        # Where the robot was put after the run, all its motors are as new.
+        # After the robot was placed following the run, all its motors are reset.
         turns = face.turns_at(instant.tick / self.spec.profile.tick_hz, self.spec.profile.tick_hz) if record else ()
         return replace(
             snapshot_of(
@@ -187,25 +187,25 @@ class RunView:
 
     @property
     def _is_of_run(self) -> bool:
-        """Whether what is shown is an instant of the run, and not how the robot stands after it."""
+        """Return whether an instant of the run is in view, and not the robot as placed after it."""
         return self.in_run or self.in_past
 
     def _record(self) -> TickRecord | None:
-        """The record that is looked at; now that is the run's newest, if the robot is where the run left it."""
+        """Return the record in view; without a past instant, the newest one if the robot is where the run left it."""
         recording = self.timeline.recording
         if recording is None or (self._moved and not self.in_past):
             return None
         return self.timeline.record() or recording.telemetry.last()
 
     def _moment(self) -> tuple[Instant, int, bool]:
-        """The instant, the program's line, and whether the pen is down."""
+        """Return the instant, the program's line, and whether the pen is down."""
         record, recording = self._record(), self.timeline.recording
         if record is None or recording is None:
             return self._still, 0, self.plan.spec.robot.pen.down
         from tuisim.runs.views import instant_of
 
         noise = recording.noise_at(record) if self._is_of_run else self.plan.spec.world.noise
-        # At rest the pen is where the next run will have it.
+        # Before a run, the pen is where the next run will have it.
         down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.plan.spec.robot.pen.down
         tick, line = self.held_line or (-1, 0)
         instant, line = instant_of(record, self.spec, noise), line if tick == record.tick else record.line
@@ -214,14 +214,14 @@ class RunView:
         return instant, line, down
 
     def _pressed_at(self, record: TickRecord | None) -> frozenset[str]:
-        """The brick's buttons that are held down: those of the user now, or those of the instant looked at."""
+        """Return the brick's buttons that are held down: by the user now, or at the instant in view."""
         recording = self.timeline.recording
         if not self.in_past or record is None or recording is None:
             return self.pressed if self.in_run else frozenset()
         return recording.pressed_at(record.tick)
 
     def _field(self, record: TickRecord | None) -> Field | None:
-        """The mat as the sensors saw it then, None until it is prepared for them."""
+        """Return the mat as the sensors saw it then, None until it is prepared for them."""
         if self.mat is None or self.mat.field is None or not self.mat.serves(self.spec):
             return None
         recording = self.timeline.recording

@@ -1,4 +1,4 @@
-"""What the panels show: one frozen value for each frame."""
+"""What the panels show: one frozen value per frame."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from tuisim.core.state import Instant
 from tuisim.runs.brick_state import BrickState
 
 IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
-"""Run states: no run yet, child is starting, time moves, stands still, waits in input(), over."""
+"""Run states: no run yet, child process is starting, time passes, paused, waits in input(), ended."""
 
 GOOD_ENDS = ("finished", "stopped")
-"""Ends of a run that are no failure (`protocol.Ended.end`)."""
+"""Ways to end a run that are no failure (`protocol.Ended.end`)."""
 
 _DARK = BrickState()
 
@@ -36,7 +36,7 @@ class Snapshot:
     instant: Instant
     time_s: float
     line: int
-    """Line of the program that lets the time pass, 0 for none."""
+    """Line of the program during which time passes, 0 for none."""
     speed: float
     """1.0 real time, 0 as fast as possible."""
     colors: Mapping[str, ColorReading]
@@ -48,11 +48,11 @@ class Snapshot:
     gyro_rate_dps: int
     pen_down: bool
     further: Mapping[str, float] = dataclasses.field(default_factory=dict)
-    """What the sensors measure that not every robot has, by telemetry column, such as `bumper_pressed`."""
+    """Measurements of sensors that not every robot has, by telemetry column, such as `bumper_pressed`."""
     stalled: tuple[bool, bool] = (False, False)
-    """Whether the left and the right motor are told to run but cannot turn."""
+    """Whether the left and the right motor are commanded to run but cannot turn."""
     next_spec: RunSpec | None = None
-    """What the next run will be; differs from `spec` in what was changed during the run. None: the same."""
+    """Settings of the next run; differ from `spec` in what was changed during the run. None: the same."""
 
     face: BrickState = _DARK
     """What the brick shows."""
@@ -62,20 +62,20 @@ class Snapshot:
     """The brick's buttons that are held down."""
 
     past: bool = False
-    """Whether this is an instant that is looked back at, and not the newest one."""
+    """Whether this is a past instant, and not the newest one."""
     now_tick: int = 0
     """The newest tick of the run."""
     now_pose: Pose | None = None
-    """Where the robot is now, while another instant is looked at."""
+    """The current pose of the robot, while another instant is viewed."""
 
     @property
     def failed(self) -> bool:
-        """Whether the run is over and did not end well."""
+        """Whether the run has ended with a failure."""
         return self.state == ENDED and bool(self.end) and self.end not in GOOD_ENDS
 
     @property
     def planned(self) -> RunSpec:
-        """What the next run will be."""
+        """The settings of the next run."""
         return self.next_spec or self.spec
 
 
@@ -92,7 +92,7 @@ def snapshot_of(
     stalled: tuple[bool, bool] = (False, False),
     next_spec: RunSpec | None = None,
 ) -> Snapshot:
-    """Return the picture of one moment, every sensor measured."""
+    """Return the snapshot of one moment, with every sensor measured."""
     sonar = spec.robot.ultrasonic
     rays = tuple(ultrasonic.rays_mm(instant.pose, sonar, spec.world)) if sonar else ()
     has_gyro = spec.robot.gyro is not None
@@ -118,7 +118,7 @@ def snapshot_of(
 
 
 def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
-    """Return what the sensors measure that not every robot has, by telemetry column."""
+    """Return the measurements of sensors that not every robot has, by telemetry column."""
     values: dict[str, float] = {}
     for kind, sensor in with_kinds(spec.robot.further_sensors):
         values |= zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True)
@@ -126,7 +126,7 @@ def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str,
 
 
 def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
-    """Return what the chart draws of a moment though the program printed nothing, by trace name."""
+    """Return the chart's telemetry of a moment, which needs no prints, by trace name."""
     values = {f"{s.name} red %": color.reading(s, instant, field).red_percent for s in spec.robot.color_sensors}
     if spec.robot.ultrasonic:
         values["ultrasonic mm"] = float(ultrasonic.reading_mm(spec.robot.ultrasonic, instant, spec.world))

@@ -1,4 +1,4 @@
-"""Being heard, where that makes sense: a local terminal, and a program that speaks or plays."""
+"""Speech and sound on a local terminal, for a program that speaks or plays."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ PLAYS = (("paplay", ()), ("aplay", ("-q", "-")))
 """Programs that play a WAV file from their standard input, the best first, with their arguments."""
 
 MAX_CHARS = 300
-"""Of one text; a robot that reads out a book cannot be stopped otherwise."""
+"""Longest text to speak; speech cannot be interrupted otherwise."""
 
 MAX_SOUND_S = 20.0
-"""Of one sound, for the same reason."""
+"""Longest sound to play, for the same reason."""
 
 RATE_HZ = 22_050
 _LOUDNESS = 8_000
-"""Of 32,767: a square wave sounds louder than its height."""
+"""Out of 32,767: a square wave sounds louder than its amplitude."""
 _FADE_SAMPLES = 100
-"""Tones begin and end softly, without a click."""
+"""Fade at the start and end of a tone, to avoid clicks."""
 
 
 def wav_of(tones: Sequence[Sequence[float]]) -> bytes:
-    """Return tones as a WAV file of one channel, cut after MAX_SOUND_S.
+    """Return tones as a mono WAV file, cut after MAX_SOUND_S.
 
     Args:
         tones: Hz (0 is silence), ms, and ms of pause after it, for each.
@@ -59,7 +59,7 @@ def wav_of(tones: Sequence[Sequence[float]]) -> bytes:
 
 
 class Voice:
-    """Makes one sound at a time heard; one that comes meanwhile is only shown.
+    """Plays one sound at a time; sounds that arrive meanwhile are only shown.
 
     Args:
         quiet: Never make a sound.
@@ -75,7 +75,7 @@ class Voice:
         self._sounding: subprocess.Popen[bytes] | None = None
 
     def make_heard(self, sound: Spoke) -> None:
-        """Say a text or play a sound, unless one is still to be heard."""
+        """Speak a text or play a sound, unless one is still playing. Does not block."""
         if self._sounding and self._sounding.poll() is None:
             return
         if sound.file:
@@ -85,7 +85,7 @@ class Voice:
             if self._plays and any(hz for hz, _, _ in tones):
                 self._sounding = _fed(self._plays, wav_of(tones))
         elif self._speaks:
-            # The text goes in by the pipe: as an argument it could pass for a switch.
+            # The text is passed by the pipe: as an argument it could be read as an option.
             self._sounding = _fed([self._speaks, "--stdin"], sound.text[:MAX_CHARS].encode())
 
     def _play_file(self, path: str) -> None:
@@ -94,11 +94,11 @@ class Voice:
                 with open(path, "rb") as file:
                     self._sounding = _fed(self._plays, file.read(int(MAX_SOUND_S * RATE_HZ * 8)))
             except OSError:
-                # The program has played it: it may be gone by now.
+                # The program has played it: the file may be deleted by now.
                 return
 
     def hush(self) -> None:
-        """Be silent."""
+        """Stop the sound that is playing."""
         if self._sounding and self._sounding.poll() is None:
             self._sounding.kill()
 
@@ -113,7 +113,7 @@ def _fed(command: Sequence[str], data: bytes) -> subprocess.Popen[bytes] | None:
         return None
     finally:
         os.close(read)
-    # More than a pipe holds would make the app wait until it is heard.
+    # More data than a pipe holds would block the app until the sound ends.
     Thread(target=_feed, args=(write, data), daemon=True).start()
     return process
 
@@ -123,5 +123,5 @@ def _feed(pipe: int, data: bytes) -> None:
         with os.fdopen(pipe, "wb") as stream:
             stream.write(data)
     except BrokenPipeError:
-        # It was hushed.
+        # The sound was stopped.
         return

@@ -1,4 +1,4 @@
-"""What the app is started with."""
+"""The options that the app is started with."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class AppSettings:
 
     spec: RunSpec
     settings: Settings | None = None
-    """The choices that `spec` was built from; None if they are not known."""
+    """The options that `spec` was built from; None if they are not known."""
     world_file: Path | None = None
     """The world file that was opened, to be watched and saved again."""
     program: Program | None = None
     """None opens the app without a program."""
     replay: StoredRun | None = None
-    """A stored run to be shown; spec and program are its own."""
+    """A stored run to show; spec and program are its own."""
     background: str = "Empty_Map"
     """Name of the mat; `spec.world.background` agrees with it."""
     panels_on: frozenset[str] = field(default_factory=frozenset)

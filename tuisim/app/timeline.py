@@ -1,4 +1,4 @@
-"""One timeline for everything that is shown: the run at hand, and the instant of it that is looked at."""
+"""The timeline that all panels share: the current run, and the instant of it in view."""
 
 from __future__ import annotations
 
@@ -11,37 +11,37 @@ if TYPE_CHECKING:
     from tuisim.runs.views import TickRecord
 
 ACTION, BREAK = "action", "break"
-"""What is marked besides what the output gives: the user did something; the run met a breakpoint."""
+"""Markers besides those of the output: user actions and breakpoint hits."""
 
 FASTEST = 16.0
-"""Times real time that a recorded stretch is played at when the speed is as fast as possible."""
+"""Playback speed, relative to real time, when the speed is as fast as possible."""
 
 
 class Timeline:
-    """The run at hand and the cursor in its time."""
+    """The current run and the cursor in its time."""
 
     def __init__(self) -> None:
         self.recording: Recording | None = None
-        """The run at work, the last one, or one from the store; None before the first."""
+        """The live run, the last one, or a stored one; None before the first."""
         self.at: int | None = None
-        """Tick that is looked at, None for now."""
+        """Tick in view, None for now."""
         self.breaks: list[int] = []
-        """Ticks at which the run was held by a breakpoint."""
+        """Ticks at which the run was paused by a breakpoint."""
         self._played_s: float | None = None
-        """Simulated time reached while the recording is played, None while it stands."""
+        """Simulated time that playback has reached, None while it is stopped."""
         self._wall_s = 0.0
         self._face_numbers: list[int] = []
         self._face = BrickState()
-        """What was shown after the rows of those numbers."""
+        """What the brick showed after output rows, by row number."""
 
     def take(self, recording: Recording | None) -> None:
-        """Turn to another run, and to its newest instant."""
+        """Switch to another run, at its newest instant."""
         self.recording = recording
         self._face_numbers, self._face = [], BrickState()
         self.breaks.clear()
         self.go(None)
 
-    # What is the case
+    # State
 
     @property
     def newest(self) -> int:
@@ -50,27 +50,27 @@ class Timeline:
 
     @property
     def tick_hz(self) -> int:
-        """Ticks a second."""
+        """Ticks per second."""
         return self.recording.spec.profile.tick_hz if self.recording else 1
 
     @property
     def time_s(self) -> float:
-        """Simulated time that is looked at."""
+        """Simulated time in view."""
         return max(0, self.newest if self.at is None else self.at) / self.tick_hz
 
     @property
     def playing(self) -> bool:
-        """Whether the recording is being played forward."""
+        """Whether the recording is being played."""
         return self._played_s is not None
 
     def record(self) -> TickRecord | None:
-        """Return the record that is looked at, None for now."""
+        """Return the record in view, None for now."""
         if self.at is None or self.recording is None:
             return None
         return self.recording.telemetry.record(self.at)
 
     def face(self) -> BrickState:
-        """Return what the brick shows at the instant that is looked at."""
+        """Return what the brick shows at the instant in view."""
         if self.recording is None:
             return BrickState()
         numbers = self.recording.rows.face_numbers(self.newest if self.at is None else self.at)
@@ -80,34 +80,34 @@ class Timeline:
         return self._face
 
     def marks(self) -> list[tuple[int, str]]:
-        """Return the ticks that stand out, with what they stand for."""
+        """Return the marked ticks, with the kind of each marker."""
         if self.recording is None:
             return []
         done = [(action.tick, ACTION) for action in self.recording.actions()]
         return [*self.recording.rows.marks, *done, *((tick, BREAK) for tick in self.breaks)]
 
-    # Going about in time
+    # Navigation
 
     def go(self, tick: int | None) -> None:
-        """Look at a tick, at the first one if it is before that; None, the newest and all beyond are now."""
+        """Go to a tick, clamped to the first one; None and ticks beyond the newest mean now."""
         self._played_s = None
         self.at = None if tick is None or tick >= self.newest or self.newest <= 0 else max(0, tick)
 
     def step(self, ticks: int) -> None:
-        """Look at an instant so many ticks later, or earlier."""
+        """Go forward by a number of ticks; negative goes back."""
         self.go((self.newest if self.at is None else self.at) + ticks)
 
     def play(self, wall_s: float) -> None:
-        """Begin to play the recording from the instant that is looked at."""
+        """Start to play the recording from the instant in view."""
         if self.at is not None:
             self._played_s, self._wall_s = self.at / self.tick_hz, wall_s
 
     def stand(self) -> None:
-        """Stop playing."""
+        """Stop playback."""
         self._played_s = None
 
     def beat(self, wall_s: float, speed: float) -> bool:
-        """Go on playing; whether the newest instant has just been reached.
+        """Continue playback. Return whether the newest instant has just been reached.
 
         Args:
             wall_s: Seconds that only grow.

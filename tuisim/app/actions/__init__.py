@@ -1,1 +1,1 @@
-"""What the keys do: one file a group of the table."""
+"""Functions behind the keys: one file per group of the table."""

@@ -16,12 +16,12 @@ def show_help(lab: LabApp) -> None:
 
 
 def suspend(lab: LabApp) -> None:
-    """Stop as a job of the shell, a run paused."""
+    """Suspend the app as a shell job; a live run is paused first."""
     lab.action_suspend_process()
 
 
 def leave(lab: LabApp) -> None:
-    """Quit, after a question if there are unsaved changes or a program runs."""
+    """Quit; with unsaved changes or a running program, ask first."""
     lab.work.when_safe(lambda: _leave(lab))
 
 

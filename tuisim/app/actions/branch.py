@@ -1,7 +1,6 @@
-"""From a former instant into another future: the run is done again up to there, and goes on live.
+"""Branches from a past instant: the run is repeated up to there, and continues live.
 
-What the user did until then is done again too, each thing at its tick, so that the
-world is the same to the last bit when the branch leaves it.
+The user's actions until then are repeated too, each at its tick, so that the state at the branch is bit-identical.
 """
 
 from __future__ import annotations
@@ -23,13 +22,13 @@ if TYPE_CHECKING:
     from tuisim.runs.recording import Recording
 
 BRANCH_TAG = "branch-of-"
-"""Begins the tag that says from which run another one branched off."""
+"""Prefix of the tag that names the run from which another one branched off."""
 
 _WORLD_FIELDS = (
     "x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps",
     "gyro_zero_deg", "flags", "actions",
 )  # fmt: skip
-"""Fields of a tick record that do not change when lines are put into the program."""
+"""Fields of a tick record that stay the same when lines are inserted into the program."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +39,9 @@ class Branch:
     tick: int
     program: Program
     then: protocol.Message | None
-    """What the user does at that instant, if anything."""
+    """The user action at that instant, if any."""
     goes_on: bool
-    """Whether time goes on at once; otherwise the run stands still there."""
+    """Whether the run continues at once; otherwise it stays paused there."""
 
     @property
     def time_s(self) -> float:
@@ -51,12 +50,12 @@ class Branch:
 
     @property
     def edited(self) -> bool:
-        """Whether the program is another one than that of the former run."""
+        """Whether the program differs from that of the former run."""
         return (self.program.text, self.program.prelude) != (self.of.program.text, self.of.program.prelude)
 
     @property
     def title(self) -> str:
-        """What it is, in words."""
+        """A description for messages."""
         return f"branch of {self.of.name} at {self.time_s:.2f} s"
 
     @property
@@ -66,13 +65,13 @@ class Branch:
 
     @property
     def noise(self) -> NoiseSpec:
-        """The noise with which time goes on from there."""
+        """The noise from that instant on."""
         if isinstance(self.then, protocol.SetNoise):
             return NoiseSpec(self.then.light, self.then.motor)
         return self.of.noise_at(self.of.telemetry.record(self.tick))
 
     def script(self) -> tuple[ScriptedAction, ...]:
-        """Return what the user had done until then."""
+        """Return the user's actions until then."""
         return tuple(
             ScriptedAction.from_plain({"tick": action.tick, "kind": action.kind, **action.fields})
             for action in self.of.actions()
@@ -80,19 +79,19 @@ class Branch:
         )
 
     def start(self, speed: float) -> RunHandle:
-        """Start the run: it comes to the instant as fast as possible, and stands still there.
+        """Start the run: it goes to the instant as fast as possible, and pauses there.
 
         Args:
             speed: From there on: 1.0 is real time, 0 as fast as possible.
 
         Raises:
-            TuisimError: it cannot be started.
+            TuisimError: the run cannot be started.
         """
         options = RunOptions(
             live=True, speed=speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True, answers=self.of.answers,
             actions=self.script(), hold_at=(self.tick, BEFORE_NEXT_TICK),
         )  # fmt: skip
-        # Edited or not, it is given what it was given then.
+        # Edited or not, the program gets the same arguments and answers as then.
         program = replace(self.of.program, name=self.program.name, text=self.program.text, prelude=self.program.prelude)
         run = start_run(program, self.of.spec, options)
         RunStore().tag(run.run_id, self.tags)
@@ -100,7 +99,7 @@ class Branch:
 
 
 def first_difference(before: Recording, now: Recording, tick: int) -> int | None:
-    """Return the first tick, up to one that both have come to, at which the world of two runs differs; or None."""
+    """Return the first tick, up to one that both runs have reached, at which their worlds differ; or None."""
     import numpy as np
 
     old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
@@ -114,15 +113,15 @@ def first_difference(before: Recording, now: Recording, tick: int) -> int | None
 
 
 def told(branch: Branch, now: Recording) -> str:
-    """Return what to say when a branch has come to its instant, or has ended before."""
+    """Return the message for a branch that has reached its instant, or has ended before."""
     differs = first_difference(branch.of, now, branch.tick)
     words = f"This is a {branch.title}" + (", of the edited program" if branch.edited else "")
     if differs is None:
         return words
     hz = now.spec.profile.tick_hz
     if branch.edited:
-        return f"{words}: it went another way from {differs / hz:.2f} s on"
-    return f"{words}, but the program does not repeat itself: it went another way from {differs / hz:.2f} s on"
+        return f"{words}: it differs from {differs / hz:.2f} s on"
+    return f"{words}, but the program does not repeat itself: it differs from {differs / hz:.2f} s on"
 
 
 def _what(action: protocol.Message | None) -> str:
@@ -138,12 +137,12 @@ def _what(action: protocol.Message | None) -> str:
 
 
 def propose(lab: LabApp, then: protocol.Message | None, anew: bool = False) -> None:
-    """Ask whether to branch from the instant that is looked at.
+    """Ask whether to branch from the instant in view.
 
     Args:
         lab: The app.
-        then: What the user wants to do there.
-        anew: Whether running the program from its start is offered besides.
+        then: The user's action there.
+        anew: Whether the dialog also offers to run the program from its start.
     """
     from tuisim.app.dialogs.question import ANEW, BRANCH, BranchQuestion
 
@@ -163,7 +162,7 @@ def propose(lab: LabApp, then: protocol.Message | None, anew: bool = False) -> N
             lab.bridge.stop_now()
             lab.start_run()
         else:
-            # Panels that showed what was asked for show the past again.
+            # Panels that showed the requested change show the past again.
             lab.draw(force=True)
 
     lab.push_screen(BranchQuestion(branch, _what(then), lab.bridge.in_run, anew), answered)
@@ -180,12 +179,12 @@ def _start(lab: LabApp, branch: Branch) -> None:
 
 
 def from_here(lab: LabApp) -> None:
-    """Branch from the instant that is looked at, with nothing changed but perhaps the program."""
+    """Branch from the instant in view, changing nothing but perhaps the program."""
     propose(lab, None)
 
 
 def run(lab: LabApp) -> None:
-    """Start the program; in the past ask whether from there."""
+    """Start the program; in the past, ask whether to start from that instant."""
     if lab.bridge.in_past:
         propose(lab, None, anew=True)
     else:

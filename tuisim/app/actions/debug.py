@@ -1,4 +1,4 @@
-"""What the keys of debugging do."""
+"""Functions behind the debugger's keys."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ TICKS = 10
 
 
 def next_line(lab: LabApp) -> None:
-    """On to the next line."""
+    """Step to the next line, over calls."""
     lab.debugging.step("over")
 
 
 def step_into(lab: LabApp) -> None:
-    """On to the next line, also of a function that is called."""
+    """Step to the next line, into calls."""
     lab.debugging.step("into")
 
 
 def step_out(lab: LabApp) -> None:
-    """On until this function is left."""
+    """Continue until the current function returns."""
     lab.debugging.step("out")
 
 
 def line_back(lab: LabApp) -> None:
-    """Back to the line before."""
+    """Step back to the line before."""
     lab.debugging.lines_back(1)
 
 
 def to_cursor(lab: LabApp) -> None:
-    """On until the line of the cursor in the code is about to run."""
+    """Continue until the cursor's line in the code is about to run."""
     if line := _cursor_line(lab):
         lab.debugging.run_to(line)
 
 
 def ten_ticks(lab: LabApp) -> None:
-    """Ten ticks on."""
+    """Run ten ticks."""
     timeline = lab.bridge.timeline
     if lab.bridge.in_past:
         at = timeline.at or 0
@@ -52,13 +52,13 @@ def ten_ticks(lab: LabApp) -> None:
 
 
 def toggle_break(lab: LabApp) -> None:
-    """Put a breakpoint on the line of the cursor in the code, or take it away."""
+    """Set or remove a breakpoint on the cursor's line in the code."""
     if line := _cursor_line(lab):
         lab.debugging.toggle_line(line)
 
 
 def _cursor_line(lab: LabApp) -> int:
-    """The line of the cursor; shows the code first if it is hidden."""
+    """Return the line of the cursor; show the code first if it is hidden."""
     if not lab.desk.shown("code"):
         lab.desk.toggle("code")
         lab.say("The cursor of the code chooses the line: tab leads there")
@@ -67,14 +67,14 @@ def _cursor_line(lab: LabApp) -> int:
 
 
 def list_breaks(lab: LabApp) -> None:
-    """List the breakpoints."""
+    """Show the dialog of the breakpoints."""
     from tuisim.app.dialogs.breakpoints import BreaksDialog
 
     lab.push_screen(BreaksDialog(lab.debugging.breaks, lab.bridge.spec.robot, lab.debugging.set_breaks))
 
 
 def list_watches(lab: LabApp) -> None:
-    """List the watches."""
+    """Show the dialog of the watches."""
     from tuisim.app.dialogs.breakpoints import WatchesDialog
 
     lab.push_screen(WatchesDialog(lab.debugging.watches, lab.debugging.set_watches))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def clear_log(lab: LabApp) -> None:
-    """Wipe what was logged off the output and the chart; the run keeps it."""
+    """Clear the logged data from the output and the chart; the run keeps its log."""
     lab.desk.clear_log()
     lab.say("Output and chart are clear; the run keeps its log: l analyses it, e exports it")
 
@@ -85,7 +85,7 @@ def export(lab: LabApp) -> None:
 
 
 def edit(lab: LabApp) -> None:
-    """Show the code, and let letters go into it."""
+    """Show the code, and start typing in it."""
     if not lab.desk.shown("code"):
         lab.desk.toggle("code")
     lab.call_after_refresh(_type, lab)
@@ -93,20 +93,20 @@ def edit(lab: LabApp) -> None:
 
 def _type(lab: LabApp) -> None:
     if lab.desk.shown("code") and (code := lab.desk.code):
-        # A panel that has just been made has not been given the program yet.
+        # A newly mounted panel has not received the program yet.
         lab.work.introduce()
         code.start_typing(at_error=True)
 
 
 def new_program(lab: LabApp) -> None:
-    """Begin a new program in the code panel."""
+    """Start a new program in the code panel."""
     if not lab.desk.shown("code"):
         lab.desk.toggle("code")
     lab.call_after_refresh(lab.work.new)
 
 
 def compare(lab: LabApp) -> None:
-    """Ask for a run and tell where the one at hand differs from it."""
+    """Ask for a run and show where the current one differs from it."""
     from tuisim.app.dialogs.runs import RunChooser
 
     recording = lab.bridge.timeline.recording
@@ -146,8 +146,8 @@ def _show(lab: LabApp, recording: Recording, other: str, diff: RunDiff) -> None:
 
 
 def analyse(lab: LabApp) -> None:
-    """Show the log of the run at hand."""
-    # The analyser costs time to import, and many never ask for it.
+    """Open the log of the current run in the analyser."""
+    # The analyser is slow to import, and many sessions never use it.
     from tuisim.analysis.source import LogRequest
     from tuisim.app.analyser.screen import Analyser
 

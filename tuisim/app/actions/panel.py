@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 def toggle(lab: LabApp, panel: str) -> None:
-    """Show a panel, which takes the focus, or hide it."""
+    """Show a panel and focus it, or hide it."""
     lab.desk.toggle(panel)
     lab.situation_changed()
     lab.call_after_refresh(lab.attend, panel)
 
 
 def enlarge(lab: LabApp) -> None:
-    """Let the panel with the focus fill the desk, or give the others their places back."""
+    """Maximize the panel with the focus, or restore the layout."""
     focused = lab.focused
     panel = next(
         (name for name, widget in lab.desk.panels.items() if focused and widget in focused.ancestors_with_self), ""
@@ -38,14 +38,14 @@ def _world(lab: LabApp) -> World | None:
 
 
 def rays(lab: LabApp) -> None:
-    """Draw the ultrasonic rays, or not."""
+    """Switch the ultrasonic rays on or off."""
     if world := _world(lab):
         world.show_rays = not world.show_rays
         lab.draw(force=True)
 
 
 def zoom(lab: LabApp) -> None:
-    """Next zoom of the world."""
+    """Switch the world to the next zoom."""
     if world := _world(lab):
         world.cycle_zoom()
         lab.draw(force=True)

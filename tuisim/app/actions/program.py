@@ -10,11 +10,11 @@ if TYPE_CHECKING:
     from tuisim.app.app import LabApp
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
-"""What `[` and `]` step through; 0 is as fast as possible."""
+"""Speeds that `[` and `]` step through; 0 is as fast as possible."""
 
 
 def stop(lab: LabApp) -> None:
-    """End the program."""
+    """Stop the program."""
     lab.bridge.stop()
 
 
@@ -30,10 +30,10 @@ def _change_speed(lab: LabApp, by: int) -> None:
 
 
 def slower(lab: LabApp) -> None:
-    """One step down in speed."""
+    """Go one step down in speed."""
     _change_speed(lab, -1)
 
 
 def faster(lab: LabApp) -> None:
-    """One step up in speed."""
+    """Go one step up in speed."""
     _change_speed(lab, 1)

@@ -1,4 +1,4 @@
-"""Keys of the group Robot and world: place, pen, mat, robot, profile, obstacles."""
+"""Keys of the group Robot and world: pose, pen, mat, robot, profile, obstacles."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def pen(lab: LabApp) -> None:
-    """Pen up if it is down, down if it is up."""
+    """Put the pen up or down."""
     lab.bridge.set_pen(not lab.bridge.pen_down)
 
 
 def home(lab: LabApp) -> None:
-    """Put the robot back to where the mat or the command line has it start."""
+    """Put the robot back to the start pose of the mat or the command line."""
     lab.bridge.place(lab.bridge.home)
 
 
@@ -33,14 +33,14 @@ def nudge(lab: LabApp, right_mm: float, up_mm: float, turn_deg: float) -> None:
 
 
 def clear_trace(lab: LabApp) -> None:
-    """Wipe the pen's trace off."""
+    """Clear the pen trace."""
     if world := _world(lab):
         world.clear_trace()
         lab.draw(force=True)
 
 
 def random_place(lab: LabApp) -> None:
-    """Put the robot somewhere on the field."""
+    """Put the robot at a random place on the field."""
     from random import Random
 
     from tuisim.app.setup.poses import random_pose
@@ -52,7 +52,7 @@ def random_place(lab: LabApp) -> None:
 
 
 def saved_poses(lab: LabApp) -> None:
-    """Go to a saved pose, or save this one."""
+    """Show the dialog of the saved poses."""
     from tuisim.app.dialogs.poses import SavedPoses
 
     def go(pose: Pose | None) -> None:
@@ -63,7 +63,7 @@ def saved_poses(lab: LabApp) -> None:
 
 
 def choose_mat(lab: LabApp) -> None:
-    """Ask for a mat and lay it out."""
+    """Ask for a mat and set it."""
     from tuisim.app.dialogs.mats import MatPicker
     from tuisim.config.own_mats import mats
 
@@ -82,7 +82,7 @@ def choose_mat(lab: LabApp) -> None:
 
 
 def _choose(lab: LabApp, chooser: Chooser, take: Callable[[NextRun, str], NextRun]) -> None:
-    """Ask for a name or a file, and take what it stands for into the plan."""
+    """Ask for a name or a file, and apply the choice to the plan."""
 
     def chosen(word: str | None) -> None:
         if word:
@@ -113,7 +113,7 @@ def choose_obstacles(lab: LabApp) -> None:
 
 
 def reset_robot(lab: LabApp) -> None:
-    """Undo what was edited of the robot."""
+    """Undo the edits of the robot."""
     if lab.bridge.plan.robot_is_edited:
         lab.loading.attempt(plans.with_robot_as_chosen)
     else:

@@ -1,7 +1,7 @@
-"""Every key: what it does, what it is called, and when it works.
+"""The table of keys: what each one does, its name, and when it is available.
 
-To add a key: write its function in `ui.verbs` and add a line to `ACTIONS`. Binding,
-footer, help and command palette follow from the line.
+To add a key: write its function in `app.actions` and add a line to `ACTIONS`. Binding, footer, help and command palette
+follow from the line.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from tuisim.app.app import LabApp
 
 ACT = "act"
-"""Key of the style meta data that names the action of a word that can be clicked on."""
+"""Key of the style metadata that names the action of a clickable word."""
 
 
 class Act(Message):
-    """A word that stands for an action was clicked on."""
+    """Posted when a word that stands for an action was clicked."""
 
     def __init__(self, action: str) -> None:
         super().__init__()
@@ -34,7 +34,7 @@ class Act(Message):
 
 
 IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
-"""States in which there is a child process."""
+"""States in which a child process runs."""
 
 PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
 FILES, APP = "Files", "App"
@@ -42,16 +42,16 @@ FILES, APP = "Files", "App"
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """What decides whether a key works."""
+    """The state that decides whether a key is available."""
 
     state: str
     has_program: bool
     has_run: bool
-    """Whether there has been a run, so that there is a log, and a past."""
+    """Whether there has been a run, so that there is a log and a past."""
     in_past: bool = False
-    """Whether an instant before the newest is looked at."""
+    """Whether an instant before the newest is viewed."""
     looks_back: bool = False
-    """The same, or a former line of the newest tick, or it is on its way there."""
+    """As `in_past`, and also for an earlier line of the newest tick or while such an instant is being computed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,22 +60,22 @@ class Action:
 
     id: str
     key: str
-    """As Textual names it, or several with commas between them."""
+    """In Textual's notation; several keys are separated by commas."""
     title: str
     group: str
     do: Callable[[LabApp], None]
     why_not: Callable[[Situation], str] = lambda _: ""
-    """Why it does nothing now; empty if it works."""
+    """Why the key is unavailable now; empty if it is available."""
     footer: str = ""
-    """Short word for the footer; empty keeps it out."""
+    """Short label for the footer; empty leaves the key out of it."""
     shown_key: str = ""
-    """How the key is written for people, if not as in `key`."""
+    """Display name of the key, if it differs from `key`."""
     footer_key: str = ""
-    """How it is written in the footer, if it stands there for two."""
+    """Display name in the footer, if that entry stands for two keys."""
 
     @property
     def key_label(self) -> str:
-        """The key as people write it."""
+        """The display name of the key."""
         return self.shown_key or _KEY_LABELS.get(self.key, self.key)
 
 
@@ -115,7 +115,7 @@ def _can_step(now: Situation) -> str:
         return ""
     if now.state in IN_RUN:
         return "One tick works while paused: space pauses"
-    return "This is the end of the run: , goes back" if now.has_run else _can_stop(now)
+    return "The run has ended: , goes back" if now.has_run else _can_stop(now)
 
 
 def _can_look_back(now: Situation) -> str:
@@ -147,7 +147,7 @@ def _nudge(key: str, words: str, forward: tuple[float, float], turn_deg: float =
 
 
 def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> Action:
-    # Some terminals send an arrow with ctrl as the arrow alone.
+    # Some terminals send ctrl and an arrow as the arrow alone.
     action = _nudge(arrow, words, (0.0, 0.0), turn_deg)
     shown = f"{letter}, {action.key_label}"
     return replace(action, key=f"{letter},{arrow}", title=f"Turn the robot {words}", shown_key=shown)
@@ -210,7 +210,7 @@ def _travels() -> list[Action]:
     ]
 
 
-# The footer shows them in this order, as far as they fit; `help` and `quit` always.
+# The footer shows the actions in this order, as far as they fit; `help` and `quit` always.
 ACTIONS: Mapping[str, Action] = {
     action.id: action
     for action in (
@@ -254,11 +254,11 @@ ACTIONS: Mapping[str, Action] = {
         Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
     )
 }
-"""Every key by the id of what it does."""
+"""The actions by id."""
 
 
 def _next_steps(now: Situation) -> tuple[str, ...]:
-    """Ids of what one is likely to do next: out of the past, on with a run, to its results, or to a first run."""
+    """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
     if now.looks_back:
         return ("now", "branch")
     if now.state in IN_RUN:
@@ -267,7 +267,7 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
 
 
 def working(now: Situation) -> list[Action]:
-    """Return the actions that do something now: the likely next steps first, the others in the order of the table."""
+    """Return the available actions: the likely next steps first, the others in the order of the table."""
     found = {action.id: action for action in ACTIONS.values() if not action.why_not(now)}
     first = [found.pop(step) for step in _next_steps(now) if step in found]
     return [*first, *found.values()]

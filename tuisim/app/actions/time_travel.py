@@ -1,4 +1,4 @@
-"""What the keys of time do: back and forward, to an instant that is asked for, and on from there."""
+"""Functions behind the time keys: back, forward, and to a given instant."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def to_tick(lab: LabApp, tick: int | None) -> None:
-    """Look at a tick of the run; None, the newest and all beyond are now. A program that runs is paused first."""
+    """Go to a tick of the run; None and ticks beyond the newest mean now. A running program is paused first."""
     recording = lab.bridge.timeline.recording
     if recording is None or (tick is not None and not _is_laid_out(lab, recording)):
         return
@@ -27,11 +27,11 @@ def to_tick(lab: LabApp, tick: int | None) -> None:
 
 
 def _is_laid_out(lab: LabApp, recording: Recording) -> bool:
-    """Whether the mat of the run lies there; says so if not."""
+    """Return whether the current mat is that of the run; if not, say so."""
     mat = lab.bridge.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
-    lab.say(f"Another mat lies there now: h opens {recording.name} with the mat that it was on")
+    lab.say(f"Another mat is in use now: h opens {recording.name} with the mat that it was on")
     return False
 
 
@@ -41,7 +41,7 @@ def _gone(lab: LabApp) -> None:
 
 
 def to_time(lab: LabApp, time_s: float | None) -> None:
-    """Look at a time of the run, None for now."""
+    """Go to a time of the run, None for now."""
     to_tick(lab, None if time_s is None else round(time_s * lab.bridge.timeline.tick_hz))
 
 
@@ -55,12 +55,12 @@ def _by(lab: LabApp, ticks: int) -> None:
 
 
 def tick_back(lab: LabApp) -> None:
-    """One tick back."""
+    """Go back one tick."""
     _by(lab, -1)
 
 
 def tick_on(lab: LabApp) -> None:
-    """One tick on: as recorded in the past, else of a paused run; from a former line of its last tick it is now."""
+    """Go forward one tick: as recorded in the past, else live; from an earlier line of the newest tick, go to now."""
     if lab.bridge.in_past:
         _by(lab, 1)
     elif lab.debugging.is_away:
@@ -70,27 +70,27 @@ def tick_on(lab: LabApp) -> None:
 
 
 def second_back(lab: LabApp) -> None:
-    """One second back."""
+    """Go back one second."""
     _by(lab, -lab.bridge.timeline.tick_hz)
 
 
 def second_on(lab: LabApp) -> None:
-    """One second on, as recorded."""
+    """Go forward one second of the recording."""
     _by(lab, lab.bridge.timeline.tick_hz)
 
 
 def to_start(lab: LabApp) -> None:
-    """The first instant of the run."""
+    """Go to the first instant of the run."""
     to_tick(lab, 0)
 
 
 def to_now(lab: LabApp) -> None:
-    """The newest instant."""
+    """Go to the newest instant."""
     to_tick(lab, None)
 
 
 def pause(lab: LabApp) -> None:
-    """Stand still, or go on: as recorded in the past, and from the newest instant as the program goes."""
+    """Pause or continue: playback in the past, the program at the newest instant."""
     timeline = lab.bridge.timeline
     if timeline.playing:
         timeline.stand()
@@ -105,14 +105,14 @@ def pause(lab: LabApp) -> None:
 
 
 def stand_still(lab: LabApp) -> None:
-    """Stop what plays, and pause what runs."""
+    """Stop playback, and pause a running program."""
     lab.bridge.timeline.stand()
     if lab.bridge.in_run and lab.bridge.state != PAUSED:
         lab.bridge.pause()
 
 
 def beat(lab: LabApp) -> None:
-    """Play on; a paused run that has been played to its newest instant goes on by itself."""
+    """Continue playback; a paused run that has been played to its newest instant resumes automatically."""
     if lab.bridge.timeline.beat(time.monotonic(), lab.bridge.speed):
         if lab.bridge.state == PAUSED:
             lab.bridge.resume()
@@ -143,12 +143,12 @@ def _to_sample(lab: LabApp, words: str) -> None:
 
 
 def next_sample(lab: LabApp) -> None:
-    """The next sample of any name."""
+    """Go to the next sample of any name."""
     _to_sample(lab, "sample")
 
 
 def sample_before(lab: LabApp) -> None:
-    """The sample before, of any name."""
+    """Go to the previous sample of any name."""
     _to_sample(lab, "sample back")
 
 

@@ -1,1 +1,1 @@
-"""Dialogs: one file a subject."""
+"""Dialogs: one file per subject."""

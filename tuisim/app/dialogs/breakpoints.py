@@ -1,4 +1,4 @@
-"""Breakpoints and watches of the program: add, edit, switch, delete."""
+"""Dialogs of the breakpoints and watches: add, edit, enable, delete."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ FORMS = (
     ("left.color changes", "another colour is seen"),
     ("sample Colour < 50", "also: sample Colour changes"),
     ("print matches black", "a printed line, by a regular expression"),
-    ("time 3.5", "so many simulated seconds have passed"),
-    ("stall", "a motor is held fast"),
+    ("time 3.5", "this simulated time has passed"),
+    ("stall", "a motor is blocked"),
 )
 
 
 class _Listed(Dialog[None], Generic[Entry]):
-    """A list of things that are written as text, with a field to add or to change one."""
+    """A list of entries that are written as text, with a field to add or edit one."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("delete,backspace", "remove", "Delete", show=False),
@@ -48,33 +48,37 @@ class _Listed(Dialog[None], Generic[Entry]):
         self._entries = list(entries)
         self._changed = changed
         self._editing: int | None = None
-        """Which one the field will change; None for a new one."""
+        """Index of the entry that the field edits; None for a new one."""
 
     def content(self) -> ComposeResult:
-        """The list, the field, what is wrong there, and what may stand there."""
+        """Return the list, the field, its error line, and the explanation."""
         yield OptionList(markup=False)
         yield Input(placeholder=self.PLACEHOLDER, compact=True)
         yield Static(id="message", classes="wrong", markup=False)
         yield from self.explanation()
 
     def explanation(self) -> ComposeResult:
-        """What may be entered."""
+        """Return the explanation of what may be entered."""
         yield from ()
 
     @abstractmethod
     def parse(self, text: str) -> Entry:
-        """Return what a text describes, or raise a ConfigError."""
+        """Parse an entry.
+
+        Raises:
+            ConfigError: the text is invalid.
+        """
 
     @abstractmethod
     def written(self, entry: Entry) -> str:
-        """Return the text of an entry."""
+        """Return the text of an entry, for editing."""
 
     def label(self, entry: Entry) -> str:
-        """Return an entry as it is listed."""
+        """Return the line of an entry in the list."""
         return self.written(entry)
 
     def on_mount(self) -> None:
-        """List what there is; begin in the list if there is any."""
+        """Fill the list and focus it, or the field if it is empty."""
         self._list()
         self.query_one(OptionList if self._entries else Input).focus()
 
@@ -97,14 +101,14 @@ class _Listed(Dialog[None], Generic[Entry]):
         self._changed(tuple(self._entries))
 
     def action_remove(self) -> None:
-        """Delete the one at hand."""
+        """Delete the selected entry."""
         if isinstance(self.focused, OptionList) and (at := self._at) is not None:
             del self._entries[at]
             self._tell(at)
 
     @on(OptionList.OptionSelected)
     def action_edit(self) -> None:
-        """Bring the one at hand into the field."""
+        """Load the selected entry into the field."""
         if (at := self._at) is not None:
             self._editing = at
             field = self.query_one(Input)
@@ -112,7 +116,7 @@ class _Listed(Dialog[None], Generic[Entry]):
             field.focus()
 
     def action_switch(self) -> None:
-        """Switch the one at hand on or off."""
+        """Enable or disable the selected entry."""
 
     @on(Input.Submitted)
     def _entered(self, event: Input.Submitted) -> None:
@@ -136,9 +140,9 @@ class BreaksDialog(_Listed[Breakpoint]):
     """The breakpoints.
 
     Args:
-        breaks: Those there are.
-        robot: Whose sensors may be named.
-        changed: Told the new ones after each change.
+        breaks: The current ones.
+        robot: Its sensors can be used in conditions.
+        changed: Called with the new breakpoints after each change.
     """
 
     TITLE_TEXT: str = "Breakpoints"
@@ -152,26 +156,30 @@ class BreaksDialog(_Listed[Breakpoint]):
         self._robot = robot
 
     def explanation(self) -> ComposeResult:
-        """The language of breaks."""
+        """Return the syntax of breakpoints."""
         forms = Table.grid(padding=(0, 2))
         for form, meaning in FORMS:
             forms.add_row(form, meaning)
         yield Static(forms)
 
     def parse(self, text: str) -> Breakpoint:
-        """Return the break that a text describes."""
+        """Parse a breakpoint.
+
+        Raises:
+            ConfigError: the text is invalid.
+        """
         return parse_break(text, self._robot)
 
     def written(self, entry: Breakpoint) -> str:
-        """Return a break's text."""
+        """Return the text of a breakpoint."""
         return entry.written()
 
     def label(self, entry: Breakpoint) -> str:
-        """Return a break as it is listed."""
+        """Return the line of a breakpoint in the list."""
         return f"{'○' if entry.disabled else '●'} {'line ' if entry.text[:1].isdigit() else ''}{entry.text}"
 
     def action_switch(self) -> None:
-        """Switch the one at hand on or off."""
+        """Enable or disable the selected breakpoint."""
         if isinstance(self.focused, OptionList) and (at := self._at) is not None:
             self._entries[at] = replace(self._entries[at], disabled=not self._entries[at].disabled)
             self._tell(at)
@@ -185,7 +193,11 @@ class WatchesDialog(_Listed[str]):
     PLACEHOLDER: ClassVar[str] = "an expression, such as len(values) or x / 2"
 
     def parse(self, text: str) -> str:
-        """Return an expression that Python can read."""
+        """Parse a Python expression.
+
+        Raises:
+            ConfigError: the text is invalid.
+        """
         return parse_watch(text)
 
     def written(self, entry: str) -> str:

@@ -1,4 +1,4 @@
-"""Choosing by name in a list, or by the path of a file."""
+"""Choosing from a list by name, or by the path of a file."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from tuisim.errors import TuisimError
 
 MAX_FILES = 200
 MAX_TRIED = 50
-"""Files of the folder that are opened to see whether they fit."""
+"""Most files of the folder that are opened to check their format."""
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Part of the list."""
+    """A part of the list."""
 
     title: str
     entries: Sequence[tuple[str, str, str]]
-    """What is chosen, its name, and its title, which may be empty."""
+    """For each entry: value, name, and title, which may be empty."""
 
 
 def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = None) -> Group:
-    """Return the files of the folder one is in.
+    """Return the files in the current folder.
 
     Args:
         suffixes: With their dots.
-        fits: Raises TuisimError for a file that is not to be listed.
+        fits: Raises TuisimError for a file that must not be listed.
     """
     wanted = tuple(suffixes)
     found = sorted(path for path in Path.cwd().iterdir() if path.suffix.lower() in wanted and path.is_file())
@@ -54,14 +54,14 @@ def _passes(fits: Callable[[Path], object], path: Path) -> bool:
 
 
 class ListDialog(Dialog[str]):
-    """A list, and mostly a field for a path; gives what was chosen or typed."""
+    """A list, usually with a field for a path. Its result is what was chosen or typed."""
 
     def on_mount(self) -> None:
-        """Begin in the list: most want one of those."""
+        """Focus the list."""
         self.query_one(OptionList).focus()
 
     def on_key(self, event: events.Key) -> None:
-        """What is typed while the list has the focus goes into the field."""
+        """Redirect characters typed in the list to the field."""
         if event.character and event.is_printable and not event.character.isspace() and self.query(Input):
             field = self.query_one(Input)
             if not field.has_focus:
@@ -85,13 +85,13 @@ class ListDialog(Dialog[str]):
 
 
 class Chooser(ListDialog):
-    """Gives the name or the path that was chosen.
+    """Returns the name or the path that was chosen.
 
     Args:
-        title: What is chosen.
-        groups: The list; empty groups are left out.
-        current: What is chosen now, to begin there.
-        path_hint: What stands in the empty field; no field without it.
+        title: Title of the dialog.
+        groups: The list; empty groups are omitted.
+        current: The current value, selected at first.
+        path_hint: Placeholder of the path field; without it there is no field.
     """
 
     HINT: str = "Enter chooses · Escape closes"
@@ -106,7 +106,7 @@ class Chooser(ListDialog):
         self._path_hint = path_hint
 
     def content(self) -> ComposeResult:
-        """A field for a path, and the list."""
+        """Return the path field and the list."""
         if self._path_hint:
             yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
         options: list[Option | None] = []
@@ -131,7 +131,7 @@ class Chooser(ListDialog):
 
 
 def program_chooser() -> Chooser:
-    """Return the list of programs and worlds: of the folder one is in, and the examples."""
+    """Return the dialog for programs and worlds: those in the current folder, and the examples."""
     from tuisim.config.assets import programs
     from tuisim.config.worlds import load_world
 
@@ -149,7 +149,7 @@ def program_chooser() -> Chooser:
 
 
 def robot_chooser(plan: NextRun) -> Chooser:
-    """Return the list of robots."""
+    """Return the dialog for robots."""
     from tuisim.config.presets import ROBOTS
     from tuisim.config.robots import load_robot
 
@@ -167,7 +167,7 @@ def _robot_title(name: str) -> str:
 
 
 def obstacle_chooser(plan: NextRun) -> Chooser:
-    """Return the list of sets of obstacles."""
+    """Return the dialog for sets of obstacles."""
     from tuisim.config.obstacles import load_obstacles
     from tuisim.config.presets import OBSTACLES
 
@@ -180,7 +180,7 @@ def obstacle_chooser(plan: NextRun) -> Chooser:
 
 
 def profile_chooser(plan: NextRun) -> Chooser:
-    """Return the list of profiles."""
+    """Return the dialog for profiles."""
     from tuisim.config.profiles import load_profile
     from tuisim.core.profile import PROFILES
 

@@ -1,4 +1,4 @@
-"""What the dialogs have in common: they close once, have a frame with a title, and are left by Escape."""
+"""Base of the dialogs: a frame with a title, a single result, and Escape to close."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ def name_and_title(name: str, title: str, name_cells: int) -> Table:
     table = Table.grid(padding=(0, 2), expand=True)
     table.add_column(width=name_cells, style="bold")
     table.add_column(ratio=1)
-    # A name that somebody has given is no markup.
+    # A user-defined name is no markup.
     table.add_row(Text(name), Text(title))
     return table
 
 
 class ClosesOnce(ModalScreen[Result], Generic[Result]):
-    """A screen over another one. It gives one result, and hears nothing after that.
+    """A modal screen that returns one result, and ignores events after that.
 
-    Textual takes the uppermost screen away for each call of `dismiss`, whichever screen it is called for. A key that
-    is pressed twice would give two results, and take away the screen below as well.
+    Each call of Textual's `dismiss` removes the topmost screen, whichever screen it was called for. A key pressed twice
+    would return two results, and remove the screen below as well.
     """
 
-    # The keys of the app do not reach through a screen.
+    # The app's keys do not work below a modal screen.
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+z", "app.suspend_process", "Suspend", show=False)]
 
     class Changed(Message):
-        """A screen can be given keys, or has closed."""
+        """Posted when a screen is ready for keys, or has closed."""
 
     is_ready = False
-    """Whether it is built, and has given the focus to the one of its widgets that is to hear the first key."""
+    """Whether it is mounted, and has focused the widget that gets the first key."""
 
     def on_mount(self) -> None:
-        """Be ready after the first layout, and after the focus that was asked for until then."""
+        """Become ready after the first layout and the pending changes of focus."""
         self.call_after_refresh(self.app.call_later, self._become_ready)
 
     def _become_ready(self) -> None:
@@ -52,18 +52,18 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
 
     @property
     def is_closed(self) -> bool:
-        """Whether it has given its result, or has never been opened."""
+        """Whether it has returned its result, or was never opened."""
         return self not in self.app.screen_stack
 
     def dismiss(self, result: Result | None = None) -> AwaitComplete:
-        """Give the result and close, with every screen above; do nothing if that has been done."""
+        """Return the result and close, with every screen above; no effect if already closed."""
         if self.is_closed:
             return AwaitComplete()
         stack = self.app.screen_stack
         opened = stack[stack.index(self) :]
         for screen in opened:
             if not screen.is_mounted:
-                # Textual cannot take away what it is still building.
+                # Textual cannot remove a screen that it is still mounting.
                 screen.call_later(self.dismiss, result)
                 return AwaitComplete()
         for above in reversed(opened[1:]):
@@ -72,13 +72,13 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
         return super().dismiss(result)
 
     async def _on_message(self, message: Message) -> None:
-        # A widget of a closed screen may have more to tell, such as a second Enter.
+        # Widgets of a closed screen may still post messages, such as a second Enter.
         if not (message.bubble and self.is_closed):
             await super()._on_message(message)
 
 
 class Dialog(ClosesOnce[Result], Generic[Result]):
-    """A frame with a title; gives None when left by Escape."""
+    """A frame with a title; returns None on Escape."""
 
     TITLE_TEXT: str = ""
     HINT: str = "Escape closes"
@@ -93,7 +93,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
             yield from self.content()
 
     def content(self) -> ComposeResult:
-        """The widgets in the frame."""
+        """Return the widgets in the frame."""
         yield from ()
 
     def action_leave(self) -> None:

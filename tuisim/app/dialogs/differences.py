@@ -1,4 +1,4 @@
-"""Where two runs differ: first in time, then how far apart they came, and what they were made of."""
+"""The dialog of the differences between two runs: first difference, distance, and set-up."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from tuisim.runs.diff import Divergence, RowDifference, RunDiff
 
 MOST_SETUP = 8
-"""So many differences of the set-up are shown."""
+"""Most differences of the set-up that are shown."""
 
 Line = tuple[str, str]
-"""What is told, and what there is to tell."""
+"""A label and its value."""
 
 
 def _row(row: RowDifference) -> str:
@@ -44,11 +44,11 @@ def _apart(divergence: Divergence) -> Iterator[Line]:
 
 
 def lines_of(diff: RunDiff) -> Iterator[Line]:
-    """Yield what tells two runs apart, the first difference in time first."""
+    """Yield the differences between two runs, the earliest in time first."""
     if diff.same:
         yield "recording", "the same to the last bit, and so is the output"
     elif diff.by_time:
-        yield "recording", "of other tick rates: no tick is the same"
+        yield "recording", "different tick rates: no tick is the same"
     elif diff.tick is None:
         yield "recording", "the same to the last bit"
     else:
@@ -71,13 +71,13 @@ def lines_of(diff: RunDiff) -> Iterator[Line]:
 
 
 class Differences(Dialog[bool]):
-    """Gives True if the first difference is to be looked at.
+    """Returns True if the user wants to go to the first difference.
 
     Args:
-        first: What the first run is called.
-        second: What the other one is called.
-        diff: What tells them apart.
-        samples: Whether one can also go to a sample: then the first one that differs counts if no tick does.
+        first: Name of the first run.
+        second: Name of the other one.
+        diff: The differences.
+        samples: Whether the caller can also go to a sample: the first one that differs counts if no tick differs.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Go there", show=False)]
@@ -90,7 +90,7 @@ class Differences(Dialog[bool]):
         self._diff = diff
 
     def content(self) -> ComposeResult:
-        """One line a difference."""
+        """Return one line per difference."""
         table = Table.grid(padding=(0, 2))
         table.add_column(style="bold")
         table.add_column()
@@ -100,5 +100,5 @@ class Differences(Dialog[bool]):
             yield Static(table)
 
     def action_go(self) -> None:
-        """Look at the first difference."""
+        """Go to the first difference."""
         self.dismiss(self._goes)

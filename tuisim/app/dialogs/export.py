@@ -1,4 +1,4 @@
-"""The export dialog: a file name, and what of the log goes in."""
+"""The export dialog: a file name, and which part of the log to write."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ExportDialog(FileDialog):
 
     Args:
         run_id: The run.
-        program: Name of its program, from which the name of the file is proposed.
+        program: Name of its program, used for the proposed file name.
     """
 
     TITLE_TEXT: str = "Export the log"
@@ -39,11 +39,11 @@ class ExportDialog(FileDialog):
         self._telemetry = False
 
     def more(self) -> ComposeResult:
-        """What goes in."""
+        """Return the choice of what to write."""
         yield Static(self._kind(), id="kind")
 
     def action_switch(self) -> None:
-        """Samples or telemetry."""
+        """Switch between samples and telemetry."""
         self._telemetry = not self._telemetry
         self.query_one("#kind", Static).update(self._kind())
 
@@ -51,13 +51,13 @@ class ExportDialog(FileDialog):
         return f"[@click=screen.switch]{_KINDS[self._telemetry]}[/]"
 
     def checked(self, path: Path) -> Path:
-        """Refuse what no exporter can write."""
+        """Raise a TuisimError for a file that no exporter can write."""
         from tuisim.logs.export import check_target
 
         return check_target(path)
 
     def write(self, target: Path) -> None:
-        """Write it off the event loop: it may be long."""
+        """Write the file in the background: it may be large."""
         self.say("Writing …")
         self.run_worker(partial(self._write, target, self._telemetry), thread=True)
 

@@ -1,4 +1,4 @@
-"""The question where in time to go."""
+"""The `go to` dialog."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from tuisim.errors import TuisimError
 
 
 class GoTo(Dialog[int]):
-    """Gives the tick that was asked for.
+    """Returns the tick that was asked for.
 
     Args:
-        timeline: The run, and where one is in it.
+        timeline: The run, and the instant in view.
     """
 
     TITLE_TEXT: str = "Go to"
@@ -28,7 +28,7 @@ class GoTo(Dialog[int]):
         self._timeline = timeline
 
     def content(self) -> ComposeResult:
-        """The field, what is wrong with what stands there, and what may stand there."""
+        """Return the field, its error line, and the accepted forms."""
         yield Input(placeholder=f"now at {self._timeline.time_s:.2f} s", compact=True)
         yield Static(id="message", classes="wrong", markup=False)
         forms = Table.grid(padding=(0, 2))

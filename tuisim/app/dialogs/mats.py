@@ -1,4 +1,4 @@
-"""The mat picker: every mat by name, with a small picture of the one at hand, or an image of one's own."""
+"""The mat picker: every mat by name, with a preview of the selected one, or a custom image."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from tuisim.config.assets import Background
 
 WIDEST_NAME = 32
-"""So many columns the list has at most: a file of one's own may have any name."""
+"""Most columns of the list: a custom file may have any name."""
 
 
 class MatPicker(ListDialog):
-    """Gives the name of the chosen mat, or the path of an image.
+    """Returns the name of the chosen mat, or the path of an image.
 
     Args:
-        current: The mat that lies there now, as a specification calls it.
-        known: Every mat that there is, by name.
-        folder: A folder with mats of the user's own, None for none but the usual one.
+        current: The current mat, as named in a specification.
+        known: All mats by name.
+        folder: The user's own folder of mats; None for the default one only.
     """
 
     TITLE_TEXT: str = "Mats"
@@ -45,7 +45,7 @@ class MatPicker(ListDialog):
         self._pictures: dict[tuple[str, int, int], Pixels] = {}
 
     def content(self) -> ComposeResult:
-        """The list, the picture, and a field for a path."""
+        """Return the list, the preview, and a path field."""
         from tuisim.config.own_mats import spec_name
 
         listed = OptionList(*(Option(name, id=name) for name in self._mats), markup=False)
@@ -60,11 +60,11 @@ class MatPicker(ListDialog):
         yield Input(placeholder="Or the path of an image of your own", compact=True, select_on_focus=False)
 
     def on_mount(self) -> None:
-        """Make the picture as high as its width asks for."""
+        """Set the height of the preview from its width."""
         self.call_after_refresh(self._begin)
 
     def on_resize(self) -> None:
-        """Fit the picture to the new width."""
+        """Fit the preview to the new width."""
         self.call_after_refresh(self._begin)
 
     def _begin(self) -> None:
@@ -73,7 +73,7 @@ class MatPicker(ListDialog):
         self.call_after_refresh(self._show_again)
 
     def _show_again(self) -> None:
-        # What is shown by then: another mat may have been chosen meanwhile.
+        # Show the current selection: it may have changed meanwhile.
         self._show(self._shown)
 
     @on(OptionList.OptionHighlighted)
@@ -81,7 +81,7 @@ class MatPicker(ListDialog):
         self._show(event.option.id or "")
 
     def _show(self, name: str) -> None:
-        """Show a mat: its title at once, its picture as soon as it is decoded."""
+        """Preview a mat: its title at once, its image as soon as it is decoded."""
         self._shown = name
         view = self.query_one(PixelView)
         if name not in self._mats or not view.size:
@@ -115,7 +115,7 @@ class MatPicker(ListDialog):
         if key[1:] == (view.size.width, 2 * view.size.height):
             view.set_picture(picture)
         else:
-            # The view was given its height while the picture was made.
+            # The view got its height while the image was decoded.
             self._show_again()
 
     def _told(self, name: str, text: str) -> None:

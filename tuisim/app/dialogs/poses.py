@@ -1,4 +1,4 @@
-"""Saved poses: go to one, delete one, or save where the robot is."""
+"""The dialog of the saved poses: go to one, delete one, or save the current pose."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ def pose_label(pose: Pose) -> str:
 
 
 class SavedPoses(Dialog[Pose]):
-    """Gives the pose to go to.
+    """Returns the pose to go to.
 
     Args:
-        here: Where the robot is.
+        here: The current pose of the robot.
     """
 
     TITLE_TEXT: str = "Saved poses"
@@ -38,14 +38,14 @@ class SavedPoses(Dialog[Pose]):
         self._poses: dict[str, Pose] = {}
 
     def content(self) -> ComposeResult:
-        """The list, and a field to save where the robot is."""
+        """Return the list, and a field to save the current pose."""
         yield OptionList()
         yield Static(f"Save where the robot is now, {pose_label(self._here)}, as:", classes="start", markup=False)
         yield Input(placeholder="a name, then Enter", compact=True, max_length=MAX_NAME)
         yield Static(id="message", markup=False)
 
     def on_mount(self) -> None:
-        """List what is saved; begin in the list if there is any."""
+        """Fill the list and focus it, or the field if it is empty."""
         self._list()
         self.query_one(OptionList if self._poses else Input).focus()
 
@@ -68,7 +68,7 @@ class SavedPoses(Dialog[Pose]):
         self.dismiss(self._poses.get(event.option.id or ""))
 
     def action_remove(self) -> None:
-        """Delete the pose at hand."""
+        """Delete the selected pose."""
         listed = self.query_one(OptionList)
         at = listed.highlighted
         if at is None or not self._poses:

@@ -1,4 +1,4 @@
-"""Questions with a few answers, each a key and a word to click on."""
+"""Questions with a few answers, each with a key and a clickable word."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from tuisim.app.actions.branch import Branch
 
 Answer = tuple[str, str]
-"""A key, and what it does. The key is the answer."""
+"""A key, and what it does. The key is the result."""
 
 
 class Question(Dialog[str]):
-    """Gives the key of the answer, None if it was left by Escape.
+    """Returns the key of the answer, None on Escape.
 
     Args:
-        title: What it is about.
-        text: What is asked.
-        answers: The first is also given by Enter.
-        escape: What Escape does.
+        title: The subject.
+        text: The question.
+        answers: Enter gives the first one.
+        escape: Text of what Escape does.
     """
 
     def __init__(self, title: str, text: str, answers: Sequence[Answer], escape: str = "decides later") -> None:
@@ -37,21 +37,21 @@ class Question(Dialog[str]):
         self._answers = answers
 
     def content(self) -> ComposeResult:
-        """The question, and its answers."""
+        """Return the question and its answers."""
         yield Static(self._text, markup=False)
         yield Static()
         words = (f"[@click=screen.answer('{key}')]  {key}  {does}  [/]" for key, does in self._answers)
         yield Static("   ".join(words), classes="link")
 
     def on_key(self, event: events.Key) -> None:
-        """Take an answer."""
+        """Handle the key of an answer."""
         key = self._answers[0][0] if event.key == "enter" else event.key
         if key in dict(self._answers):
             event.stop()
             self.action_answer(key)
 
     def action_answer(self, key: str) -> None:
-        """Give an answer."""
+        """Return an answer."""
         self.dismiss(key)
 
 
@@ -59,13 +59,13 @@ BRANCH, ANEW = "branch", "anew"
 
 
 class BranchQuestion(Dialog[str]):
-    """Gives `BRANCH`, `ANEW` or None.
+    """Returns `BRANCH`, `ANEW` or None.
 
     Args:
-        branch: What is proposed.
-        change: What is different there, in words, or empty.
-        in_run: Whether the former run is still going on, and ends with this.
-        anew: Whether running from the start is offered.
+        branch: The proposed branch.
+        change: What differs there, in words, or empty.
+        in_run: Whether the former run is still live, and ends with this.
+        anew: Whether to offer a run from the start.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -82,11 +82,11 @@ class BranchQuestion(Dialog[str]):
         program = "The edited program" if branch.edited else "The program"
         again = "run from its start to there" if branch.edited else "run again to there"
         ends = f" {branch.of.name.capitalize()} ends here, and is kept." if in_run else ""
-        then = "goes on from there" if branch.goes_on else "stands still there"
+        then = "continues from there" if branch.goes_on else "pauses there"
         self._text = f"{program} is {again}, with all that you did until then, and {then}{change}.{ends}"
 
     def content(self) -> ComposeResult:
-        """What would happen, and the answers."""
+        """Return what would happen, and the answers."""
         yield Static(self._text, markup=False)
         answers = ["[@click=screen.branch]  y  Branch  [/]", "[@click=screen.leave]  n  Stay  [/]"]
         if self._anew:
@@ -94,17 +94,17 @@ class BranchQuestion(Dialog[str]):
         yield Static("   ".join(answers))
 
     def action_branch(self) -> None:
-        """Branch."""
+        """Return `BRANCH`."""
         self.dismiss(BRANCH)
 
     def action_anew(self) -> None:
-        """Run from the start, if that is offered."""
+        """Return `ANEW`, if that is offered."""
         if self._anew:
             self.dismiss(ANEW)
 
 
 class LeaveQuestion(Dialog[bool]):
-    """Gives True if the user wants to leave all the same."""
+    """Returns True if the user wants to quit nevertheless."""
 
     TITLE_TEXT: str = "Quit?"
     HINT: str = "y quits · n goes on"
@@ -119,5 +119,5 @@ class LeaveQuestion(Dialog[bool]):
         yield Static("[@click=screen.yes]  y  Stop it and quit  [/]   [@click=screen.leave]  n  Stay  [/]")
 
     def action_yes(self) -> None:
-        """Leave."""
+        """Quit."""
         self.dismiss(True)

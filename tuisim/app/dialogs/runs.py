@@ -1,4 +1,4 @@
-"""The stored runs, to look back at one of them."""
+"""Dialogs of the stored runs, to open or compare them."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from tuisim.runs.recording import Recording
 
 MOST_LISTED = 300
-"""So many runs are listed at once; the others are found by searching."""
+"""Most runs listed at once; a search finds the others."""
 
 
 def matching(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
-    """Return the runs, the newest first, of which each word of a search stands somewhere in their lines."""
+    """Return the runs, newest first, whose lines contain every word of a search."""
     words = search.lower().split()
     return [run for run in reversed(list(runs)) if all(word in _searched(run) for word in words)]
 
@@ -41,14 +41,14 @@ def _searched(run: RunInfo) -> str:
 
 
 def _when(run: RunInfo) -> str:
-    """When it was, in the time of this place."""
+    """Return the local start time."""
     try:
         return datetime.fromisoformat(run.created).astimezone().strftime("%Y-%m-%d %H:%M")
     except ValueError:
         return run.created[:16]
 
 
-# As wide as there is room in a terminal of 80 columns; the list is indented by one.
+# As wide as fits a terminal of 80 columns; the list is indented by one.
 _HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}"
 
 
@@ -67,17 +67,17 @@ def run_line(run: RunInfo, marked: bool = False) -> Text:
 
 
 def branch_root(run: RunInfo) -> int | None:
-    """Return the number of the run that a run is a branch of, None if it is none."""
+    """Return the number of the run that a run branched off from, None if it is no branch."""
     tag = next((word for word in run.tags.split() if word.startswith(BRANCH_TAG)), "")
     number = tag.removeprefix(BRANCH_TAG)
     return int(number) if number.isdecimal() else None
 
 
 class RunChooser(ListDialog):
-    """Gives the id of the run that was chosen.
+    """Returns the id of the chosen run.
 
     Args:
-        compared: The run that another one is chosen to be compared with, if that is what it is for.
+        compared: The run to compare the chosen one with, if any.
     """
 
     DEFAULT_CSS = """
@@ -97,14 +97,14 @@ class RunChooser(ListDialog):
         self._runs: list[RunInfo] = []
 
     def content(self) -> ComposeResult:
-        """A field for searching, and the list."""
+        """Return the search field and the list."""
         yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
         yield Static(_HEADS, markup=False, classes="heads")
         yield OptionList()
         yield Static("Reading the list …", id="message", markup=False)
 
     def on_mount(self) -> None:
-        """Read the list off the event loop: there may be thousands."""
+        """Read the list in the background: there may be thousands of runs."""
         super().on_mount()
         self.run_worker(self._read, thread=True)
 
@@ -155,7 +155,7 @@ class RunChooser(ListDialog):
     @on(Input.Submitted)
     def _typed(self, event: Input.Submitted) -> None:
         event.stop()
-        # What is typed here is no choice by itself, as it is in other lists.
+        # Text typed here is not a choice in itself, unlike in other lists.
         event.prevent_default()
         options = self.query_one(OptionList)
         if options.highlighted is not None:
@@ -163,7 +163,7 @@ class RunChooser(ListDialog):
 
 
 class RunsChooser(RunChooser):
-    """Gives the ids of one or several runs, apart by blanks."""
+    """Returns the ids of one or several runs, separated by blanks."""
 
     TITLE_TEXT: str = "Open runs"
     HINT: str = "Enter opens · space marks several · type to search · Escape closes"
@@ -179,7 +179,7 @@ class RunsChooser(RunChooser):
         return run_line(run, run.id in self._marked)
 
     def action_mark(self) -> None:
-        """Mark the run at hand, or not, and go on to the next one."""
+        """Mark or unmark the selected run, and go to the next one."""
         options = self.query_one(OptionList)
         at = options.highlighted
         run = self._run_of(options.get_option_at_index(at).id) if at is not None else None
@@ -200,7 +200,7 @@ class RunsChooser(RunChooser):
 
     @on(Input.Submitted)
     def _named(self, event: Input.Submitted) -> None:
-        """Runs that are named, such as `12 13` or `last`, are those; else it is a search."""
+        """Open runs given by name, such as `12 13` or `last`; any other text is a search."""
         numbers = {str(run.number): run.id for run in self._runs}
         if self._runs:
             numbers["last"] = self._runs[-1].id

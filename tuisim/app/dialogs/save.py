@@ -1,4 +1,4 @@
-"""Saving to a file: its name, and whether an existing one may be replaced."""
+"""Dialogs that save a file: its name, and whether an existing one may be replaced."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from tuisim.errors import ConfigError, TuisimError
 
 
 def typed_path(text: str) -> Path:
-    """Return the path that was typed, `~` replaced; there need not be such a file.
+    """Return the path that was typed, with `~` expanded; the file need not exist.
 
     Raises:
-        ConfigError: no file can have such a name, such as one that is too long.
+        ConfigError: the name is impossible, for example too long.
     """
     try:
         path = Path(text).expanduser()
@@ -33,10 +33,10 @@ def typed_path(text: str) -> Path:
 
 
 class FileDialog(Dialog[Path]):
-    """A field for a file name; gives the path of what was written.
+    """A field for a file name; returns the path of the written file.
 
     Args:
-        proposed: What stands in the field at first.
+        proposed: Initial text of the field.
     """
 
     HINT: str = "Enter writes · Escape closes"
@@ -50,21 +50,21 @@ class FileDialog(Dialog[Path]):
         self._writing = False
 
     def content(self) -> ComposeResult:
-        """The field, what else is to be said, and a line for what is wrong."""
+        """Return the field, the additional widgets, and an error line."""
         yield Static(f"File ({self.SUFFIXES})", markup=False)
         yield Input(self._proposed, compact=True, select_on_focus=False)
         yield from self.more()
         yield Static(id="message", markup=False)
 
     def more(self) -> ComposeResult:
-        """What stands between the field and the message."""
+        """Return the widgets between the field and the message."""
         yield from ()
 
     def checked(self, path: Path) -> Path:
         """Return the target if it can be written.
 
         Raises:
-            TuisimError: it cannot.
+            TuisimError: it cannot be written.
         """
         return path
 
@@ -92,7 +92,7 @@ class FileDialog(Dialog[Path]):
             target = self.checked(typed_path(typed))
             if target.exists() and self._agreed != typed:
                 self._agreed = typed
-                self.say(f"{target.name} is there already. Enter once more replaces it.", wrong=True)
+                self.say(f"{target.name} is there already. Press Enter again to replace it.", wrong=True)
                 return
             self._writing = True
             self.write(target)
@@ -100,24 +100,24 @@ class FileDialog(Dialog[Path]):
             self.failed(str(error))
 
     def failed(self, text: str) -> None:
-        """Say why nothing was written."""
+        """Show why nothing was written."""
         self._writing = False
         self.say(text, wrong=True)
 
     def say(self, text: str, wrong: bool = False) -> None:
-        """Show a line."""
+        """Show a message."""
         message = self.query_one("#message", Static)
         message.update(text)
         message.set_class(wrong, "wrong")
 
 
 class SaveDialog(FileDialog):
-    """Writes a file of the app's own kinds.
+    """Writes a file of one of the app's own kinds.
 
     Args:
-        what: What is written, such as `robot`.
-        proposed: What stands in the field at first.
-        save: Writes it whole or not at all, or raises TuisimError.
+        what: The subject, such as `robot`.
+        proposed: Initial text of the field.
+        save: Writes the file completely or not at all; raises TuisimError.
     """
 
     def __init__(self, what: str, proposed: str, save: Callable[[Path], None]) -> None:
@@ -127,13 +127,13 @@ class SaveDialog(FileDialog):
         self.TITLE_TEXT = f"Save the {what}"
 
     def checked(self, path: Path) -> Path:
-        """Refuse a folder."""
+        """Raise a TuisimError for a folder."""
         if path.is_dir():
             raise TuisimError(f"{path} is a folder, not a file")
         return path
 
     def write(self, target: Path) -> None:
-        """Write it at once."""
+        """Write the file at once."""
         self._save(target)
         self.app.notify(f"The {self._what} is in {target}", markup=False)
         self.dismiss(target)

@@ -1,1 +1,1 @@
-"""Keys as they are shown: footer, command palette and help."""
+"""Displays of the keys: footer, command palette and help."""

@@ -24,7 +24,7 @@ class AnalyserHelp(KeyHelp):
     )
 
     def groups(self) -> Mapping[str, Keys]:
-        """Keys of the analyser."""
+        """Return the keys of the analyser."""
         groups: dict[str, list[tuple[str, str]]] = {}
         for action in ACTIONS.values():
             groups.setdefault(action.group, []).append((action.label, action.title))
@@ -32,10 +32,10 @@ class AnalyserHelp(KeyHelp):
 
 
 class AnalyserActions(KeyProvider):
-    """Offers what the analyser's `ACTIONS` list."""
+    """Provides the analyser's `ACTIONS`."""
 
     def offers(self) -> Iterator[Offer]:
-        """Every key of the analyser."""
+        """Yield every action of the analyser."""
         act = cast("Analyser", self.screen).action_act
         for action in ACTIONS.values():
             yield Offer(action.title, action.group, action.label, partial(act, action.id))

@@ -13,11 +13,11 @@ _NUDGES = (
     ("shift + arrow", "Move the robot 1 mm"),
     ("a f", "Turn the robot 5° to the left, to the right; also ctrl + ← →"),
 )
-"""The ten nudging keys in three rows."""
+"""The ten keys that move or turn the robot, in three rows."""
 
 
 class HelpScreen(KeyHelp):
-    """How to start, and every key."""
+    """A short introduction, and every key."""
 
     TITLE_TEXT: str = "Help"
     START: str = (
@@ -28,7 +28,7 @@ class HelpScreen(KeyHelp):
     )
 
     def groups(self) -> Mapping[str, Keys]:
-        """Keys of the app, of the editor, and those that every part of the screen knows."""
+        """Return the keys of the app, of the editor, and those that work everywhere."""
         groups: dict[str, list[tuple[str, str]]] = {}
         for action in ACTIONS.values():
             rows = groups.setdefault(action.group, [])

@@ -1,4 +1,4 @@
-"""The footer: the keys that work now, as many as fit, and the state of the run."""
+"""The footer: as many available keys as fit, and the state of the run."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from tuisim.app.snapshot import ENDED, Snapshot
 _ALWAYS = ("help", "quit")
 
 KeyWord = tuple[str, str]
-"""A key as people write it, and what it does."""
+"""The display name of a key, and what it does."""
 
 
 def fitting(actions: list[Action], width: int) -> list[Action]:
-    """Return the actions whose keys and words fit a footer, help and quit before any other.
+    """Return the actions that fit a footer, help and quit before any other.
 
     Args:
-        actions: Those that work, the most useful first.
+        actions: The available ones, the most useful first.
         width: Cells.
     """
     always = [ACTIONS[action] for action in _ALWAYS]
@@ -47,7 +47,7 @@ def _key(action: Action) -> str:
 
 
 class KeyFooter(Widget):
-    """One row at the bottom."""
+    """The bottom row of the screen."""
 
     DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
     ALLOW_SELECT = False
@@ -72,11 +72,11 @@ class KeyFooter(Widget):
         """Show the keys for a situation.
 
         Args:
-            situation: Decides which keys work.
+            situation: Decides which keys are available.
             status: State of the run, at the right.
             panels_on: Panels whose keys are shown as switched on.
-            typing: Keys of the field that has the focus; where letters go into it, they are no keys.
-            failed: Whether the run did not end well, so that its state is a warning.
+            typing: Keys of the text field that has the focus, where letters are not keys.
+            failed: Whether the run has failed, so that its state is shown as a warning.
         """
         before = self._situation, self._status, self._on, self._typing, self._failed
         if (situation, status, panels_on, typing, failed) != before:
@@ -85,7 +85,6 @@ class KeyFooter(Widget):
             self.refresh()
 
     def render(self) -> Text:
-        """Return the row."""
         width = self.size.width
         status = f" {self._status} " if self._status else ""
         key_style = self.get_component_rich_style("footer--key", partial=True)
@@ -104,7 +103,7 @@ class KeyFooter(Widget):
         return line
 
     def on_click(self, event: events.Click) -> None:
-        """Do what was clicked on."""
+        """Run the action that was clicked."""
         if name := event.style.meta.get(ACT):
             event.stop()
             self.post_message(Act(name))
@@ -121,14 +120,14 @@ TYPING_KEYS: tuple[KeyWord, ...] = (
     ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("^g", "line"), ("^z", "undo"), ("^y", "redo"),
     ("^/", "comment"),
 )  # fmt: skip
-"""While one types into the program."""
+"""Keys while the user types in the program."""
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
 
 
 def situation(lab: LabApp) -> Situation:
-    """Return what decides which keys work."""
+    """Return the state that decides which keys are available."""
     bridge = lab.bridge
     return Situation(
         bridge.state, bridge.program is not None, bool(bridge.run_id), bridge.in_past, lab.debugging.is_away
@@ -136,8 +135,8 @@ def situation(lab: LabApp) -> Situation:
 
 
 def _field_keys(lab: LabApp) -> tuple[KeyWord, ...]:
-    """The keys of the field that letters go into; none if no such field has the focus."""
-    # When the app ends the focus goes last.
+    """Return the keys of the text field that has the focus; empty if there is none."""
+    # The focus may already be gone while the app ends.
     focused = lab.focused if lab.screen_stack else None
     if isinstance(focused, Input):
         return FIELD_KEYS
@@ -147,7 +146,7 @@ def _field_keys(lab: LabApp) -> tuple[KeyWord, ...]:
 
 
 def show_footer(lab: LabApp, snapshot: Snapshot) -> None:
-    """Bring the footer up to date."""
+    """Update the footer."""
     status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
     if lab.debugging.looks_back:
         status = "playing" if lab.bridge.timeline.playing else f"past {snapshot.time_s:.2f} s"

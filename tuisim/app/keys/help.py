@@ -1,4 +1,4 @@
-"""What the helps have in common: a few words to start with, then every key by group."""
+"""Base of the help screens: a short introduction, then every key by group."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from textual.widgets import Static
 from tuisim.app.dialogs.dialog import Dialog
 
 Keys = Iterable[tuple[str, str]]
-"""Each key as people write it, and what it does."""
+"""The display name of each key, and what it does."""
 
 
 COLUMN_CELLS = 50
-"""A column of keys is not made narrower than this to set another beside it."""
+"""A column of keys is not made narrower than this to fit another one next to it."""
 
 
 def key_table(groups: Mapping[str, Keys], width: int) -> Table:
-    """Return every key by group, in as many columns as there is room for; a group without a name has no heading."""
+    """Return every key by group, in as many columns as fit; a group without a name has no heading."""
     rows = [(group, list(keys)) for group, keys in groups.items()]
     count = max(1, min(width // COLUMN_CELLS, len(rows)))
     columns = Table.grid(padding=(0, 2), expand=True)
@@ -38,7 +38,7 @@ _Group = tuple[str, list[tuple[str, str]]]
 
 
 def _in_columns(groups: list[_Group], count: int) -> list[list[_Group]]:
-    """Share groups among columns, in their order, so that the highest column is as low as it can be."""
+    """Distribute groups over columns, in their order, so that the longest column is as short as possible."""
 
     def filled(most: int) -> list[list[_Group]]:
         columns: list[list[_Group]] = [[]]
@@ -71,7 +71,7 @@ def _column(groups: list[_Group]) -> Table:
 
 
 class _KeyTable(Static):
-    """The keys, laid out for the width that there is."""
+    """The table of keys, laid out for the available width."""
 
     def __init__(self, groups: Mapping[str, Keys]) -> None:
         super().__init__()
@@ -83,18 +83,18 @@ class _KeyTable(Static):
 
 
 class KeyHelp(Dialog[None]):
-    """A help; `?` closes it as it opened it."""
+    """A help screen; `?` closes it as well."""
 
     HINT: str = "↑ ↓ scroll · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("question_mark,q", "leave", "Close", show=False)]
     START: str = ""
 
     def groups(self) -> Mapping[str, Keys]:
-        """Every key by the name of its group."""
+        """Return the keys by the name of their group."""
         return {}
 
     def content(self) -> ComposeResult:
-        """The text, scrolled if need be."""
+        """Return the text, scrolled if necessary."""
         with VerticalScroll():
             yield Static(self.START, classes="start", markup=False)
             yield _KeyTable(self.groups())

@@ -17,44 +17,44 @@ if TYPE_CHECKING:
 
 
 class Palette(CommandPalette, ClosesOnce[None]):
-    """Textual's command palette as a screen of ours."""
+    """Textual's command palette, as one of the app's screens that close once."""
 
     def _action_command_list(self, action: str) -> None:
-        # A list that has never been shown has no pages and no lines yet.
+        # A list that was never shown has no pages and no lines yet.
         if self.query_one(CommandList).size:
             super()._action_command_list(action)
 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """One line of the palette."""
+    """One entry of the palette."""
 
     title: str
     group: str
     key: str
-    """As people write it."""
+    """Display name of the key."""
     do: Callable[[], None]
 
     @property
     def help(self) -> str:
-        """What stands below the title."""
+        """The text below the title."""
         return f"{self.group} · key {self.key}"
 
 
 class KeyProvider(Provider):
-    """Offers what keys do."""
+    """Provides actions that have a key."""
 
     def offers(self) -> Iterator[Offer]:
-        """Every line."""
+        """Yield every entry."""
         yield from ()
 
     async def discover(self) -> Hits:
-        """Offer everything before a word is typed."""
+        """Yield every entry, before anything is typed."""
         for offer in self.offers():
             yield DiscoveryHit(offer.title, offer.do, help=offer.help)
 
     async def search(self, query: str) -> Hits:
-        """Offer what has a matching title."""
+        """Yield the entries with a matching title."""
         matcher = self.matcher(query)
         for offer in self.offers():
             if (score := matcher.match(offer.title)) > 0:
@@ -62,10 +62,10 @@ class KeyProvider(Provider):
 
 
 class ActionProvider(KeyProvider):
-    """Offers what the app's `ACTIONS` list."""
+    """Provides the app's `ACTIONS`."""
 
     def offers(self) -> Iterator[Offer]:
-        """Every key of the app."""
+        """Yield every action of the app."""
         act = cast("LabApp", self.app).action_act
         for action in ACTIONS.values():
             yield Offer(action.title, action.group, action.key_label, partial(act, action.id))

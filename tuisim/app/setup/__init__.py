@@ -1,1 +1,1 @@
-"""The next run: what the user has chosen for it."""
+"""The settings of the next run."""

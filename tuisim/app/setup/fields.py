@@ -1,4 +1,4 @@
-"""What can be edited of the plan of the next run: one line a field.
+"""The editable fields of the next run's plan: one line per field.
 
 To add a field: add a line in the function of its section.
 """
@@ -42,17 +42,17 @@ MAX_LABEL = 12
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One field."""
+    """An editable value of the plan."""
 
     id: str
     label: str
     """With its unit, at most `MAX_LABEL` characters."""
     read: Callable[[NextRun], str]
-    """What it shows."""
+    """Returns the value as text."""
     write: Callable[[NextRun, str], NextRun]
-    """Takes what was typed or chosen; raises ConfigError."""
+    """Applies a typed or chosen text; raises ConfigError."""
     choices: tuple[str, ...] = ()
-    """What there is to choose from; empty for a field that is typed into."""
+    """The possible values; empty for a free text field."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class FieldGroup:
 
 
 def sections(plan: NextRun) -> list[FieldGroup]:
-    """Return every field for a plan: which there are depends on the sensors of its robot."""
+    """Return every field of a plan; the fields depend on the sensors of its robot."""
     eyes = {eye.name: eye for eye in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)}
     return [
         FieldGroup("Program", (Field("arguments", "Arguments", _arguments, _with_arguments),)),
@@ -94,7 +94,7 @@ def _whole(text: str) -> int:
         raise RobotError(f"must be a whole number, got {text.strip()[:20]!r}") from None
 
 
-# The robot. What is shown is the robot on its mat, what is changed is the robot as it was chosen.
+# The robot. The fields show the robot on its mat, and edit the robot as it was chosen.
 
 
 def _robot_edit(
@@ -104,7 +104,7 @@ def _robot_edit(
     change: Callable[[RobotSpec, str], RobotSpec],
     choices: tuple[str, ...] = (),
 ) -> Field:
-    """A field of the robot."""
+    """Return a field of the robot."""
 
     def write(plan: NextRun, text: str) -> NextRun:
         return with_robot_edited(plan, change(plan.robot_choice.spec, text))
@@ -142,7 +142,7 @@ def _weighed(robot: RobotSpec, text: str) -> RobotSpec:
 
 
 def _motor_edit(key: str, label: str) -> Field:
-    """The port of a wheel's motor; a motor that was there takes the port that became free."""
+    """Return the field for the port of a wheel's motor; a motor that already uses the port gets the freed one."""
     other = "right_port" if key == "left_port" else "left_port"
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
@@ -155,7 +155,7 @@ def _motor_edit(key: str, label: str) -> Field:
 
 
 def _kind_edit(key: str, label: str) -> Field:
-    """The kind of a wheel's motor."""
+    """Return the field for the kind of a wheel's motor."""
 
     def change(robot: RobotSpec, kind: str) -> RobotSpec:
         kinds: dict[str, Any] = {key: kind}
@@ -189,12 +189,12 @@ def _robot_edits() -> tuple[Field, ...]:
 
 
 def _parts(robot: RobotSpec) -> dict[str, SensorSpec]:
-    """Every sensor by its name."""
+    """Return all sensors by name."""
     return {sensor.name: sensor for sensor in robot.sensors}
 
 
 def _with_parts(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
-    """The robot with some of its sensors changed, at once: two may have swapped their ports."""
+    """Return the robot with some sensors replaced, all at once because two may have swapped ports."""
     changed = {part.name: part for part in parts}
     found: dict[str, Any] = {}
     for mount in MOUNTS:
@@ -204,7 +204,7 @@ def _with_parts(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
 
 
 def _part_edit(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> Field:
-    """A field of a sensor."""
+    """Return a field of a sensor."""
 
     def change(robot: RobotSpec, text: str) -> RobotSpec:
         changed: dict[str, Any] = {key: parse(text)}
@@ -218,7 +218,7 @@ def _part_edit(name: str, key: str, label: str, parse: Callable[[str], Any] = _n
 
 
 def _port_edit(name: str) -> Field:
-    """A sensor's port; a sensor that was there takes the port that became free."""
+    """Return the field for a sensor's port; a sensor that already uses the port gets the freed one."""
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
         parts = _parts(robot)
@@ -229,7 +229,7 @@ def _port_edit(name: str) -> Field:
 
 
 def _used_edit(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> Field:
-    """Whether a sensor is there."""
+    """Return the field that adds or removes a sensor."""
     return _robot_edit(f"{name}.used", "Used", lambda robot: ON if name in _parts(robot) else OFF, change, SWITCHED)
 
 
@@ -242,7 +242,7 @@ def _free_port(robot: RobotSpec, wanted: str) -> str:
 
 
 def _placed(plan: NextRun, text: str, name: str) -> NextRun:
-    """A colour sensor's x: where the mat has put the others, they stay."""
+    """Change a colour sensor's x; the other sensors stay where the mat has put them."""
     on_mat = {eye.name: eye for eye in plan.spec.robot.color_sensors}
     robot = plan.robot_choice.spec
     eyes = [replace(eye, x_mm=on_mat[eye.name].x_mm) for eye in robot.color_sensors]
@@ -277,7 +277,7 @@ def _eye_edits(name: str, eye: ColorSensorSpec, plan: NextRun) -> tuple[Field, .
 
 
 def _single_used(name: str, field: str, fresh: SensorSpec) -> Field:
-    """Whether the ultrasonic sensor or the gyro is there."""
+    """Return the field that adds or removes the ultrasonic sensor or the gyro."""
 
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
         changed: dict[str, Any] = {field: None}
@@ -396,11 +396,11 @@ def _with_arguments(plan: NextRun, text: str) -> NextRun:
 
 
 def find(plan: NextRun, edit_id: str) -> Field | None:
-    """Return a field by its id, None if this robot has none such."""
+    """Return a field by its id, None if this robot has no such field."""
     return next((edit for section in sections(plan) for edit in section.edits if edit.id == edit_id), None)
 
 
 def step(edit: Field, plan: NextRun, by: int) -> str:
-    """Return the choice so many steps on from the present one."""
+    """Return the choice `by` steps after the current one."""
     now, choices = edit.read(plan), edit.choices
     return choices[(choices.index(now) + by) % len(choices)] if now in choices else choices[0]

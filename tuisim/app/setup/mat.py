@@ -1,4 +1,4 @@
-"""The mat of the world: prepared once, off the event loop, for sensors and for drawing."""
+"""The mat of the world, prepared once and off the event loop, for sensors and for drawing."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 MatKey = tuple[str, str, frozenset[int]]
-"""Name, how an own image fits, and the diameters of the discs that are prepared."""
+"""Name, how a custom image is fitted, and the diameters of the prepared discs."""
 
 
 def mat_key(spec: RunSpec) -> MatKey:
-    """Return what has to be prepared for a run."""
+    """Return the key of the mat that a run needs."""
     diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
     return spec.world.background, spec.world.background_fit, diameters
 
@@ -32,26 +32,26 @@ class Mat:
 
     key: MatKey
     field: Field | None
-    """None for one that is no longer to be had: then no sensor can be measured."""
+    """None if the mat is no longer available: then no sensor can be measured."""
     pixels: NDArray[np.uint8]
     """Shape (height, width, 3), rows from the top."""
 
     def serves(self, spec: RunSpec) -> bool:
-        """Whether it is the mat of a run, prepared for its sensors."""
+        """Return whether this is the mat of a run, prepared for its sensors."""
         wanted = mat_key(spec)
         return wanted[:2] == self.key[:2] and wanted[2] <= self.key[2]
 
     @property
     def name(self) -> str:
-        """As a specification calls it."""
+        """The name in the specification."""
         return self.key[0]
 
 
 def prepare_mat(spec: RunSpec) -> Mat:
-    """Prepare the mat of a run. Slow the first time: call it in a thread.
+    """Prepare the mat of a run. Blocks, long the first time: call it in a thread.
 
     Raises:
-        BackgroundError: there is no such mat, or its picture cannot be read.
+        BackgroundError: there is no such mat, or its image cannot be read.
     """
     from tuisim.config import assets, mat_cache
 
@@ -61,10 +61,10 @@ def prepare_mat(spec: RunSpec) -> Mat:
 
 
 def prepare_mat_of(run: StoredRun) -> Mat:
-    """Return the very mat that a stored run was made on; it may be slow as `prepare_mat`.
+    """Return the exact mat of a stored run; blocks as `prepare_mat` does.
 
     Raises:
-        LogError: it is not to be had any more.
+        LogError: it is no longer available.
     """
     from tuisim.runs.mat import mat_files
 
@@ -72,7 +72,7 @@ def prepare_mat_of(run: StoredRun) -> Mat:
 
 
 def blank_mat(spec: RunSpec) -> Mat:
-    """Return a white sheet in the place of a mat that is gone; it has nothing for sensors to read."""
+    """Return a white sheet in place of a missing mat; sensors have nothing to read on it."""
     import numpy as np
 
     return Mat(mat_key(spec), None, np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8))

@@ -1,7 +1,7 @@
-"""The plan of the next run: choices, from which its specification is built anew after each change.
+"""The plan of the next run: choices, from which its specification is rebuilt after each change.
 
-Choices stay as they were made: a robot as it is listed or in its file, not as the mat of the moment has
-changed it. So what one mat or preset decides is gone with it.
+Choices stay as they were made: a robot as listed or in its file, not as modified by the current mat. So the effects of
+one mat or preset do not outlast it.
 """
 
 from __future__ import annotations
@@ -21,43 +21,43 @@ WORLD_FIELDS = (
     "motor_noise", "pen_down", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
     "arguments",
 )  # fmt: skip
-"""Fields of `Settings` that a run is made of."""
+"""Fields of `Settings` that affect a run."""
 
 _ANY_MAT = "Empty_Map"
 
 _OF_THE_MAT: Mapping[str, Any] = dict.fromkeys(("obstacles", "background_fit", *POSE_FIELDS))
-"""What another mat brings with it."""
+"""Fields that another mat replaces."""
 
 
 @dataclass(frozen=True, slots=True)
 class NextRun:
-    """What the next run is made of."""
+    """The plan of the next run."""
 
     settings: Settings
-    """The choices. Robot, obstacles and profile are themselves, so that no later change depends on a file."""
+    """The choices. Robot, obstacles and profile are objects, so that no later change depends on a file."""
     spec: RunSpec
     words: Mapping[str, str]
-    """By field of `Settings`: the name or the file that robot, obstacles and profile came from, as far as known."""
+    """By field of `Settings`: the name or file that robot, obstacles and profile came from, if known."""
     robot: RobotChoice
-    """The robot as it was chosen, before anything was edited."""
+    """The robot as it was chosen, before any edit."""
 
     @property
     def robot_is_edited(self) -> bool:
-        """Whether the robot is another than the chosen one."""
+        """Whether the robot differs from the chosen one."""
         return self.settings.robot != self.robot
 
     @property
     def robot_choice(self) -> RobotChoice:
-        """The robot with its edits, not as the mat changes it."""
+        """The robot with its edits, not as modified by the mat."""
         assert isinstance(self.settings.robot, RobotChoice)
         return self.settings.robot
 
 
 def plan_of(settings: Settings) -> NextRun:
-    """Return the plan that settings make.
+    """Return the plan for settings.
 
     Raises:
-        ConfigError: they name what is not there, or a file that is wrong.
+        ConfigError: they name something that does not exist, or an invalid file.
     """
     from tuisim.config.build import build_run_spec
 
@@ -74,7 +74,7 @@ def plan_of_spec(spec: RunSpec) -> NextRun:
 
 
 def plan_of_run(spec: RunSpec) -> NextRun:
-    """Return the plan of doing a run again, also when its mat is gone: then it has to be found before it can start."""
+    """Return the plan for repeating a run, even if its mat is missing: the mat has to be found before the start."""
     try:
         return plan_of_spec(spec)
     except BackgroundError:
@@ -83,7 +83,7 @@ def plan_of_run(spec: RunSpec) -> NextRun:
 
 
 def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Robot, obstacles and profile as themselves, and the words that stood for them."""
+    """Return robot, obstacles and profile as objects, and the words that named them."""
     from tuisim.config.obstacles import load_obstacles
     from tuisim.config.profiles import load_profile
     from tuisim.config.robots import choose_robot
@@ -103,14 +103,14 @@ def _built(plan: NextRun, **changes: Any) -> NextRun:
 
 
 def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
-    """Return the plan with what a program's magic line or a world file says; the rest stays.
+    """Return the plan with the choices of a magic line or a world file applied; the rest stays.
 
     Args:
-        plan: The plan so far.
-        choices: By field of `Settings`; what has nothing to do with the world is left out.
+        plan: The current plan.
+        choices: By field of `Settings`; fields that do not concern the world are ignored.
 
     Raises:
-        ConfigError: they name what is not there, or a file that is wrong.
+        ConfigError: they name something that does not exist, or an invalid file.
     """
     said, words = _resolved({field: value for field, value in choices.items() if field in WORLD_FIELDS})
     if "background" in said:
@@ -122,7 +122,7 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
 
 def with_mat(plan: NextRun, name: str) -> NextRun:
-    """Return the plan on another mat, with its start pose, its obstacles and its sensor places.
+    """Return the plan on another mat, with that mat's start pose, obstacles and sensor positions.
 
     Raises:
         BackgroundError: there is no such mat.
@@ -134,7 +134,7 @@ def with_robot(plan: NextRun, word: str) -> NextRun:
     """Return the plan with another robot, by name or from a file.
 
     Raises:
-        RobotError: there is none of that name, or the file is wrong.
+        RobotError: there is no robot of that name, or the file is invalid.
     """
     return with_choices(plan, {"robot": word})
 
@@ -143,9 +143,9 @@ def with_profile(plan: NextRun, word: str) -> NextRun:
     """Return the plan with another profile, by name or from a file.
 
     Raises:
-        ProfileError: there is none of that name, or the file is wrong.
+        ProfileError: there is no profile of that name, or the file is invalid.
     """
-    # Whether things are solid is the profile's business until the user says it anew.
+    # The profile decides whether obstacles are solid, until the user sets it again.
     return with_choices(plan, {"profile": word, "solid": None})
 
 
@@ -158,19 +158,19 @@ def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> N
     """Return the plan with an edited robot.
 
     Args:
-        plan: The plan so far.
-        robot: What `plan.robot_choice.spec` has become.
-        moved: Whether a colour sensor was given a place: then the mat's places no longer apply to any.
+        plan: The current plan.
+        robot: The edited `plan.robot_choice.spec`.
+        moved: Whether a colour sensor was moved: then the mat's sensor positions no longer apply.
 
     Raises:
-        ConfigError: the mat is gone.
+        ConfigError: the mat is missing.
     """
     choice = plan.robot_choice
     return _built(plan, robot=replace(choice, spec=robot, own_places=choice.own_places or moved))
 
 
 def robot_to_save(plan: NextRun) -> RobotSpec:
-    """Return the robot as it was chosen and edited, not as the mat has changed it, with the pen of the plan."""
+    """Return the robot as chosen and edited, not as modified by the mat, with the pen of the plan."""
     return replace(plan.robot_choice.spec, pen=plan.spec.robot.pen)
 
 
@@ -178,7 +178,7 @@ def with_obstacle_set(plan: NextRun, word: str) -> NextRun:
     """Return the plan with a set of obstacles, by name or from a file.
 
     Raises:
-        ObstacleError: there is none of that name, or the file is wrong.
+        ObstacleError: there is no set of that name, or the file is invalid.
     """
     return with_choices(plan, {"obstacles": word})
 
@@ -192,26 +192,26 @@ def with_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
 
 
 def with_values(plan: NextRun, **values: Any) -> NextRun:
-    """Return the plan with some fields of `Settings` changed that need no file.
+    """Return the plan with changed fields of `Settings` that need no file.
 
     Raises:
-        ConfigError: the mat is gone, or a value is impossible.
+        ConfigError: the mat is missing, or a value is invalid.
     """
     return _built(plan, **values)
 
 
-# These come many times a second while something is dragged: the specification is changed, not built anew.
+# These are called many times a second during a drag: the specification is changed, not rebuilt.
 
 
 def at_pose(plan: NextRun, pose: Pose) -> NextRun:
-    """Return the plan with another start."""
+    """Return the plan with another start pose."""
     settings = replace(plan.settings, x_mm=pose.x_mm, y_mm=pose.y_mm, heading_deg=pose.heading_deg)
     return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, start=pose)))
 
 
 def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
     """Return the plan with other noise."""
-    # A robot file may say how far its motors and sensors stray: that holds until the user says it.
+    # A robot file may set the noise of its motors and sensors: it applies until the user sets the noise.
     before = plan.spec.world.noise
     motor = plan.settings.motor_noise if noise.motor == before.motor else noise.motor
     light = plan.settings.light_noise if noise.light == before.light else noise.light

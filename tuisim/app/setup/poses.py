@@ -1,4 +1,4 @@
-"""Poses of the robot: saved ones, kept in the user's data folder, and random ones clear of obstacles."""
+"""Poses of the robot: saved ones, stored in the user's data folder, and random ones clear of obstacles."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ Corners = Sequence[tuple[float, float]]
 
 
 def random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
-    """Return a pose at whole mm and degrees at which the robot's outline lies on the field.
+    """Return a random pose in whole mm and degrees at which the robot's outline is on the field.
 
     Args:
-        spec: Robot and world; where things are solid, the outline is clear of every obstacle.
-        chance: Where the numbers come from.
+        spec: Robot and world; where obstacles are solid, the outline is clear of them.
+        chance: The random number generator.
 
     Returns:
         None if no free place was found.
@@ -38,7 +38,7 @@ def random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
 
 
 def fits(spec: RunSpec, pose: Pose) -> bool:
-    """Return whether the outline of the robot lies on the field, and clear of obstacles where those are solid."""
+    """Return whether the robot's outline is on the field, and clear of obstacles where those are solid."""
     corners = [world_point(pose, x, y) for x, y in outline(spec.robot)]
     if not all(0 <= x <= FIELD_WIDTH_MM and 0 <= y <= FIELD_HEIGHT_MM for x, y in corners):
         return False
@@ -53,7 +53,7 @@ def fits(spec: RunSpec, pose: Pose) -> bool:
 
 
 def _overlap(one: Corners, other: Corners, heading_deg: float) -> bool:
-    """Whether two rectangles overlap: no side of either parts them."""
+    """Return whether two rectangles overlap: no side of either separates them."""
     heading = math.radians(heading_deg)
     axes = ((1.0, 0.0), (0.0, 1.0), (math.cos(heading), math.sin(heading)), (-math.sin(heading), math.cos(heading)))
     for across, up in axes:
@@ -72,7 +72,7 @@ _LIMITS = {"x_mm": 10_000.0, "y_mm": 10_000.0, "heading_deg": 36_000.0}
 
 
 def poses_file() -> Path:
-    """Return where poses are kept."""
+    """Return the path of the file of saved poses."""
     from tuisim.config.home import home_folder
 
     return home_folder() / FILE
@@ -82,7 +82,7 @@ def load_poses() -> dict[str, Pose]:
     """Return the saved poses by name, in the order in which they were saved.
 
     Raises:
-        ConfigError: their file cannot be read or is wrong.
+        ConfigError: their file cannot be read or is invalid.
     """
     from tuisim.config.reader import Section, read_file
 
@@ -101,10 +101,10 @@ def load_poses() -> dict[str, Pose]:
 
 
 def save_pose(name: str, pose: Pose) -> None:
-    """Save a pose; one of that name is replaced.
+    """Save a pose, replacing one of the same name.
 
     Raises:
-        ConfigError: the name is no name, the file is wrong or cannot be written, or there are too many.
+        ConfigError: the name is invalid, the file is invalid or cannot be written, or there are too many poses.
     """
     name = name.strip()
     if not name or len(name) > MAX_NAME or not name.isprintable():
@@ -119,7 +119,7 @@ def delete_pose(name: str) -> None:
     """Delete a saved pose.
 
     Raises:
-        ConfigError: the file is wrong or cannot be written.
+        ConfigError: the file is invalid or cannot be written.
     """
     _write({other: pose for other, pose in load_poses().items() if other != name})
 

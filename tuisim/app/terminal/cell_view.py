@@ -1,4 +1,4 @@
-"""Widgets that repaint only the cells that changed: one for pictures, one for text."""
+"""Widgets that repaint only the cells that changed: one for images, one for text."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from tuisim.app.terminal.strips import CellStrip, color_depth
 from tuisim.charts.text_runs import Run, cut_line
 
 _TEXT_GAP = 8
-"""Unchanged characters that cost less than a new cursor position and style."""
+"""This many unchanged characters cost less than a new cursor position and style."""
 
 
 class RowsView(Widget):
-    """A widget that keeps its own rows."""
+    """A widget that stores its own rows."""
 
     ALLOW_SELECT = False
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Return the rows of a region, without Textual's cache, which would rebuild whole rows."""
+        """Return the rows of a region, bypassing Textual's cache, which would rebuild whole rows."""
         return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
 
 
 class PixelView(RowsView):
-    """Shows a picture as half blocks: one column a pixel, one row two."""
+    """Shows an image as half blocks: one column per pixel, one row per two pixels."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -43,7 +43,7 @@ class PixelView(RowsView):
 
     @property
     def color_mode(self) -> ColorMode:
-        """What the terminal can show."""
+        """The colours that the terminal supports."""
         return ColorMode(color_depth(self.app.console), bool(self.app.no_color))
 
     @property
@@ -52,7 +52,7 @@ class PixelView(RowsView):
         return self.background_colors[1].rgb
 
     def set_picture(self, picture: Pixels) -> None:
-        """Show a picture of an even number of rows; only cells that differ are repainted."""
+        """Show an image with an even number of rows; only cells that differ are repainted."""
         self._reduce(picture)
         cells = to_cells(self._shown)
         if cells.shape != self._cells.shape:
@@ -67,7 +67,7 @@ class PixelView(RowsView):
             self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
 
     def clear_picture(self) -> None:
-        """Show nothing."""
+        """Clear the image."""
         if self._cells.size:
             self._raw = None
             self._cells = np.empty((0, 0), np.int64)
@@ -75,7 +75,7 @@ class PixelView(RowsView):
             self.refresh()
 
     def _reduce(self, picture: Pixels) -> None:
-        """Bring a picture to the terminal's colours, where it differs from the last one."""
+        """Convert an image to the terminal's colours, where it differs from the last one."""
         mode = self.color_mode
         if mode.depth >= TRUECOLOR and not mode.grey:
             self._raw = self._shown = picture
@@ -114,7 +114,7 @@ class LinesView(RowsView):
         self._text_strips: list[Strip | None] = []
 
     def set_lines(self, lines: Sequence[Sequence[Run]]) -> None:
-        """Show lines from the top; a longer one than the widget is wide ends in an ellipsis."""
+        """Show lines from the top; a line that is too long ends in an ellipsis."""
         width = self.size.width
         old, self._lines = self._lines, [cut_line(line, width) if width else line for line in lines]
         if len(old) != len(self._lines):
@@ -130,7 +130,7 @@ class LinesView(RowsView):
             self.refresh(*regions)
 
     def notify_style_update(self) -> None:
-        """Forget the rows when colours change."""
+        """Drop the rows when colours change."""
         super().notify_style_update()
         self._text_strips = [None] * len(self._lines)
 
@@ -147,14 +147,14 @@ class LinesView(RowsView):
         base = self.rich_style
         whole = Strip([Segment(text, base + style) for text, style in line if text])
         segments = list(whole.adjust_cell_length(self.size.width, base))
-        # What bypasses Textual's cache of styles has to apply its filters itself.
+        # Code that bypasses Textual's style cache has to apply its filters itself.
         for line_filter in self.app.get_line_filters():
             segments = line_filter.apply(segments, self.background_colors[1])
         return Strip(segments, self.size.width)
 
 
 def _cut(strips: list[Strip], crop: Region, width: int, style: Style) -> list[Strip]:
-    """Bring rows to the columns of a region."""
+    """Crop rows to the columns of a region."""
     first, last = crop.column_span
     if first == 0 and last == width:
         return [strip if strip.cell_length == width else strip.adjust_cell_length(width, style) for strip in strips]

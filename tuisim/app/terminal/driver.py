@@ -1,4 +1,4 @@
-"""The driver of the terminal: one that goes away must not keep the app from ending."""
+"""The terminal driver: a terminal that disappears must not keep the app from ending."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from textual.drivers.linux_driver import LinuxDriver
 
 
 class ResilientOutput:
-    """A terminal's output that may be written to when the terminal is gone, after a lost connection for one.
+    """Terminal output that accepts writes even after the terminal is gone, for example after a lost connection.
 
-    Textual writes from a thread of its own. That thread would end with the first write that fails, and the app, which
-    has to write a few words more before it can leave its program and its files in order, would wait for it for ever.
+    Textual writes from a thread of its own. That thread would end at the first failed write, and the app, which has to
+    write a little more before it can shut down, would wait for it for ever.
 
     Args:
         file: The output.
@@ -26,10 +26,10 @@ class ResilientOutput:
     def __init__(self, file: TextIO) -> None:
         self._file = file
         self.gone = False
-        """Whether a write has failed; what follows is dropped."""
+        """Whether a write has failed; later output is dropped."""
 
     def write(self, text: str) -> int:
-        """Write a text, or drop it; return its length."""
+        """Write a text, or drop it. Return its length."""
         if not self.gone:
             try:
                 self._file.write(text)
@@ -38,7 +38,7 @@ class ResilientOutput:
         return len(text)
 
     def flush(self) -> None:
-        """Send what was written."""
+        """Flush the output."""
         if not self.gone:
             try:
                 self._file.flush()
@@ -46,19 +46,19 @@ class ResilientOutput:
                 self._lose()
 
     def _lose(self) -> None:
-        # What is still in the file's buffer would fail once more when Python ends, and change the exit code.
+        # Data left in the file's buffer would fail again when Python ends, and change the exit code.
         with suppress(OSError), Path(os.devnull).open("wb") as nothing:
             os.dup2(nothing.fileno(), self._file.fileno())
             self._file.flush()
         self.gone = True
 
     def fileno(self) -> int:
-        """Return the number of the output's file."""
+        """Return the file descriptor."""
         return self._file.fileno()
 
 
 class TerminalDriver(LinuxDriver):
-    """Textual's driver with an output that outlasts its terminal."""
+    """Textual's driver with an output that survives the loss of its terminal."""
 
     def __init__(
         self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
@@ -67,28 +67,28 @@ class TerminalDriver(LinuxDriver):
         self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
 
     def stop_as_job(self) -> bool:
-        """Give the terminal back and stop, with all that was started together; go on when the shell says so.
+        """Restore the terminal and stop the whole process group; resume when the shell says so.
 
-        Textual stops with a signal that cannot be refused, also where no shell is there to go on from it. The one for
-        a job's stop is dropped there.
+        Textual stops with a signal that cannot be ignored, even without a shell that could resume the app. The signal
+        for job control is dropped in that case.
 
         Returns:
-            Whether the app was stopped, and goes on now.
+            Whether the app was stopped, and has resumed.
         """
         self.suspend_application_mode()
         self._must_signal_resume = True
         handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
         os.kill(0, signal.SIGTSTP)
         signal.signal(signal.SIGTSTP, handler)
-        # Whoever lets the app go on has had the terminal prepared by then.
+        # Whoever resumes the app has restored the terminal by then.
         stopped = not self._must_signal_resume
         if not stopped:
             self.resume_application_mode()
         return stopped
 
     def _sigcont_application(self, *_: object) -> None:
-        # The signal also comes with the news that the terminal is gone, where there is nothing to go on with, and after
-        # a stop that could not be prepared for, where what read and wrote before must end before the same begins anew.
+        # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
+        # preparation, where the former reader and writer must end before they are started again.
         if not self._auto_restart or not os.isatty(self.fileno):
             return
         if self._writer_thread is not None and self._writer_thread.is_alive():

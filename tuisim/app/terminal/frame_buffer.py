@@ -1,8 +1,8 @@
-"""What the terminal shows, cell by cell, so that only cells that differ are sent.
+"""The terminal's content cell by cell, so that only cells that differ are sent.
 
-Textual sends a widget's row from its left edge up to a cell that changed, and all of the screen several times while
-a dialog opens. Here each of its updates is compared with what has been sent before, and becomes the fewest codes that
-make the difference: a colour only where it changes, a jump over what stays.
+Textual sends a widget's row from its left edge up to a changed cell, and the whole screen several times while a dialog
+opens. This module compares each update with what was sent before, and reduces it to the fewest codes: a colour only
+where it changes, a cursor jump over unchanged cells.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from tuisim.app.render.colors import PALETTE_256, TRUECOLOR, sgr_index
 from tuisim.app.terminal.strips import UPPER_HALF, CellStrip, color_depth
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
-"""Attributes that show where there is no character: underlined, reversed, struck out, framed, overlined."""
+"""Attributes that are visible on a blank: underline, reverse, strike, frame, overline."""
 _REWRITTEN = 4
-"""So many unchanged characters cost no more than a jump over them."""
+"""Rewriting this many unchanged characters costs no more than a jump over them."""
 
 
 class CellLook(NamedTuple):
-    """How a cell is written: parts of SGR codes."""
+    """The style of a cell, as parts of SGR codes."""
 
     attributes: tuple[str, ...] = ()
     foreground: str = "39"
-    """Empty where it cannot be seen."""
+    """Empty where it is invisible."""
     background: str = "49"
     link: str = ""
 
 
 Cell = tuple[str, CellLook]
-"""What stands in a cell; the right half of a wide character is empty."""
+"""Character and style of a cell; the right half of a wide character is empty."""
 
 
 class FrameBuffer:
@@ -48,18 +48,18 @@ class FrameBuffer:
         self._rows: dict[int, list[Cell | None]] = {}
 
     def forget(self) -> None:
-        """The terminal may show anything now: everything is sent again."""
+        """Assume nothing about the terminal's content: the next update is sent completely."""
         self._rows.clear()
 
     def codes(self, update: CompositorUpdate, console: Console) -> str | None:
-        """Return the codes that bring the terminal from what it shows to an update, empty if it shows that already.
+        """Return the codes that update the terminal, empty if it shows the update already.
 
         Args:
-            update: What Textual wants to send.
-            console: Says which colours there are.
+            update: The update from Textual.
+            console: Provides the colour system.
 
         Returns:
-            None for a kind of update that is not known; then it is not known either what the terminal shows after it.
+            None for an unknown kind of update; the terminal's content is unknown after it.
         """
         pen = _Pen()
         if isinstance(update, LayoutUpdate):
@@ -84,7 +84,7 @@ class FrameBuffer:
 
 
 def _pieces_of_all(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
-    """Yield row, column and strip of all that is on the screen."""
+    """Yield row, column and strip of the whole screen."""
     for y, strips in enumerate(update.strips, update.region.y):
         x = update.region.x
         for strip in strips:
@@ -93,7 +93,7 @@ def _pieces_of_all(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
 
 
 def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
-    """Yield row, column and strip of what may have changed."""
+    """Yield row, column and strip of the parts that may have changed."""
     for y, first, last in update.spans:
         for end, (x, strip) in zip(update.chop_ends[y], update.chops[y].items(), strict=False):
             if strip is None or x >= last or end <= first:
@@ -102,7 +102,7 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
                 left, right = max(x, first), min(end, last)
                 yield y, left, strip.crop(left - x, right - x)
             else:
-                # To its end, for a part could begin or end in the middle of a wide character.
+                # To the end of the row: a part could begin or end in the middle of a wide character.
                 yield y, x, strip.crop(0, end - x)
 
 
@@ -122,7 +122,7 @@ def _half_block(cell: int, depth: int) -> Cell:
 
 @lru_cache(maxsize=8192)
 def _rgb_codes(rgb: int, depth: int) -> tuple[str, str]:
-    """Return the codes that make a colour the foreground and the background."""
+    """Return the codes that set a colour as foreground and as background."""
     if depth >= TRUECOLOR:
         channels = f"{rgb >> 16};{rgb >> 8 & 255};{rgb & 255}"
         return f"38;2;{channels}", f"48;2;{channels}"
@@ -166,20 +166,21 @@ def _look(style: Style | None, system: ColorSystem) -> CellLook:
 
 
 def _color_codes(color: Color | None, system: ColorSystem) -> tuple[str, str]:
-    """Return the codes that make a colour the foreground and the background."""
+    """Return the codes that set a colour as foreground and as background."""
     if color is None:
         return "39", "49"
     if color.triplet is not None and system is ColorSystem.EIGHT_BIT:
-        # As in pictures, or a picture under a dialog would be sent again in colours that are hardly others.
+        # The same reduction as in images; otherwise an image under a dialog would be resent in nearly identical
+        # colours.
         return _rgb_codes(int.from_bytes(color.triplet, "big"), PALETTE_256)
     least = color.downgrade(system)
     return ";".join(least.get_ansi_codes()), ";".join(least.get_ansi_codes(foreground=False))
 
 
 class _Pen:
-    """Writes cells, and knows where the terminal's cursor is and how it would write.
+    """Writes cells, and tracks the terminal's cursor and current style.
 
-    Begins and ends with the terminal's own look.
+    Begins and ends with the terminal's default style.
     """
 
     def __init__(self) -> None:
@@ -188,7 +189,7 @@ class _Pen:
         self._x = self._y = -1
 
     def write(self, x: int, y: int, cell: Cell, row: Sequence[Cell | None]) -> None:
-        """Write a cell of a row that stands there as it is."""
+        """Write a cell of a row whose other cells are final."""
         text, look = cell
         if not text:
             # The left half of the character covers it.
@@ -197,7 +198,7 @@ class _Pen:
             self._go(x, y, row)
         self._take(look)
         self._parts.append(text)
-        # How wide a terminal draws what is no single narrow character is not certain.
+        # Terminals disagree on the width of anything but a single narrow character.
         self._x = x + 1 if text.isascii() or (len(text) == 1 and cell_len(text) == 1) else -1
         self._y = y
 
@@ -212,15 +213,15 @@ class _Pen:
             self._parts.append(f"\x1b[{x - self._x}C")
 
     def _writes(self, cell: Cell | None) -> bool:
-        """Whether a cell can be written without a code."""
+        """Return whether a cell can be written without a code."""
         return cell is not None and cell[0].isascii() and cell[0] != "" and not any(self._changes(cell[1]))
 
     def _changes(self, look: CellLook) -> Iterable[str]:
-        """Yield the codes before something is written with a look."""
+        """Yield the codes that switch to a style."""
         now = self._look
         kept: tuple[str, ...] = now.attributes
         if not look.foreground:
-            # A blank looks alike whether it is bold or not.
+            # A blank looks the same bold or not.
             if not _SEEN_ON_BLANKS.isdisjoint(kept):
                 yield "0"
                 now, kept = CellLook(), ()
@@ -246,7 +247,7 @@ class _Pen:
         self._look = CellLook(attributes, foreground, look.background, look.link)
 
     def finish(self) -> str:
-        """Return all that was written."""
+        """Return everything that was written."""
         if self._look.link:
             self._parts.append("\x1b]8;;\x1b\\")
         if self._look != CellLook():

@@ -1,4 +1,4 @@
-"""Frame pacing and throttling: no new frame while the terminal has not shown an older one."""
+"""Frame pacing and throttling: no new frame before the terminal has shown the last ones."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from textual.widget import Widget
 
 
 class Throttle:
-    """Calls a function at most once a period.
+    """Calls a function at most once per period.
 
     Args:
-        widget: Whose timers are used; while it is not mounted nothing is called.
-        period_s: Least time between two calls, in wall-clock seconds.
+        widget: Provides the timers; while it is not mounted, nothing is called.
+        period_s: Minimum time between two calls, in wall-clock seconds.
         do: The function.
     """
 
@@ -27,7 +27,7 @@ class Throttle:
         self._timer: Timer | None = None
 
     def ask(self) -> None:
-        """Call the function now if the last call is a period ago, else as soon as it is."""
+        """Call the function now if the last call is at least a period ago, else as soon as it is."""
         if self._timer is not None or not self._widget.is_attached:
             return
         left_s = self._last_s + self._period_s - time.monotonic()
@@ -47,30 +47,30 @@ class Throttle:
 
 
 PATIENCE_S = 1.0
-"""An answer takes no longer than this, besides the time for what is on the way before it."""
+"""Longest time for an answer, besides the time for the data sent before it."""
 SLOWEST_BYTES_S = 4_000.0
-"""No line is slower."""
+"""Assumed bandwidth of the slowest line."""
 PROOF_S = 10.0
-"""A terminal that has not answered so long, besides the time for the first paint, is taken to answer never."""
+"""A terminal that has not answered after this time, besides the time for the first paint, is assumed never to answer.
+"""
 UNPROVEN_GAP_S = 0.5
-"""Between two frames while it is not known whether the terminal answers at all."""
+"""Time between two frames until the terminal has first answered."""
 MAX_ON_THE_WAY = 3
 _REMEMBERED = 8
-"""Questions without an answer that are kept in mind."""
+"""Most unanswered queries that are remembered."""
 FULL_BYTES = 3_000
-"""While more than this is on the way there is no further frame, however long the way: a quarter of a second of a line
-of 128 kbit/s."""
+"""While more than this is in transit, no frame is drawn, whatever the latency: a quarter of a second at 128 kbit/s."""
 LARGE_BYTES = 1_500
-"""So much is asked about even if it is no frame, such as a dialog."""
+"""After this many bytes the terminal is queried even if they are no frame, such as a dialog."""
 
 
 class Pacer:
-    """Says when a frame may be drawn.
+    """Decides when a frame may be drawn.
 
     Args:
-        fps: Most frames a second.
-        asks: Whether the terminal is to be asked at all.
-        clock: Seconds that only grow.
+        fps: Maximum frames per second.
+        asks: Whether to query the terminal at all.
+        clock: A monotonic clock in seconds.
     """
 
     def __init__(self, fps: int, asks: bool = True, clock: Callable[[], float] = time.monotonic) -> None:
@@ -78,13 +78,13 @@ class Pacer:
         self.asks = asks
         self._clock = clock
         self._asked: deque[tuple[float, int]] = deque(maxlen=_REMEMBERED)
-        """When each question was sent that has not been answered yet, and the bytes since the one before."""
+        """When each unanswered query was sent, and the bytes since the query before."""
         self._heard_s = 0.0
-        """When there was last an answer, or nothing to wait for."""
+        """When the last answer arrived, or when no query was open."""
         self._proof_s: float | None = None
-        """When a terminal that has not answered by then is taken to answer never."""
+        """When a terminal without an answer is assumed never to answer."""
         self._loose_bytes = 0
-        """What was sent since the last question."""
+        """Bytes sent since the last query."""
         self._frame_is_new = False
         self._last_s = -1.0
         self._round_trip_s = 0.0
@@ -93,9 +93,9 @@ class Pacer:
         """Whether the terminal has ever answered."""
 
     def ready(self) -> bool:
-        """Whether a frame may be drawn now."""
+        """Return whether a frame may be drawn now."""
         now = self._clock()
-        # A tenth of a gap of grace, or a timer that is a little early would halve the rate.
+        # A tolerance of a tenth of the gap: a timer that fires slightly early would otherwise halve the rate.
         if now - self._last_s < 0.9 * self._gap_s:
             return False
         if not self._asked:
@@ -104,17 +104,17 @@ class Pacer:
             return now - self._last_s >= UNPROVEN_GAP_S or (self._proof_s is not None and now >= self._proof_s)
         way_bytes = sum(size for _, size in self._asked)
         if now - self._heard_s >= PATIENCE_S + way_bytes / SLOWEST_BYTES_S:
-            # One that has answered before has lost a question: there is no use in waiting for all of them.
+            # A terminal that has answered before has lost a query: do not wait for all of them.
             self._asked.clear()
         return not self._asked or (len(self._asked) < self._allowed and way_bytes < FULL_BYTES)
 
     def drawn(self) -> None:
-        """Note that a frame was drawn; it is on its way once it has been painted."""
+        """Note that a frame was drawn; it is in transit once it has been painted."""
         self._last_s = self._clock()
         self._frame_is_new = True
 
     def painted(self, size: int) -> bool:
-        """Note that so many bytes were sent; whether the terminal is to be asked now when it has shown them."""
+        """Note that `size` bytes were sent. Return whether to query the terminal now."""
         self._loose_bytes += size
         if not self.asks or not (self._frame_is_new or self._loose_bytes >= LARGE_BYTES):
             return False
@@ -135,10 +135,10 @@ class Pacer:
         if not self._asked:
             return
         took_s = self._heard_s - self._asked.popleft()[0]
-        # Falls at once, rises slowly: a backlog must not pass for a long way.
+        # Falls at once, rises slowly: a backlog must not be taken for latency.
         self._round_trip_s = took_s if first else min(took_s, self._round_trip_s + 0.001)
         if took_s > self._round_trip_s + 2 * self._gap_s:
             self._allowed = 1
         else:
-            # Two at least, or an answer that comes a moment after a beat would cost the next frame.
+            # At least two, or an answer that arrives just after a beat would cost the next frame.
             self._allowed = min(self._allowed + 1, MAX_ON_THE_WAY, 2 + int(self._round_trip_s / self._gap_s))

@@ -1,4 +1,4 @@
-"""Names from files on the screen: what a terminal would obey does not reach it."""
+"""Keeps control characters in file names and texts away from the terminal."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
 
 class Sanitize(LineFilter):
-    """Leaves control characters out of what is drawn."""
+    """Removes control characters from everything that is drawn."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments, as wide as before."""
+        """Return the segments, with the same width as before."""
         if all(segment.text.isprintable() or segment.control for segment in segments):
             return segments
         return [

@@ -22,7 +22,7 @@ _DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
 
 
 def color_depth(console: Console) -> int:
-    """Return how many colours a console writes; full colour if it does not say."""
+    """Return the number of colours that a console supports; full colour if it does not say."""
     return _DEPTHS.get(console.color_system or "", TRUECOLOR)
 
 
@@ -37,18 +37,18 @@ def _channels(rgb: int) -> tuple[int, int, int]:
 
 
 class CellStrip(Strip):
-    """A row of half-block cells, see `render.cells.Cells`. Segments are made only if someone asks.
+    """A row of half-block cells, see `render.cells.Cells`. Segments are created only on demand.
 
     Args:
-        cells: One number a cell.
+        cells: One number per cell.
     """
 
     __slots__ = ["_made", "cells"]
 
     def __init__(self, cells: Sequence[int]) -> None:
-        # The caches of the base class are left out: every method that uses one is replaced here.
+        # The base class's caches are omitted: every method that uses one is overridden here.
         self.cells = cells
-        """One number a cell."""
+        """One number per cell."""
         self._made: list[Segment] | None = None
         self._cell_length = self._cell_count = len(cells)
         self._link_ids = set()
@@ -73,7 +73,7 @@ class CellStrip(Strip):
         return self if start == 0 and end == length else CellStrip(self.cells[start : max(start, end)])
 
     def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
-        """Return the strips between the cuts, the first from 0."""
+        """Return the strips between the cuts, the first one from column 0."""
         pieces, at = [], 0
         for cut in cuts:
             if cut <= len(self.cells):
@@ -82,11 +82,11 @@ class CellStrip(Strip):
         return pieces
 
     def adjust_cell_length(self, cell_length: int, style: Style | None = None) -> Strip:
-        """Return the strip cut or filled up to a length."""
+        """Return the strip cropped or padded to a length."""
         return self if cell_length == len(self.cells) else self._plain().adjust_cell_length(cell_length, style)
 
     def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
-        """Return the strip between two columns, filled up where it is too short."""
+        """Return the strip between two columns, padded where it is too short."""
         return self.crop(start, end) if end <= len(self.cells) else self._plain().crop_extend(start, end, style)
 
     def apply_filter(self, filter: LineFilter, background: TextualColor) -> Strip:  # noqa: A002  # the base class's name

@@ -1,4 +1,4 @@
-"""What the apps have in common: suspend, resume and end in order; write only what changed; the smallest terminal."""
+"""Base of the apps: suspend, resume and shutdown; sending only changes; the minimum terminal size."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tuisim.app.terminal.frame_buffer import FrameBuffer
 from tuisim.app.terminal.sanitize import Sanitize
 
 MINIMUM = Size(60, 18)
-"""Below this, panels and dialogs cannot be read."""
+"""Minimum size of the terminal: panels and dialogs are unreadable below it."""
 
 
 def is_too_small(size: Size) -> bool:
@@ -37,12 +37,12 @@ def is_too_small(size: Size) -> bool:
 
 
 def laid_out(size: Size) -> Size:
-    """Return the size that panels and dialogs are laid out for in a terminal: none that they are not made for."""
+    """Return the size that panels and dialogs are laid out for: at least the minimum."""
     return Size(max(size.width, MINIMUM.width), max(size.height, MINIMUM.height))
 
 
 def _wordings(size: Size) -> Iterator[str]:
-    """Yield the message, the fullest first."""
+    """Yield the versions of the message, the longest first."""
     needed = f"{MINIMUM.width}×{MINIMUM.height}"
     has = f"{size.width}×{size.height}"
     yield f"Too small: tuisim needs {needed} or more, and this terminal has {has}. Enlarge it, or press q to quit."
@@ -52,7 +52,7 @@ def _wordings(size: Size) -> Iterator[str]:
 
 
 def message_lines(size: Size) -> list[str]:
-    """Return the lines of the message that says that a terminal is too small: the fullest one that fits whole."""
+    """Return the lines of the message that a terminal is too small: the longest version that fits."""
     for wording in _wordings(size):
         lines = wrap(wording, max(size.width, 1), break_long_words=False)
         if len(lines) <= size.height and all(len(line) <= size.width for line in lines):
@@ -61,10 +61,10 @@ def message_lines(size: Size) -> list[str]:
 
 
 class TooSmall(CompositorUpdate):
-    """Fills a terminal with the message.
+    """Fills the terminal with the message.
 
     Args:
-        size: Of the terminal.
+        size: Size of the terminal.
     """
 
     def __init__(self, size: Size) -> None:
@@ -82,27 +82,27 @@ _HARMLESS = Sanitize()
 
 
 def is_leaving(app: App[Any]) -> bool:
-    """Return whether the app has been told to end: nothing may be opened any more, for it could not be drawn."""
-    # Textual has no public word for it.
+    """Return whether the app is shutting down: nothing may be opened any more, for it could not be drawn."""
+    # Textual has no public API for it.
     return app._exit
 
 
 class TerminalApp(App[None]):
-    """An app that gives the terminal back in order, also when it is stopped or ended from outside."""
+    """An app that restores the terminal, even when it is stopped or terminated from outside."""
 
-    # Its palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
+    # The palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
     COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = set()
 
     def __init__(self) -> None:
         super().__init__(driver_class=TerminalDriver)
         self.frame_buffer = FrameBuffer()
         self.too_small: Size | None = None
-        """Size of a terminal that is too small, None for one that is not."""
+        """Size of a terminal that is too small, else None."""
         self._waiting_keys: deque[events.Key] = deque()
         """Keys for a screen that is being opened."""
 
     async def on_event(self, event: events.Event) -> None:
-        """Lay out for no smaller size than can be read; what cannot be seen cannot be clicked on."""
+        """Lay out for the minimum size at least; ignore clicks on cells outside the terminal."""
         if isinstance(event, events.Resize):
             was, self.too_small = self.too_small, event.size if is_too_small(event.size) else None
             if self.too_small:
@@ -113,13 +113,14 @@ class TerminalApp(App[None]):
         elif isinstance(event, (events.InputEvent, events.Paste)) and self._is_deaf_to(event):
             return
         if isinstance(event, events.Key) and (self._waiting_keys or self._is_opening):
-            # A screen that is not built yet would lose it.
+            # A screen that is not mounted yet would lose it.
             self._waiting_keys.append(events.Key(event.key, event.character))
             return
         await super().on_event(event)
 
     def _is_deaf_to(self, event: events.Event) -> bool:
-        """Whether nobody is there to hear the user, or what is pointed at cannot be seen or has just been removed."""
+        """Return whether to ignore an event of the user: nothing can handle it, or its target is invisible or was just
+        removed."""
         if is_leaving(self):
             return True
         if not isinstance(event, events.MouseEvent):
@@ -128,13 +129,13 @@ class TerminalApp(App[None]):
             return True
         if not isinstance(event, events.MouseDown):
             return False
-        # Until the next layout a screen still finds a removed widget, and fails when a selection is to begin there.
+        # Until the next layout a screen still finds a removed widget, and fails when a selection begins there.
         widget, _ = self.screen.get_widget_and_offset_at(event.x, event.y)
         return widget is not None and not widget.is_attached
 
     @on(ClosesOnce.Changed)
     async def give_waiting_keys(self) -> None:
-        """Let the uppermost screen have the keys that were pressed while it was being opened."""
+        """Pass the keys that were pressed while a screen was being opened to the topmost screen."""
         while self._waiting_keys and not self._is_opening:
             await super().on_event(self._waiting_keys.popleft())
 
@@ -144,11 +145,11 @@ class TerminalApp(App[None]):
         return isinstance(top, ClosesOnce) and not top.is_ready
 
     def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
-        # Textual writes what it is given; where it would write nothing, the terminal does not come to show it either.
+        # Textual writes what this returns; if it would write nothing, nothing is displayed either.
         update: object = renderable
         codes: str | None = None
         if isinstance(screen, ClosesOnce) and screen.is_closed:
-            # One that was closed while it was being built still comes to draw itself.
+            # A screen that was closed while being mounted still tries to draw itself.
             renderable = None
         elif self.too_small and renderable is not None:
             renderable = cast(ConsoleRenderable, TooSmall(self.too_small))
@@ -162,7 +163,7 @@ class TerminalApp(App[None]):
             self.painted(len(codes))
 
     def painted(self, size: int) -> None:
-        """Be told that the terminal was sent what it did not show, so many characters."""
+        """Called with the number of characters after an update was sent to the terminal."""
 
     @property
     def _writes(self) -> bool:
@@ -170,59 +171,59 @@ class TerminalApp(App[None]):
 
     @on(events.DescendantFocus)
     def still_cursor(self, event: events.DescendantFocus) -> None:
-        """Let no cursor blink: where nothing happens nothing is sent."""
+        """Stop the cursor from blinking: an idle app sends nothing."""
         if hasattr(event.widget, "cursor_blink"):
             event.widget.cursor_blink = False
 
     def on_resize(self, event: events.Resize) -> None:
-        """Send everything again: a terminal of another size has cut or moved what it showed."""
+        """Send everything again: a resized terminal has cut or moved its content."""
         self.frame_buffer.forget()
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return what all that is drawn goes through."""
+        """Return the filters for everything that is drawn."""
         return [*super().get_line_filters(), _HARMLESS]
 
     def on_ready(self) -> None:
-        """End the app as by a key when it is told to from outside."""
+        """Handle the signals that end the app, as its own key does."""
         if self.is_headless:
             return
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGHUP):
-            # As a shell shows a program that the signal has ended.
+            # The exit code that a shell shows for a program ended by the signal.
             loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
         loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     @on(Driver.SignalResume)
     def draw_again(self) -> None:
-        """Draw all of the screen: while the app was stopped the shell has written over it."""
+        """Redraw the whole screen: while the app was stopped, the shell has written over it."""
         self.frame_buffer.forget()
         self.refresh(layout=True)
 
     def action_suspend_process(self) -> None:
-        """Stop as a job of the shell that the app was started from, until the shell lets it go on."""
+        """Suspend the app as a job of its shell."""
         if isinstance(self._driver, TerminalDriver):
             self.suspending()
             if not self._driver.stop_as_job():
-                self.notify("No shell is there that could let tuisim go on, so it does not stop", markup=False)
+                self.notify("No shell could resume tuisim, so it does not stop", markup=False)
 
     def suspending(self) -> None:
-        """Be told that the app is about to stop."""
+        """Called before the app stops."""
 
     def action_command_palette(self) -> None:
-        """Open the command palette, unless it is open, or a dialog is: its commands would open dialogs above that."""
+        """Open the command palette, unless it or a dialog is open: its commands would open dialogs above that one."""
         from tuisim.app.keys.palette import Palette
 
         if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
             self.push_screen(Palette())
 
     def _handle_exception(self, error: Exception) -> None:
-        # A screen that was being opened when the app was told to end is taken down half built.
+        # A screen that was being opened during the shutdown is removed while partly mounted.
         if not (is_leaving(self) and isinstance(error, NoMatches)):
             super()._handle_exception(error)
 
 
 class _Codes(CompositorUpdate):
-    """An update that has been turned into codes."""
+    """An update that was converted to codes."""
 
     def __init__(self, codes: str) -> None:
         self._codes = codes
