@@ -151,10 +151,10 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
 
 async def test_words_that_are_no_place_are_answered() -> None:
     table = {
-        "": "where to?", "tomorrow": "no place in time", "9999": "has come to", "tick 99999": "has come to",
-        "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "no place in time",
+        "": "where to?", "tomorrow": "not an instant", "9999": "the run has reached", "tick 99999": "the run has reached",
+        "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "not an instant",
         "print [": "no regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
-        "line 1": "not met after", "tick -1": "no place in time", "sample Colour < 1.2.3": "is no number",
+        "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is no number",
     }  # fmt: skip
     async with a_run() as (_, app):
         app.bridge.timeline.go(200)

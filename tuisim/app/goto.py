@@ -23,7 +23,7 @@ FORMS = (
     ("tick 120", "a tick"),
     ("line 12", "the next time that line 12 runs"),
     ("sample Colour", "the next sample of that name, or of any"),
-    ("sample Colour < 90", "the next that matches: <<= > >= = !="),
+    ("sample Colour < 90", "the next that matches: < <= > >= = !="),
     ("print REGEX", "the next printed line that matches"),
     ("start, end", "the first instant, and now"),
     ("… back", "line, sample or print: the last one before"),
@@ -107,7 +107,7 @@ def _within(tick: int, recording: Recording) -> int:
     hz = recording.spec.profile.tick_hz
     if tick > recording.newest:
         newest = recording.newest
-        raise ConfigError(f"the run has reached{newest / hz:.2f} s, tick {newest}, so far", "an earlier instant")
+        raise ConfigError(f"the run has reached {newest / hz:.2f} s, tick {newest}, so far", "an earlier instant")
     return tick
 
 
@@ -123,7 +123,7 @@ def _line(search: _Search, line: int) -> int:
     tick = search.nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
     if tick is None:
         hint = "only lines that let time pass, or print, can be found"
-        raise ConfigError(f"line {line} does not run{search.words}", hint)
+        raise ConfigError(f"line {line} does not run {search.words}", hint)
     return tick
 
 

@@ -1,4 +1,4 @@
-"""The text of the code panel: a `TextArea` with marks beside the line numbers, and a line that is lit."""
+"""The text of the code panel: a `TextArea` with marks beside the line numbers, and a highlighted line."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from textual.widgets.text_area import Edit, EditResult, Selection
 from tuisim.app.editor import line_edits
 from tuisim.app.editor.syntax import KINDS, Colouring
 
-# A `TextArea` takes them for line ends, Python does not: they stand for themselves under other names.
+# A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.
 _BREAKS = "\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
 _GUARD = {ord(char): 0xF700 + at for at, char in enumerate(_BREAKS)}
 _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
@@ -39,11 +39,11 @@ EDITOR_KEYS = (
     ("ctrl+a", "Select all"),
     ("ctrl+x ctrl+c ctrl+v", "Cut, copy, paste"),
 )
-"""For the help: what a key does while the cursor is in the text."""
+"""For the help: what each key does while the cursor is in the text."""
 
 
 class CodeArea(TextArea):
-    """A program's text. Letters are typed into it only while it is `typing`."""
+    """A program's text. It can be edited only while `typing`."""
 
     ALLOW_SELECT = False
     DEFAULT_CSS = "CodeArea { height: 1fr; border: none; padding: 0; overflow-x: hidden; &:focus { border: none; } }"
@@ -59,21 +59,21 @@ class CodeArea(TextArea):
     ]
 
     class Wanted(Message):
-        """A key was pressed: find, line, next, previous, type, done, new, open."""
+        """Posted for a key: find, line, next, previous, type, done, new, open."""
 
         def __init__(self, what: str) -> None:
             super().__init__()
             self.what = what
 
     class GutterClicked(Message):
-        """A line number was clicked on."""
+        """Posted when a line number was clicked."""
 
         def __init__(self, line: int) -> None:
             super().__init__()
             self.line = line
 
     def __init__(self) -> None:
-        # Before the base class asks for the first line.
+        # Needed before the base class asks for the first line.
         self._colouring = Colouring()
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
@@ -91,12 +91,12 @@ class CodeArea(TextArea):
         return self.text.translate(_UNGUARD)
 
     def load_program(self, text: str) -> None:
-        """Show another text; nothing can be undone."""
+        """Show another text; the undo history is cleared."""
         self._colouring = Colouring()
         self.load_text(text.translate(_GUARD))
 
     def replace_program(self, text: str) -> None:
-        """Show the text anew, changed elsewhere: cursor and scroll stay, and it can be undone."""
+        """Show a text that was changed elsewhere: cursor and scroll position stay, and it can be undone."""
         top, (row, column) = self.scroll_offset.y, self.cursor_location
         self.history.checkpoint()
         self.replace(text.translate(_GUARD), (0, 0), self.document.end, maintain_selection_offset=False)
@@ -111,17 +111,17 @@ class CodeArea(TextArea):
         return super().edit(guarded)
 
     def undo(self) -> None:
-        """Take the last edits back."""
+        """Undo the last edits."""
         self._colouring.forget(0)
         super().undo()
 
     def redo(self) -> None:
-        """Do again what was taken back."""
+        """Redo what was undone."""
         self._colouring.forget(0)
         super().redo()
 
     def get_line(self, line_index: int) -> Text:
-        """Return a line in its colours."""
+        """Return a line with its colours."""
         line = self.document.get_line(line_index)
         text = Text(_UNSHOWN.sub("·", line), end="", no_wrap=True)
         for start, end, kind in self._colouring.of(self.document.lines, line_index):
@@ -133,25 +133,25 @@ class CodeArea(TextArea):
 
     @property
     def allow_horizontal_scroll(self) -> bool:
-        """Long lines are scrolled through, without a bar below the text: that would take a row of it."""
+        """Allow scrolling of long lines, without a scroll bar, which would take a row."""
         return True
 
     def on_resize(self) -> None:
-        """Show the start of the lines again where nobody types."""
+        """Scroll back to the start of the lines unless the user types."""
         if not self.typing:
             self.call_after_refresh(self.scroll_to, x=0, animate=False, force=True)
 
     # Marks
 
     def set_breaks(self, breaks: Mapping[int, str]) -> None:
-        """Put marks before the numbers of lines."""
+        """Set the breakpoint markers."""
         if breaks != self._breaks:
             self._breaks = dict(breaks)
             self.refresh()
 
     @property
     def error_line(self) -> int:
-        """The line that is marked as wrong, 0 for none."""
+        """The line that is marked as an error, 0 for none."""
         return self._error
 
     def set_error(self, line: int) -> None:
@@ -161,7 +161,7 @@ class CodeArea(TextArea):
         self._refresh_line(line)
 
     def light(self, line: int) -> None:
-        """Light a line, 0 for none."""
+        """Highlight a line, 0 for none."""
         if line != self._lit:
             before, self._lit = self._lit, line
             self._refresh_line(before)
@@ -181,19 +181,19 @@ class CodeArea(TextArea):
             self.refresh(*(Region(0, y, self.size.width, 1) for y in visible))
 
     def scroll_to_line(self, line: int) -> None:
-        """Bring a line into view."""
+        """Scroll a line into view."""
         rows, height = self._rows_of(line), self.scrollable_content_region.height
         if rows and not (self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height):
             self.scroll_to(y=max(0, rows.start - height // 3), animate=False, force=True)
 
     def move_to_code(self, line: int) -> None:
-        """Put the cursor on the first character of a line that is no blank."""
+        """Put the cursor on the first non-blank character of a line."""
         text = self.document.get_line(min(line, self.document.line_count) - 1)
         self.move_cursor((line - 1, len(text) - len(text.lstrip())))
 
     @property
     def gutter_width(self) -> int:
-        """Cells before the text: a breakpoint, the run or an error, the number, a blank."""
+        """Width of the gutter: a breakpoint, the run or an error, the number, a blank."""
         return max(2, len(str(self.document.line_count))) + 3
 
     def render_line(self, y: int) -> Strip:
@@ -226,19 +226,19 @@ class CodeArea(TextArea):
 
     @property
     def typing(self) -> bool:
-        """Whether letters go into the text."""
+        """Whether the user types in the text."""
         return not self.read_only
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave the keys of undo and redo to the app while nothing is typed."""
+        """Leave the keys of undo and redo to the app while the user does not type."""
         return self.typing if action in ("undo", "redo") else super().check_action(action, parameters)
 
     def action_want(self, what: str) -> None:
-        """Ask for something that is more than a change of the text."""
+        """Post a request that is more than an edit of the text."""
         self.post_message(self.Wanted(what))
 
     def on_key(self, event: events.Key) -> None:
-        """Begin and end typing; indentation; comments."""
+        """Handle the keys that start and end typing, indent, and comment."""
         if not self.typing:
             if event.key == "enter":
                 self._done(event)
@@ -265,7 +265,7 @@ class CodeArea(TextArea):
             self._done(event)
             self.post_message(self.Wanted(wanted))
         elif event.key.startswith("alt+"):
-            # It comes with a character that nobody has typed.
+            # The event has a character that nobody has typed.
             self._done(event)
 
     def _done(self, event: events.Key) -> None:
@@ -273,16 +273,16 @@ class CodeArea(TextArea):
         event.prevent_default()
 
     def _blanks_to_delete(self) -> int:
-        """How many blanks before the cursor backspace deletes, 0 if there is more than an indent."""
+        """Return how many blanks before the cursor backspace deletes, 0 if there is more than indentation."""
         row, column = self.cursor_location
         return line_edits.blanks_to_delete(self.document.get_line(row)[:column])
 
     def insert_text(self, text: str) -> None:
-        """Put a text in the place of the selection."""
+        """Replace the selection with a text."""
         self.replace(text, *sorted(self.selection), maintain_selection_offset=False)
 
     def _change_lines(self, change: line_edits.Change) -> None:
-        """Change the lines of the selection, or the cursor's."""
+        """Change the selected lines, or the cursor's."""
         (top, left), (bottom, right) = sorted(self.selection)
         was_empty = self.selection.is_empty
         if bottom > top and right == 0:
@@ -298,7 +298,7 @@ class CodeArea(TextArea):
             self.selection = Selection((top, 0), (bottom, len(changed[-1])))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """A click on a line's number marks it, and does not move the cursor."""
+        """Report a click on a line number, without moving the cursor."""
         if event.x < self.gutter_width:
             event.stop()
             event.prevent_default()
@@ -308,7 +308,7 @@ class CodeArea(TextArea):
 
 
 _WHILE_TYPING = {"ctrl+n": "new", "ctrl+o": "open"}
-"""What those keys do in every editor; elsewhere they are keys of the robot and the obstacles."""
+"""Usual editor keys; while the user does not type, they are keys of the robot and the obstacles."""
 
 _CHANGES: Mapping[str, line_edits.Change] = {
     "tab": line_edits.indented,
@@ -320,7 +320,7 @@ _CHANGES: Mapping[str, line_edits.Change] = {
 
 
 def _on(strip: Strip, base: Style, lit: Style) -> Strip:
-    """Put a lit background where the panel's own is: a cursor or a selection stays."""
+    """Return a row with the highlight's background where the panel's own was: a cursor or a selection stays."""
     background = Style(bgcolor=lit.bgcolor)
     pieces = ((piece.text, piece.style or base) for piece in strip)
     shown = [Segment(text, style + background if style.bgcolor == base.bgcolor else style) for text, style in pieces]

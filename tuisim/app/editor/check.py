@@ -1,4 +1,4 @@
-"""Is a text a program? As the run will see it, without running it."""
+"""Syntax check of a program, as the run will compile it, without running it."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from tuisim.errors import TuisimError
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """Why a text is no program."""
+    """A syntax error."""
 
     line: int
-    """From 1; 0 where none is known."""
+    """From 1; 0 if unknown."""
     message: str
 
 
 def mistake_in(text: str, name: str) -> Mistake | None:
-    """Return what is wrong with a program, None if it can be compiled.
+    """Return the syntax error of a program, None if it can be compiled.
 
     Args:
-        text: As it stands in the file; a magic line is no mistake.
-        name: Of the file, for the message.
+        text: The text of the file; a magic line is allowed.
+        name: Name of the file, for the message.
     """
     try:
         source = parse_program(text, name)
         with warnings.catch_warnings():
-            # They are told when the program runs.
+            # Warnings are shown when the program runs.
             warnings.simplefilter("ignore")
             compile(source.text, name, "exec", dont_inherit=True)
     except TuisimError as error:

@@ -1,4 +1,4 @@
-"""The text of the open program: as it stands in its file, as it was edited, as it runs."""
+"""The text of the open program: as saved, as edited, and as it runs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tuisim.runs.recording import Recording
 
 DRAFT_AFTER_S = 1.0
-"""So long after a key unsaved text is kept for the case of a crash."""
+"""Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
 NEW_NAME = "new.py"
 TEMPLATE = '''\
 """A new program: drives ahead for two seconds."""
@@ -32,7 +32,7 @@ tank.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)
 
 
 class Document:
-    """One app's program text.
+    """The open program.
 
     Args:
         lab: The app.
@@ -41,15 +41,15 @@ class Document:
     def __init__(self, lab: LabApp) -> None:
         self._lab = lab
         self._program: Program | None = None
-        """As it runs next unless the text was edited."""
+        """The next program to run unless the text was edited."""
         self._name = self._path = self._text = self._saved = self._applied = ""
-        """File name; path; text as edited; as in the file; as it was when `_program` was made of it."""
+        """File name; path; text as edited; as in the file; as it was when `_program` was made from it."""
         self._form = Form()
         self._is_file = False
-        """Whether the text is that of the file, so that it may be saved there without a question."""
+        """Whether the text came from the file, so that saving there needs no question."""
         self._keeping = self._asking = False
         self._error_line = 0
-        """Of the text of the run at hand, where it ended with an error; 0 for none, or once the text is another."""
+        """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
         self._ran: tuple[Recording, str] | None = None
         """A recording, and the text that it ran, as it was in the editor."""
 
@@ -58,16 +58,16 @@ class Document:
         """Whether there are unsaved changes."""
         return self._text != self._saved
 
-    # The program that is open
+    # The open program
 
     def begin(self) -> None:
-        """Learn what is open; offer a new program that was never saved."""
+        """Show what is open, and offer to restore a draft of a new program."""
         self.introduce()
         if self._program is None and (draft := find_draft("")):
             self._offer(draft)
 
     def introduce(self) -> None:
-        """Show the program that is open, which may be another than before."""
+        """Show the open program, which may have changed."""
         program = self._lab.bridge.program
         if program is not self._program:
             same = program is not None and self._program is not None and program.path == self._path
@@ -86,7 +86,7 @@ class Document:
             try:
                 text, form = read_text(Path(program.path))
             except ConfigError:
-                # It was opened, and is gone or wrong by now: what was read of it is there.
+                # The file is missing or invalid by now: show what was read of it.
                 text, form = "", Form()
             if text and self._runnable(text) == program.text:
                 self._text, self._form, self._is_file = text, form, True
@@ -98,7 +98,7 @@ class Document:
                 self._offer(draft)
 
     def _runnable(self, text: str | None = None) -> str | None:
-        """The text as a program runs it, None if its magic line is wrong."""
+        """Return the text as a program runs it, None if its magic line is invalid."""
         from tuisim.config.program_file import parse_program
 
         try:
@@ -107,7 +107,7 @@ class Document:
             return None
 
     def show(self) -> None:
-        """Bring the code panel up to date."""
+        """Update the code panel."""
         if code := self._lab.desk.code:
             code.set_program(self._name, self._text, self._path or self._name)
             code.set_title(self._name, self.dirty)
@@ -118,7 +118,7 @@ class Document:
             controls.set_program(self._name)
 
     def run_changed(self) -> None:
-        """Tell the code panel which text the run has that is looked at."""
+        """Pass the text of the run in view to the code panel."""
         code, recording = self._lab.desk.code, self._lab.bridge.timeline.recording
         if recording is None:
             self._ran = None
@@ -131,20 +131,20 @@ class Document:
             code.set_running(None)
 
     def run_ended_at(self, line: int) -> None:
-        """The run at hand ended with an error at a line of its text, which is marked; 0: with none."""
+        """Mark the line of the current run's text at which it ended with an error; 0 for none."""
         self._error_line = line
         if code := self._lab.desk.code:
             code.mark_run_error(line)
 
     def lines(self) -> LineMap:
-        """Return which lines of the program as it stands are which of the run at hand."""
+        """Return the map between the lines of the current run and those of the edited text."""
         now = source_lines(self._text)
         return LineMap(now if self._ran is None else source_lines(self._ran[1]), now)
 
     # Editing
 
     def edited(self, text: str) -> None:
-        """The text was changed in the code panel."""
+        """Handle an edit in the code panel."""
         self._text, self._error_line = text, 0
         if code := self._lab.desk.code:
             code.set_title(self._name, self.dirty)
@@ -153,7 +153,7 @@ class Document:
             self._lab.set_timer(DRAFT_AFTER_S, self.keep)
 
     def keep(self) -> None:
-        """Keep unsaved text where a crash does not reach it, or forget it if all is saved."""
+        """Store unsaved text as a draft, or drop the draft if all is saved."""
         if not self._keeping:
             return
         self._keeping = False
@@ -186,7 +186,7 @@ class Document:
             self.show()
 
     def when_safe(self, do: Callable[[], None]) -> None:
-        """Do something that gives up the text; with unsaved changes after a question."""
+        """Call a function that discards the text; with unsaved changes, only after a question."""
         if not self.dirty:
             do()
             return
@@ -211,15 +211,15 @@ class Document:
         self.show()
 
     def apply(self) -> bool:
-        """Make the edited text the program that runs next, or mark and say what is wrong with it.
+        """Make the edited text the next program to run, or mark and report its error.
 
         Returns:
-            Whether the program may run.
+            Whether the program can run.
         """
         self.introduce()
         if self._is_applied:
             return True
-        # A slip of the finger is not to lay out another mat because the magic line is not found for it.
+        # A typing error in the magic line must not change the mat.
         if mistake := self._mistake():
             self._lab.complain(TuisimError(f"{self._name} cannot run: {mistake.message}"))
             return False
@@ -230,7 +230,7 @@ class Document:
         return self._program is None or (self._text, self._path) == (self._applied, self._program.path)
 
     def _mistake(self) -> Mistake | None:
-        """What is wrong with the text; its line is marked."""
+        """Return the syntax error of the text, and mark its line."""
         from tuisim.app.editor.check import mistake_in
 
         mistake = mistake_in(self._text, self._name)
@@ -247,7 +247,7 @@ class Document:
         return True
 
     def new(self) -> None:
-        """Begin a new program, after a question if there are unsaved changes."""
+        """Start a new program, after a question if there are unsaved changes."""
 
         def begin() -> None:
             self._open_new()
@@ -267,10 +267,10 @@ class Document:
     # Saving
 
     def save(self, then: Callable[[], None] = lambda: None) -> None:
-        """Write the program to its file; asks for one where it has none of its own.
+        """Save the program to its file; ask for a file if it has none.
 
         Args:
-            then: Called when it is written.
+            then: Called after it was saved.
         """
         if self._program is None:
             self._lab.say("No program to save: o opens one")
@@ -300,7 +300,7 @@ class Document:
         write_text(path, self._text, self._form)
 
     def _saved_to(self, path: Path, then: Callable[[], None]) -> None:
-        """Take note that the text is in a file now, and say whether it can run."""
+        """Note that the text was saved to a file, and report whether it can run."""
         drop_draft(self._path)
         self._saved, self._is_file = self._text, True
         moved = str(path) != self._path
@@ -316,17 +316,17 @@ class Document:
             self._lab.say(f"{self._name} is saved")
         then()
 
-    # The file changes elsewhere
+    # Changes of the file on disk
 
     def stands_against(self, path: Path) -> bool:
-        """Whether a file that changed is edited here; then the user is asked which of the two stays."""
+        """Return whether a file that changed on disk has unsaved edits here; if so, ask which version to keep."""
         if not self.dirty or Path(self._path) != path:
             return False
         if not self._asking:
             self._asking = True
             from tuisim.app.dialogs.question import Question
 
-            text = f"{self._name} was changed on the disk, and has unsaved changes here."
+            text = f"{self._name} was changed on disk, and has unsaved changes here."
             answers = (("k", "Keep mine"), ("t", "Take the file's"))
             self._lab.push_screen(Question("Two versions", text, answers), self._stood)
         return True

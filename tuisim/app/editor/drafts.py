@@ -1,4 +1,4 @@
-"""Drafts: edited text that is not saved yet, kept where a crash does not reach it."""
+"""Drafts: unsaved text, stored in case of a crash."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ FOLDER = "drafts"
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """One program as it was edited."""
+    """The unsaved text of a program."""
 
     path: str
-    """Of the program, absolute; empty for a new one that has no file."""
+    """Absolute path of the program; empty for a new one without a file."""
     text: str
     written_s: float
-    """When it was kept, in seconds since 1970."""
+    """When it was stored, in seconds since 1970."""
 
 
 def _file(path: str) -> Path:
@@ -33,10 +33,10 @@ def _file(path: str) -> Path:
 
 
 def keep_draft(path: str, text: str) -> None:
-    """Keep the text of a program; an older draft of it is replaced.
+    """Store the text of a program, replacing an older draft.
 
     Raises:
-        ConfigError: it cannot be written.
+        ConfigError: the draft cannot be written.
     """
     file = _file(path)
     data = json.dumps(asdict(Draft(path, text, time.time()))).encode("ascii")
@@ -50,18 +50,18 @@ def keep_draft(path: str, text: str) -> None:
 
 
 def find_draft(path: str) -> Draft | None:
-    """Return the draft of a program, None if there is none that can be read."""
+    """Return the draft of a program, None if there is no readable one."""
     try:
         found = json.loads(_file(path).read_bytes())
         draft = Draft(str(found["path"]), str(found["text"]), float(found["written_s"]))
     except (OSError, ValueError, KeyError, TypeError):
-        # Drafts are written whole; what is no draft all the same has nothing to give back.
+        # Drafts are written atomically; a malformed file has nothing to restore.
         return None
     return draft if draft.path == path else None
 
 
 def drop_draft(path: str) -> None:
-    """Forget the draft of a program; one that cannot be removed is offered again."""
+    """Delete the draft of a program; one that cannot be deleted is offered again."""
     # The folder may be read-only by now; the text itself is safe.
     with suppress(OSError):
         _file(path).unlink(missing_ok=True)

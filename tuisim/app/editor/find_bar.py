@@ -1,4 +1,4 @@
-"""The line under the text in which one types what to find, or the number of a line."""
+"""The bar below the text to find a text or go to a line."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FIND, LINE = "find", "line"
 
 
 class FindBar(Horizontal):
-    """Shown while something is looked for."""
+    """The find bar, shown during a search."""
 
     DEFAULT_CSS = """
     FindBar { height: 1; }
@@ -28,31 +28,31 @@ class FindBar(Horizontal):
     ]
 
     class Asked(Message):
-        """Look for the text, or go to the line."""
+        """Posted to find the text, or to go to the line."""
 
         def __init__(self, mode: str, text: str, by: int) -> None:
             super().__init__()
             self.mode, self.text, self.by = mode, text, by
-            """`by`: 1 the next place, -1 the one before, 0 the one at the cursor or after it."""
+            """`by`: 1 the next match, -1 the previous one, 0 the one at or after the cursor."""
 
     class Closed(Message):
-        """Back to the text."""
+        """Posted when the focus returns to the text."""
 
     def __init__(self) -> None:
         super().__init__()
         self.mode = FIND
         self.wanted = ""
-        """What was looked for last."""
+        """The last search text."""
         self.display = False
 
     def compose(self) -> ComposeResult:
-        """The field, and what was found."""
+        """Create the child widgets."""
         yield Static(id="label", markup=False)
         yield Input(compact=True)
         yield Static(id="found", markup=False)
 
     def open(self, mode: str) -> None:
-        """Ask for a text or a line."""
+        """Open the bar to find a text or go to a line."""
         self.mode = mode
         self.display = True
         self.query_one("#label", Static).update("Find " if mode == FIND else "Line ")
@@ -64,16 +64,16 @@ class FindBar(Horizontal):
         field.focus()
 
     def say(self, text: str) -> None:
-        """Show what was found."""
+        """Show the result of the search."""
         self.query_one("#found", Static).update(text)
 
     def action_close(self) -> None:
-        """Hide it."""
+        """Hide the bar."""
         self.display = False
         self.post_message(self.Closed())
 
     def action_go(self, by: int) -> None:
-        """Next place, or the one before."""
+        """Go to the next match, or the previous one."""
         self._ask(by)
 
     def _ask(self, by: int) -> None:
@@ -83,13 +83,13 @@ class FindBar(Horizontal):
         self.post_message(self.Asked(self.mode, text, by))
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Look while one types."""
+        """Search while the user types."""
         event.stop()
         if self.mode == FIND:
             self._ask(0)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """The next place, or the line."""
+        """Go to the next match, or to the line."""
         event.stop()
         self._ask(1)
         if self.mode == LINE:

@@ -1,4 +1,4 @@
-"""What the keys of the editor make of lines: indentation, comments, the places of a word."""
+"""Pure edits of lines behind the editor's keys: indentation, comments, matches of a text."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from collections.abc import Callable, Sequence
 from tuisim.source import source_lines
 
 Change = Callable[[Sequence[str]], list[str]]
-"""What makes other lines of lines."""
+"""A function that returns edited lines."""
 
 INDENT = "    "
 _LEAVES = re.compile(r"\s*(return|pass|break|continue|raise)\b")
 
 
 def indent_after(line: str) -> str:
-    """Return the indentation of the line that follows when Enter is pressed at the end of `line`."""
+    """Return the indentation of the new line when Enter is pressed at the end of `line`."""
     here = line[: len(line) - len(line.lstrip())]
     code = _without_comment(line).rstrip()
     if code.endswith((":", "(", "[", "{")):
@@ -32,12 +32,12 @@ def _without_comment(line: str) -> str:
 
 
 def indented(lines: Sequence[str]) -> list[str]:
-    """Return lines one step further in; empty ones stay empty."""
+    """Return lines indented by one more level; empty ones stay empty."""
     return [INDENT + line if line.strip() else line for line in lines]
 
 
 def outdented(lines: Sequence[str]) -> list[str]:
-    """Return lines one step further out, as far as they are indented."""
+    """Return lines indented by one level less, if they are indented."""
     return [_outdented(line) for line in lines]
 
 
@@ -49,12 +49,12 @@ def _outdented(line: str) -> str:
 
 
 def blanks_to_delete(before: str) -> int:
-    """Return how many blanks backspace takes away at once after `before`: a step of an indent, nothing elsewhere."""
+    """Return how many blanks backspace deletes at once after `before`: one level of indentation, else 0."""
     return (len(before) - 1) % len(INDENT) + 1 if before and not before.strip(" ") else 0
 
 
 def comment_toggled(lines: Sequence[str]) -> list[str]:
-    """Return lines as comments, or as code if all of them are comments already."""
+    """Return lines as comments, or uncommented if all of them are comments."""
     full = [line for line in lines if line.strip()]
     if full and all(line.lstrip().startswith("#") for line in full):
         return [re.sub(r"^(\s*)# ?", r"\1", line) for line in lines]
@@ -63,7 +63,7 @@ def comment_toggled(lines: Sequence[str]) -> list[str]:
 
 
 def places(lines: Sequence[str], wanted: str) -> list[tuple[int, int]]:
-    """Return where a text stands, as (line, column) from 0; capitals matter only if it has some."""
+    """Return the matches of a text, as (line, column) from 0; case matters only if the text has capitals."""
     if not wanted:
         return []
     flags = re.IGNORECASE if wanted == wanted.lower() else 0
@@ -72,7 +72,7 @@ def places(lines: Sequence[str], wanted: str) -> list[tuple[int, int]]:
 
 
 def differing_lines(one: str, other: str) -> int:
-    """Return how many lines of two texts differ."""
+    """Return how many lines differ between two texts."""
     import difflib
 
     matcher = difflib.SequenceMatcher(None, source_lines(one), source_lines(other), autojunk=False)

@@ -1,4 +1,4 @@
-"""Which line of a text that runs is which line of the same text after it was edited."""
+"""Maps lines of the running text to lines of the same text after edits, and back."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from difflib import SequenceMatcher
 
 MOST_COMPARED = 400
-"""Of so many changed lines those are found that stayed among them; of more, the lines before and after."""
+"""Up to this many changed lines are compared one by one; of more, only the lines before and after are mapped."""
 
 
 class LineMap:
     """The lines that two texts have in common, in the same order. Lines count from 1; 0 is none.
 
     Args:
-        run: Lines of the text that runs.
-        shown: Lines of the text that is shown.
+        run: Lines of the running text.
+        shown: Lines of the text shown.
     """
 
     def __init__(self, run: Sequence[str], shown: Sequence[str]) -> None:
@@ -38,9 +38,9 @@ class LineMap:
             self._to_shown[run + at], self._to_run[shown + at] = shown + at, run + at
 
     def to_shown(self, line: int) -> int:
-        """Return the line of the shown text that is a line of the running one."""
+        """Return the line of the text shown for a line of the running text."""
         return self._to_shown[line] if 0 <= line < len(self._to_shown) else 0
 
     def to_run(self, line: int) -> int:
-        """Return the line of the running text that is a line of the shown one."""
+        """Return the line of the running text for a line of the text shown."""
         return self._to_run[line] if 0 <= line < len(self._to_run) else 0

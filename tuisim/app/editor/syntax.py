@@ -1,8 +1,7 @@
-"""Colours of Python text, line by line, so that an edit costs no more than the lines that it changes.
+"""Syntax highlighting of Python line by line, so that an edit costs no more than the lines that it changes.
 
-All that one line has to know of those above is whether it begins in a string of three
-quotes. So the state before each line is kept, and an edit is followed only until the
-states agree again.
+A line depends on those above only through the triple-quoted string that it may begin in. So the state before each line
+is stored, and after an edit it is recomputed only until the states agree again.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ def spans(line: str, before: str = "") -> tuple[list[Span], str]:
 
     Args:
         line: Without its line end.
-        before: The quotes of the string that the line begins in, empty if in none.
+        before: The quotes of the string in which the line begins, empty if in none.
     """
     found: list[Span] = []
     at = 0
@@ -68,13 +67,13 @@ def spans(line: str, before: str = "") -> tuple[list[Span], str]:
 
 
 class Colouring:
-    """The states before each line of a text that is being edited."""
+    """The states before each line of a text that is edited."""
 
     def __init__(self) -> None:
         self._before: list[str] = [""]
 
     def forget(self, line: int) -> None:
-        """A line, from 0, and perhaps those below have changed."""
+        """Invalidate a line, from 0, and the lines below."""
         del self._before[line + 1 :]
 
     def of(self, lines: Sequence[str], line: int) -> list[Span]:
@@ -82,7 +81,7 @@ class Colouring:
         before = self._before
         while len(before) <= line:
             above = lines[len(before) - 1]
-            # Most lines have no quotes of three and need no closer look.
+            # Most lines have no triple quotes and need no further scan.
             plain = '"""' not in above and "'''" not in above
             before.append(before[-1] if plain else spans(above, before[-1])[1])
         return spans(lines[line], before[line])[0]

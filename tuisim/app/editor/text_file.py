@@ -1,4 +1,4 @@
-"""Program files as they are on the disk: read and written back with the form that they had."""
+"""Reads program files, and writes them back in their original encoding and line ends."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from tuisim.source import decode_source
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """What a file is besides its text."""
+    """The format of a file besides its text."""
 
     encoding: str = "utf-8"
-    """As Python names it, `utf-8` for a file with a byte order mark too."""
+    """Python's name of the encoding; `utf-8` also for a file with a byte order mark."""
     has_mark: bool = False
     """Whether it begins with a byte order mark."""
     newline: str = "\n"
@@ -28,10 +28,10 @@ class Form:
 
 
 def read_text(path: Path) -> tuple[str, Form]:
-    """Return a program's text with `\\n` as line ends, and its form.
+    """Return a program's text with `\n` as line ends, and its format.
 
     Raises:
-        ConfigError: it cannot be read, or is no Python text.
+        ConfigError: the file cannot be read, or is not Python text.
     """
     try:
         data = path.read_bytes()
@@ -47,10 +47,10 @@ _ENDS = {"\n": r"(?<!\r)\n", "\r\n": r"\r\n", "\r": r"\r(?!\n)"}
 
 
 def write_text(path: Path, text: str, form: Form) -> None:
-    """Write a program whole or not at all; a file that is there keeps its permissions, a link stays one.
+    """Write a program atomically; an existing file keeps its permissions, and a link stays a link.
 
     Raises:
-        ConfigError: it cannot be written, or not in its encoding.
+        ConfigError: the file cannot be written, or not in its encoding.
     """
     from tuisim.atomic import replacing
 
@@ -67,7 +67,7 @@ def write_text(path: Path, text: str, form: Form) -> None:
 
 def _encoded(text: str, form: Form, path: Path) -> bytes:
     try:
-        # The first two lines may have come to name another encoding.
+        # The first two lines may name another encoding by now.
         encoding, _ = tokenize.detect_encoding(io.BytesIO(text.encode("utf-8", "surrogateescape")).readline)
         wanted = form.encoding if encoding == "utf-8" and _is_named(form.encoding, text) else encoding
         return text.replace("\n", form.newline).encode(wanted)
@@ -76,12 +76,13 @@ def _encoded(text: str, form: Form, path: Path) -> bytes:
 
 
 def _is_named(encoding: str, text: str) -> bool:
-    """Whether Python would read a text in this encoding: it is Python's own, or named in the first two lines."""
+    """Return whether Python would read a text in this encoding: the default one, or the one named in the first two
+    lines."""
     return encoding == "utf-8" or encoding in "\n".join(text.split("\n", 2)[:2])
 
 
 def is_protected(path: Path) -> bool:
-    """Whether a program is not to be overwritten: it is an example, or cannot be written."""
+    """Return whether a program must not be overwritten: it is an example, or read-only."""
     from tuisim.config.assets import programs_folder
 
     examples = programs_folder().resolve()

@@ -85,6 +85,7 @@ class KeyFooter(Widget):
             self.refresh()
 
     def render(self) -> Text:
+        """Return the content."""
         width = self.size.width
         status = f" {self._status} " if self._status else ""
         key_style = self.get_component_rich_style("footer--key", partial=True)

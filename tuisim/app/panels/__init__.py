@@ -1,8 +1,7 @@
-"""Panels: one file a panel, and the table of them.
+"""Panels: one file per panel, and the table of them.
 
-To add a panel: write its file, a `Widget` with `TITLE` and
-`show(snapshot)`, and add a line to `PANELS`. Its key, its place on the screen, the help
-and the command palette follow from the line.
+To add a panel: write its file, a `Widget` with `TITLE` and `show(snapshot)`, and add a line to `PANELS`. Its key, its
+place on the screen, the help and the command palette follow from the line.
 """
 
 from __future__ import annotations
@@ -16,24 +15,24 @@ from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 
 SMALL, MEDIUM, LARGE = "small", "medium", "large"
-"""Sizes of terminal: from 80×24, from 112×34, from 170×50."""
+"""Terminal sizes: from 80×24, from 112×34, from 170×50."""
 
 MAIN, BOTTOM, SIDE = "main", "bottom", "side"
-"""Where a panel sits: the large place, the strip below it, the column beside both."""
+"""Areas of the screen: the main area, the strip below it, the column beside both."""
 
 
 class Panel(Protocol):
-    """What every panel has besides being a `Widget`."""
+    """The interface of a panel, in addition to `Widget`."""
 
     TITLE: ClassVar[str]
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; nearly free if nothing changed."""
+        """Show a moment; almost free if nothing has changed."""
 
 
 @runtime_checkable
 class PlanPanel(Protocol):
-    """What a panel has besides that edits the plan of the next run."""
+    """The additional interface of a panel that edits the plan of the next run."""
 
     def show_plan(self, plan: NextRun) -> None:
         """Show a plan."""
@@ -50,12 +49,12 @@ class PanelInfo:
     """Module in this package, and class; imported when the panel is first shown."""
     place: str
     sizes: tuple[str, ...]
-    """Sizes of terminal at which it is on unless the user says otherwise."""
+    """Terminal sizes at which it is on by default."""
     min_rows: int
     good_rows: int
-    """It gets so many before another gets more than its least."""
+    """Preferred height: filled before another panel gets more than its minimum."""
     weight: int = 1
-    """Its share of the width among panels that stand side by side."""
+    """Its share of the width among panels that are side by side."""
 
     def load(self) -> type[Panel]:
         """Import the panel's class."""
@@ -65,7 +64,7 @@ class PanelInfo:
 
 ALL = (SMALL, MEDIUM, LARGE)
 
-# In the order in which they keep their place when there is not room for all.
+# By priority: if space runs out, the later ones are hidden first.
 PANELS: Mapping[str, PanelInfo] = {
     panel.id: panel
     for panel in (

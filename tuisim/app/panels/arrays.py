@@ -1,4 +1,4 @@
-"""Sensor arrays: the discs of pixels that the colour sensors see, in colour."""
+"""The sensor arrays panel: the discs of pixels that the colour sensors see."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from tuisim.charts.text_runs import Run
 from tuisim.core.sensors.color import pixel_array
 
 _PERIOD_S = 0.25
-"""Every pixel of both discs may change at once: more often would fill a slow link."""
+"""All pixels of both discs may change at once: a shorter period would saturate a slow link."""
 
 _LABEL = Style(color="#a8a8a8")
 
 
 class Arrays(Widget):
-    """The panel: a line of names above the discs where there is room for it."""
+    """The sensor arrays panel: a line of names above the discs if there is room for it."""
 
     TITLE: ClassVar[str] = "Sensor arrays"
 
@@ -42,18 +42,18 @@ class Arrays(Widget):
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """Names, then discs."""
+        """Create the child widgets."""
         yield self._names
         yield self._discs
 
     def on_resize(self) -> None:
-        """Give the names a line only if the discs stay whole."""
+        """Show the line of names only if the discs still fit completely."""
         self._names.display = self.size.height > FULL_PX // 2
         self._drawn = None
         self.call_after_refresh(self._draw)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment, a few times a second at most."""
+        """Show a moment; at most a few updates per second."""
         self._snapshot = snapshot
         self._throttle.ask()
 
@@ -79,7 +79,7 @@ class Arrays(Widget):
     def _label_discs(self, layout: DiscLayout, names: list[str]) -> None:
         labels = [f"Sensor{at} {name}" for at, name in enumerate(names, 1)]
         if not layout.beside or not self._names.display:
-            # Beside or stacked, the order says which is which.
+            # Side by side or stacked, the order identifies them.
             self.border_subtitle = (" │ " if layout.beside else " above ").join(names) if len(names) > 1 else ""
             self._names.set_lines([])
             return

@@ -1,4 +1,4 @@
-"""Brick: the display, the lights and the six buttons, which keys and mouse press."""
+"""The brick panel: display, lights and the six buttons, which keys and mouse press."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from tuisim.app.terminal.pacer import Throttle
 from tuisim.protocol import BUTTONS
 
 _PERIOD_S = 0.1
-"""The whole display may change at once: more often would fill a slow link."""
+"""The whole display may change at once: a shorter period would saturate a slow link."""
 
 TAP_S = 0.25
-"""So long a key holds its button: a terminal does not say when a key is let go."""
+"""How long a key press holds its button: terminals do not report when a key is released."""
 
 SEEN_S = 0.05
-"""At least so much simulated time: programs look at the buttons now and then."""
+"""Minimum hold in simulated time: programs poll the buttons only now and then."""
 
 _HELP = "arrows ⏎ ⌫ press · shift holds · + size"
 
 
 class Brick(Widget, can_focus=True):
-    """The panel."""
+    """The brick panel."""
 
     PANEL_ID: ClassVar[str] = "brick"
     TITLE: ClassVar[str] = "Brick"
@@ -49,7 +49,7 @@ class Brick(Widget, can_focus=True):
 
     @dataclass
     class Pressed(Message):
-        """Other buttons are held down now, or would be if a program ran."""
+        """Posted when the held buttons have changed, even if no program runs."""
 
         buttons: frozenset[str]
 
@@ -62,13 +62,13 @@ class Brick(Widget, can_focus=True):
         self._tapped: dict[str, Timer] = {}
         """Buttons that a key holds for a moment."""
         self._latched: set[str] = set()
-        """Buttons that are held until they are let go in the same way."""
+        """Buttons that are held until they are released in the same way."""
         self._clicked = ""
-        """The button under the mouse while it is down."""
+        """The button that the mouse holds down."""
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """The picture is the only child."""
+        """Create the child widgets."""
         yield self._view
 
     def on_resize(self) -> None:
@@ -76,16 +76,16 @@ class Brick(Widget, can_focus=True):
         self.call_after_refresh(self._draw)
 
     def on_focus(self) -> None:
-        """Say which keys press the buttons."""
+        """Show which keys press the buttons."""
         self.border_subtitle = _HELP
 
     def on_blur(self) -> None:
-        """The keys are the app's again; buttons that they held are let go."""
+        """Release the buttons that keys held; the keys belong to the app again."""
         self.border_subtitle = ""
         self._let_go(*self._tapped)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment, a few times a second at most."""
+        """Show a moment; at most a few updates per second."""
         self._snapshot = snapshot
         self._throttle.ask()
 
@@ -105,7 +105,7 @@ class Brick(Widget, can_focus=True):
         return frozenset((*self._tapped, *self._latched, *filter(None, [self._clicked])))
 
     def _works(self, name: str) -> bool:
-        """Whether there is a program to press a button for, and it is looked at now."""
+        """Return whether a live program is in view, for which a button can be pressed."""
         if self._snapshot is not None and self._snapshot.state in IN_RUN and not self._snapshot.past:
             return True
         self.post_message(self.Pressed(frozenset({name})))
@@ -116,7 +116,7 @@ class Brick(Widget, can_focus=True):
             self.post_message(self.Pressed(self.held))
 
     def action_tap(self, name: str) -> None:
-        """Press a button for a moment; a key that is held down presses it on."""
+        """Press a button for a moment; key repeat keeps it pressed."""
         if not self._works(name):
             return
         before = self.held
@@ -130,7 +130,7 @@ class Brick(Widget, can_focus=True):
         return self._snapshot.time_s if self._snapshot else 0.0
 
     def _tap_over(self, name: str, seen_s: float) -> None:
-        """Let a button go, but not before the program has had the time to see it, however slow the run is."""
+        """Release a button, but not before the program has had time to read it, however slow the run is."""
         if name not in self._tapped:
             # The run ended after the timer had fired.
             return
@@ -146,7 +146,7 @@ class Brick(Widget, can_focus=True):
         self._changed(before)
 
     def action_latch(self, name: str) -> None:
-        """Hold a button down, or let it go."""
+        """Hold a button down, or release it."""
         if not self._works(name):
             return
         before = self.held
@@ -154,7 +154,7 @@ class Brick(Widget, can_focus=True):
         self._changed(before)
 
     def release_all(self) -> None:
-        """Let every button go: the run in which they were pressed is over."""
+        """Release every button: the run in which they were pressed is over."""
         before = self.held
         self._latched.clear()
         self._clicked = ""
@@ -169,7 +169,7 @@ class Brick(Widget, can_focus=True):
         return next(hit, "")
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Press the button under the mouse; the right mouse button holds it until the next time."""
+        """Press the button under the mouse; the right mouse button holds it until the next click."""
         name = self._button_at(event)
         if not name:
             return
@@ -186,13 +186,13 @@ class Brick(Widget, can_focus=True):
         self._changed(before)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Let go."""
+        """Release the button."""
         if self._clicked:
             self._unclick()
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Let go: a dialog has taken the mouse."""
+        """Release the button: a dialog has captured the mouse."""
         if self._clicked:
             self._unclick()
 

@@ -1,4 +1,4 @@
-"""Chart: what was logged and measured, over simulated time."""
+"""The chart panel: logged and measured values over simulated time."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PERIOD_S = 0.33
 
 
 class Chart(Widget, can_focus=True):
-    """The panel. Data that comes while it is hidden is kept."""
+    """The chart panel. Keeps data that arrives while it is hidden."""
 
     TITLE: ClassVar[str] = "Chart"
     FROZEN: ClassVar[str] = "frozen: f follows again"
@@ -48,7 +48,7 @@ class Chart(Widget, can_focus=True):
 
     @dataclass
     class CursorMoved(Message):
-        """The cursor was put at another simulated time, or taken away: that time is looked at everywhere."""
+        """Posted when the cursor was moved to another simulated time, or removed; all panels go to that time."""
 
         time_s: float | None
 
@@ -65,14 +65,14 @@ class Chart(Widget, can_focus=True):
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """The text is the only child."""
+        """Create the child widgets."""
         yield self._text
 
     def append(self, name: str, times_s: Sequence[float], values: Sequence[float]) -> None:
         """Add points to a trace.
 
         Args:
-            name: A logged NAME, or a name with a unit after a space for telemetry, which is not ticked at first.
+            name: A logged NAME, or for telemetry a name with a unit after a space, which is off at first.
             times_s: Simulated times.
             values: As many values.
         """
@@ -80,7 +80,7 @@ class Chart(Widget, can_focus=True):
         self._changed()
 
     def clear(self) -> None:
-        """Drop all points; ticks stay."""
+        """Drop all points; the selection of traces stays."""
         self._traces.clear()
         self._state = replace(self._state, x_limits=None)
         self._read(None)
@@ -88,7 +88,7 @@ class Chart(Widget, can_focus=True):
         self._changed()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Draw what has come, a few times a second at most."""
+        """Draw new data; at most a few updates per second."""
         cursor_s = snapshot.time_s if snapshot.past else None
         if cursor_s != self._state.cursor_s and not self._dragging:
             self._state = replace(self._state, cursor_s=cursor_s)
@@ -125,17 +125,17 @@ class Chart(Widget, can_focus=True):
         self.call_after_refresh(self._draw_now)
 
     def on_focus(self) -> None:
-        """Show which tick box the keys work on."""
+        """Show which tick box the keys act on."""
         self._draw_now()
 
     def on_blur(self) -> None:
-        """Hide which tick box the keys worked on."""
+        """Hide which tick box the keys acted on."""
         self._draw_now()
 
     # Keys
 
     def action_select(self, step: int) -> None:
-        """Go to another tick box."""
+        """Select another tick box."""
         names = [trace.name for trace in self._traces]
         if names:
             at = names.index(self._state.selected) + step if self._state.selected in names else 0
@@ -143,7 +143,7 @@ class Chart(Widget, can_focus=True):
             self._draw_now()
 
     def action_tick(self, number: int = 0) -> None:
-        """Switch the selected trace, or the one with that number, on or off."""
+        """Toggle the selected trace, or the one with that number."""
         traces = list(self._traces)
         if number:
             chosen = traces[number - 1] if number <= len(traces) else None
@@ -169,7 +169,7 @@ class Chart(Widget, can_focus=True):
         self.clear()
 
     def action_move_cursor(self, columns: int) -> None:
-        """Move the cursor, the first time from the newest point."""
+        """Move the cursor; the first time it starts at the newest point."""
         picture = self._picture
         if picture is None or not picture.columns:
             return
@@ -178,7 +178,7 @@ class Chart(Widget, can_focus=True):
         self._put_cursor(axes.at_column(column, picture.x_limits, picture.columns))
 
     def action_drop_cursor(self) -> None:
-        """Take the cursor away."""
+        """Remove the cursor."""
         if self._state.cursor_s is not None:
             self._state = replace(self._state, cursor_s=None)
             self.post_message(self.CursorMoved(None))
@@ -194,12 +194,12 @@ class Chart(Widget, can_focus=True):
     # Mouse
 
     def _cell(self, event: events.MouseEvent) -> tuple[int, int]:
-        """Column and row of the mouse in the text."""
+        """Return column and row of the mouse in the text."""
         origin = self._text.region
         return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Switch a tick box, or begin to drag the cursor."""
+        """Toggle a tick box, or start to drag the cursor."""
         picture = self._picture
         if picture is None or event.button != 1:
             return
@@ -214,7 +214,7 @@ class Chart(Widget, can_focus=True):
             self._cursor_to(column, picture)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Drag the cursor, or read what the traces are where the mouse is."""
+        """Drag the cursor, or show the values of the traces at the mouse."""
         picture = self._picture
         if picture is None:
             return
@@ -225,11 +225,11 @@ class Chart(Widget, can_focus=True):
             self._read(picture.time_at(column, row))
 
     def on_leave(self) -> None:
-        """The mouse reads nothing any more."""
+        """Stop showing the values at the mouse."""
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        """Say below the chart what the traces are at a time."""
+        """Show below the chart the values of the traces at a time."""
         if time_s is None:
             self.border_subtitle = self.FROZEN if self._state.x_limits else ""
             return
@@ -237,13 +237,13 @@ class Chart(Widget, can_focus=True):
         self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Let go of the cursor."""
+        """Stop dragging the cursor."""
         if self._dragging:
             self._dragging = False
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Let go: a dialog has taken the mouse."""
+        """Stop dragging: a dialog has captured the mouse."""
         self._dragging = False
 
     def _cursor_to(self, column: int, picture: ChartPicture) -> None:

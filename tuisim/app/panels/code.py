@@ -1,4 +1,4 @@
-"""Code panel: the program, to be read and edited; the running line lit, the line of an error marked."""
+"""The code panel: shows and edits the program; highlights the running line, marks the line of an error."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from tuisim.app.snapshot import ENDED, IDLE, RUNNING, Snapshot
 from tuisim.source import source_lines
 
 LIT_GAP_S = 0.1
-"""The light moves no more often while the program runs: the eye would see only flicker."""
+"""Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
 
 NOTHING_OPEN = "No program: o opens one, ctrl+t begins a new one"
 _TYPING_KEYS = "esc done  ^s save  ^r run  ^f find"
 
 
 class Code(Vertical):
-    """The program's text."""
+    """The code panel."""
 
     TITLE: ClassVar[str] = "Code"
 
@@ -39,28 +39,29 @@ class Code(Vertical):
     ]
 
     class Edited(Message):
-        """The text was changed here."""
+        """Posted when the text was edited here."""
 
         def __init__(self, text: str) -> None:
             super().__init__()
             self.text = text
 
     class Wanted(Message):
-        """To `save` the program, to `run` it, a `new` one, to `open` another; or there is `none` to be edited."""
+        """Posted to `save` the program, to `run` it, to start a `new` one, to `open` another; or as `none` if there is
+        none to edit."""
 
         def __init__(self, what: str) -> None:
             super().__init__()
             self.what = what
 
     class TypingChanged(Message):
-        """Letters go into the text from now on, or no more."""
+        """Posted when typing in the text begins or ends."""
 
         def __init__(self, typing: bool) -> None:
             super().__init__()
             self.typing = typing
 
     class BreakpointToggled(Message):
-        """The number of a line, from 1, was clicked on."""
+        """Posted when a line number, from 1, was clicked."""
 
         def __init__(self, line: int) -> None:
             super().__init__()
@@ -73,40 +74,40 @@ class Code(Vertical):
         self._bar = FindBar()
         self._key: str | None = None
         self._shown = ""
-        """The text as it was last given or told of."""
+        """The text as last set or reported."""
         self._run_lines: list[str] | None = None
         self._mapped: tuple[list[str], LineMap] | None = None
-        """The lines that were shown when the run's were last looked for among them."""
+        """The shown lines when the line map was last computed."""
         self._tells_run = self._in_run = False
         self._lit_at_s = 0.0
         self._line = 0
         self._said = (self.TITLE, "")
 
     def compose(self) -> ComposeResult:
-        """The text, and the bar below it."""
+        """Create the child widgets."""
         self._area.placeholder = NOTHING_OPEN
         yield self._area
         yield self._bar
 
-    # What is shown
+    # Display
 
     @property
     def cursor_line(self) -> int:
-        """The line that the cursor is on, from 1."""
+        """The line of the cursor, from 1."""
         return self._area.cursor_location[0] + 1
 
     @property
     def typing(self) -> bool:
-        """Whether letters go into the text."""
+        """Whether the user types in the text."""
         return self._area.typing
 
     def set_program(self, name: str, text: str, key: str = "") -> None:
         """Show a program.
 
         Args:
-            name: Of its file; empty for no program.
-            text: As it stands in the file.
-            key: Tells one program from another; of the same one, cursor and scroll stay.
+            name: Name of its file; empty for no program.
+            text: The text of the file.
+            key: Identifies the program; for the same one, cursor and scroll position stay.
         """
         key = key or name
         if key != self._key:
@@ -120,19 +121,19 @@ class Code(Vertical):
                 self.stop_typing()
         elif text != self._shown:
             self._area.replace_program(text)
-            # What was wrong was wrong with the text before.
+            # The error was in the former text.
             self._area.set_error(0)
         self._shown = text
         self.set_title(name)
 
     def set_title(self, name: str, edited: bool = False) -> None:
-        """Say what program it is, and whether it has unsaved changes."""
+        """Show the name of the program, and whether it has unsaved changes."""
         self._said = (f"{self.TITLE}: {name}" if name else self.TITLE, " • edited" if edited else "")
         self._say()
 
     def _say(self) -> None:
         title, edited = self._said
-        # A file's name is no markup.
+        # A file name is no markup.
         self.border_title = title.replace("[", "\\[") + edited
         tells = self._run_lines is not None and self._tells_run and self._in_run
         differs = tells and self._run_lines != source_lines(self._shown)
@@ -140,37 +141,37 @@ class Code(Vertical):
         self.border_subtitle = "  ".join(filter(None, ["running text differs" if differs else "", keys]))
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
-        """Say what text the run has that is looked at.
+        """Set the text of the run in view.
 
         Args:
             text: None without a run.
-            tells: Whether it is a run of this program, so that it is told when the two texts differ.
+            tells: Whether it is a run of this program, so that a difference between the texts is shown.
         """
         self._run_lines, self._mapped = source_lines(text) if text is not None else None, None
         self._tells_run = tells
         self._say()
 
     def set_marks(self, breaks: Mapping[int, str]) -> None:
-        """Put marks before lines: `●` a breakpoint, `○` one switched off, `◆` one with a condition."""
+        """Set the breakpoint markers: `●` a breakpoint, `○` a disabled one, `◆` one with a condition."""
         self._area.set_breaks(breaks)
 
     def mark_run_error(self, line: int) -> None:
-        """Mark the line of the run's text at which it ended with an error, as far as it is there; 0 for none."""
+        """Mark the line of the run's text at which the run ended with an error, if it still exists; 0 for none."""
         self.mark_error(self._line_shown(line))
 
     @property
     def error_line(self) -> int:
-        """The line that is marked as wrong, 0 for none."""
+        """The line that is marked as an error, 0 for none."""
         return self._area.error_line
 
     def mark_error(self, line: int) -> None:
-        """Mark the line of an error; 0 takes the mark away."""
+        """Mark the line of an error; 0 removes the mark."""
         self._area.set_error(line)
         if line:
             self._area.scroll_to_line(line)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Light the line that lets the time pass."""
+        """Highlight the line during which time passes."""
         in_run = snapshot.state not in (IDLE, ENDED) or snapshot.past
         if in_run != self._in_run:
             self._in_run = in_run
@@ -185,7 +186,7 @@ class Code(Vertical):
         self.show_line(line)
 
     def show_line(self, line: int) -> None:
-        """Light a line of the run's text, 0 for none, where it is in the text that is shown."""
+        """Highlight a line of the run's text, 0 for none, at its place in the text shown."""
         self._line = line
         lit = self._line_shown(line)
         self._area.light(lit)
@@ -193,7 +194,7 @@ class Code(Vertical):
             self._area.scroll_to_line(lit)
 
     def _line_shown(self, line: int) -> int:
-        """Where a line of the run's text is in the text that is shown, 0 if it is not there any more."""
+        """Return where a line of the run's text is in the text shown, 0 if it no longer exists."""
         if self._run_lines is None:
             return line
         lines = self._area.document.lines
@@ -204,10 +205,10 @@ class Code(Vertical):
     # Typing
 
     def start_typing(self, at_error: bool = False) -> None:
-        """Let letters go into the text.
+        """Start typing in the text.
 
         Args:
-            at_error: Begin on the line that is marked as wrong, if there is one.
+            at_error: Start on the line that is marked as an error, if there is one.
         """
         if not self._key:
             self.post_message(self.Wanted("none"))
@@ -218,7 +219,7 @@ class Code(Vertical):
         self._type(True)
 
     def stop_typing(self) -> None:
-        """Let letters be the app's keys again."""
+        """Stop typing: letters are keys of the app again."""
         self._type(False)
         self._area.scroll_to(x=0, animate=False, force=True)
 
@@ -229,7 +230,7 @@ class Code(Vertical):
             self.post_message(self.TypingChanged(typing))
 
     def on_text_area_changed(self, event: TextArea.Changed) -> None:
-        """Tell of an edit."""
+        """Report an edit."""
         event.stop()
         text = self._area.program_text
         if text != self._shown:
@@ -240,16 +241,16 @@ class Code(Vertical):
             self.post_message(self.Edited(text))
 
     def action_want(self, what: str) -> None:
-        """Ask the app for something."""
+        """Post a request to the app."""
         self.post_message(self.Wanted(what))
 
     def on_code_area_gutter_clicked(self, event: CodeArea.GutterClicked) -> None:
-        """A breakpoint, there or away."""
+        """Toggle a breakpoint."""
         event.stop()
         self.post_message(self.BreakpointToggled(event.line))
 
     def on_code_area_wanted(self, event: CodeArea.Wanted) -> None:
-        """Do what a key stands for."""
+        """Run the action of a key."""
         event.stop()
         match event.what:
             case "type":
@@ -267,10 +268,10 @@ class Code(Vertical):
             case what:
                 self.post_message(self.Wanted(what))
 
-    # Finding
+    # Find
 
     def on_find_bar_asked(self, event: FindBar.Asked) -> None:
-        """Go to a place in the text."""
+        """Go to a match."""
         event.stop()
         if event.mode == FIND:
             self._find(event.text, event.by)
@@ -281,7 +282,7 @@ class Code(Vertical):
             self._bar.say("a number, please")
 
     def on_find_bar_closed(self, event: FindBar.Closed) -> None:
-        """Back to the text."""
+        """Return the focus to the text."""
         event.stop()
         self._area.focus()
 

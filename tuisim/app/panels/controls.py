@@ -1,4 +1,4 @@
-"""Simulator controls: buttons for the mouse, and what the run is made of."""
+"""The simulator controls panel: buttons for the mouse, and the settings of the run."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Controls(Widget, can_focus=False):
         self._snapshot: Snapshot | None = None
 
     def set_program(self, name: str) -> None:
-        """Show the program's name; empty for none."""
+        """Show the name of the program; empty for none."""
         if name != self._program:
             self._program = name
             self.refresh()
@@ -54,7 +54,7 @@ class Controls(Widget, can_focus=False):
         return Text(f" {text} ", style + Style(meta={ACT: action}))
 
     def on_click(self, event: events.Click) -> None:
-        """Do what was clicked on."""
+        """Run the action that was clicked."""
         if name := event.style.meta.get(ACT):
             event.stop()
             self.post_message(Act(name))
@@ -71,7 +71,7 @@ class Controls(Widget, can_focus=False):
         return Text(_STATES.get(now.state, end_label(now.end)), style)
 
     def render(self) -> Text:
-        """Return the panel's content."""
+        """Return the content."""
         now = self._snapshot
         if now is None:
             return Text()

@@ -1,4 +1,4 @@
-"""Debug: where the program stands, what it waits for, its variables, watches, calls and threads."""
+"""The debug panel: where the program is paused, what it waits for, variables, watches, frames and threads."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Debug(Widget, can_focus=True):
-    """The panel."""
+    """The debug panel."""
 
     TITLE: ClassVar[str] = "Debug"
     ALLOW_SELECT = False
@@ -42,14 +42,14 @@ class Debug(Widget, can_focus=True):
     """
 
     class FrameWanted(Message):
-        """The caller of the frame is to be looked at, or what it called."""
+        """Posted to select the caller of the frame, or the function that it called."""
 
         def __init__(self, by: int) -> None:
             super().__init__()
             self.by = by
 
     class ThreadWanted(Message):
-        """The next thread is to be looked at."""
+        """Posted to select the next thread."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -62,28 +62,28 @@ class Debug(Widget, can_focus=True):
         self._lines: list[Line] = []
 
     def compose(self) -> ComposeResult:
-        """The text is the only child."""
+        """Create the child widgets."""
         yield self._view
 
     def on_focus(self) -> None:
-        """Say which keys work here."""
+        """Show which keys work here."""
         self.border_subtitle = "↑↓ scroll · ←→ calls · ⏎ thread"
 
     def on_blur(self) -> None:
-        """The keys are the app's again."""
+        """The keys belong to the app again."""
         self.border_subtitle = ""
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show whether the program runs; where it stands comes by `show_debugging`."""
+        """Show whether the program runs; the place of a pause comes with `show_debugging`."""
         now = snapshot.instant.tick, snapshot.time_s
-        # While it runs it stands nowhere, and there is nothing that could be of another instant.
+        # While it runs, it has no current line, and nothing can belong to another instant.
         if snapshot.state != self._state or (now != self._now and self._content.paused):
             self._state, self._now = snapshot.state, now
             self._draw()
         self._now = now
 
     def show_debugging(self, debugging: AppDebugger) -> None:
-        """Show where the program stands."""
+        """Show where the program is paused."""
         standing, busy = debugging.standing, debugging.busy
         if standing is None:
             self._content = DebugView(busy=busy)
@@ -107,29 +107,29 @@ class Debug(Widget, can_focus=True):
         self._view.set_lines(self._lines[self._top : self._top + size.height])
 
     def action_scroll_lines(self, by: int) -> None:
-        """Move the text."""
+        """Scroll the text."""
         self._top = max(0, self._top + by)
         self._draw()
 
     def action_frame(self, by: int) -> None:
-        """Look at another frame."""
+        """Select another frame."""
         self.post_message(self.FrameWanted(by))
 
     def action_thread(self) -> None:
-        """Look at another thread."""
+        """Select another thread."""
         self.post_message(self.ThreadWanted())
 
     def on_mouse_scroll_down(self) -> None:
-        """Scroll by the wheel."""
+        """Scroll with the wheel."""
         self.action_scroll_lines(2)
 
     def on_mouse_scroll_up(self) -> None:
-        """Scroll by the wheel."""
+        """Scroll with the wheel."""
         self.action_scroll_lines(-2)
 
 
 def _line_of(paused: Paused) -> str:
-    """The line of a module beside the program; empty for the program itself, or if it cannot be read."""
+    """Return the line of a module beside the program; empty for the program itself, or if it cannot be read."""
     if not paused.file:
         return ""
     linecache.checkcache(paused.file)

@@ -1,4 +1,4 @@
-"""Instrumentation: what motors and sensors read, and where and when the robot is."""
+"""The instrumentation panel: readings of motors and sensors, pose and time."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from tuisim.core.sensors.color import ColorReading
 from tuisim.logs.units import unit_of
 
 _PERIOD_S = 0.1
-"""Figures that change faster cannot be read."""
+"""Values that change faster cannot be read."""
 
 _LABEL = Style(color="#a8a8a8")
 _VALUE = Style(color="#ffffff", bold=True)
 _UNIT = Style(color="#a8a8a8")
 _WARNING = Style(color="#ff6e6e", bold=True)
 _COLUMN = 12
-"""Width of the labels where there is room."""
+"""Width of the labels if there is room."""
 
 
 class Instrumentation(Widget):
-    """The panel. It has three forms, by height: 11 lines, 9 lines, 6 lines."""
+    """The instrumentation panel. It has three forms, by height: 11 lines, 9 lines, 6 lines."""
 
     TITLE: ClassVar[str] = "Instrumentation"
 
@@ -47,7 +47,7 @@ class Instrumentation(Widget):
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """The text is the only child."""
+        """Create the child widgets."""
         yield self._text
 
     def on_resize(self) -> None:
@@ -55,7 +55,7 @@ class Instrumentation(Widget):
         self.call_after_refresh(self._draw)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment, a few times a second at most."""
+        """Show a moment; at most a few updates per second."""
         self._snapshot = snapshot
         self._throttle.ask()
 
@@ -70,7 +70,7 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     Args:
         now: The moment.
         width: Columns, 18 or more for whole words.
-        height: Rows; with fewer than 6 the last lines are left out.
+        height: Rows; with fewer than 6, the last lines are omitted.
     """
     motors = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
     sensors = [(f"Sensor{at}", now.colors.get(s.name)) for at, s in enumerate(now.spec.robot.color_sensors, 1)]
@@ -97,7 +97,7 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
 
 
 def _further(column: str, value: float, width: int) -> Line:
-    """A sensor that not every robot has, by its telemetry column."""
+    """Return the line of a sensor that not every robot has, by its telemetry column."""
     name, _, what = column.rpartition("_")
     if what == "pressed":
         shown, unit = "pressed" if value else "released", ""
@@ -113,7 +113,7 @@ def _further(column: str, value: float, width: int) -> Line:
 
 
 def _fit(width: int, *variants: Sequence[Run]) -> Line:
-    """Return the first variant that is not too long, or the last one."""
+    """Return the first variant that fits, or the last one."""
     for variant in variants:
         if sum(len(text) for text, _ in variant) <= width:
             return list(variant)
@@ -143,7 +143,7 @@ def _wheel(now: Snapshot, name: str, short: str, width: int) -> Line:
 
 
 def _motor(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
-    """A motor's counts and speed, or a warning in place of that."""
+    """Return the line of a motor's counts and speed, or a warning instead."""
     warns = speed[1] is _WARNING
     unit, close = (_unit(""), _unit("")) if warns else (_unit(" °/s"), _unit("°/s"))
     return _fit(

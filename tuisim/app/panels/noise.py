@@ -1,4 +1,4 @@
-"""Noise: how far readings and wheels stray, by sliders that act at once, and the seed of the next run."""
+"""The noise panel: sliders for the noise of sensors and motors, which act at once, and the seed of the next run."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ _USE = "At once; seed at next run"
 
 
 class Noise(Vertical):
-    """Two sliders with a field each, and the seed."""
+    """The noise panel: two sliders with a field each, and the seed."""
 
     TITLE: ClassVar[str] = "Noise"
 
     @dataclass
     class Changed(Message):
-        """The user wants other noise."""
+        """Posted when the user sets the noise."""
 
         noise: NoiseSpec
 
     @dataclass
     class Seeded(Message):
-        """The user wants another seed."""
+        """Posted when the user sets the seed."""
 
         seed: int
 
@@ -47,7 +47,7 @@ class Noise(Vertical):
         self._past = False
 
     def compose(self) -> ComposeResult:
-        """A row for each number, and a line that says what is wrong."""
+        """Create the child widgets."""
         for kind, (name, maximum) in _KINDS.items():
             with Horizontal(classes="field"):
                 yield Label(f"{name}", markup=False)
@@ -59,11 +59,11 @@ class Noise(Vertical):
         yield Static(_USE, id="message", markup=False)
 
     def begin(self) -> None:
-        """Take the focus: a slider, on which letters are still keys of the app; tab leads to its number."""
+        """Focus a slider, where letters are still keys of the app; tab leads to its number field."""
         self.query_one("#light", Slider).focus()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show noise and seed as they were last chosen, here or elsewhere; of a former instant its own noise."""
+        """Show the noise and seed last set, here or elsewhere; for a past instant, its own noise."""
         if not self.is_mounted or not self.query(Slider):
             return
         self._past = snapshot.past
@@ -86,14 +86,14 @@ class Noise(Vertical):
         event.stop()
         self.query_one(f"#{event.slider.id}-number", Input).value = str(event.value)
         self._say("")
-        # In the past it is asked only at the end what is to come of that.
+        # In the past, the question about a branch comes at the end of the drag only.
         if event.done or not self._past:
             self._choose()
 
     def _choose(self) -> None:
         light, motor = (self.query_one(f"#{kind}", Slider).value for kind in _KINDS)
         if self._past:
-            # The past stays as it is, whether a branch comes of this or not.
+            # The past stays as it is, whether or not a branch follows.
             self._shown = None
         self.post_message(self.Changed(NoiseSpec(light, motor)))
 
@@ -103,7 +103,7 @@ class Noise(Vertical):
         self._take(event.input)
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Take what was typed when its field is left."""
+        """Apply a typed value when its field loses the focus."""
         if isinstance(event.widget, Input):
             self._take(event.widget)
 

@@ -1,4 +1,4 @@
-"""Obstacles under the mouse: where one is taken hold of, moved, or drawn anew."""
+"""Obstacles and the mouse: hit test, moving and drawing."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
 
 GRID_MM = 5.0
-"""Places and sizes drawn with the mouse are multiples of this."""
+"""Positions and sizes set with the mouse are multiples of this."""
 LEAST_MM = 20.0
-"""What is drawn smaller was a click."""
+"""A drag smaller than this is a click."""
 
 
 def _to_grid(value_mm: float) -> float:
@@ -21,10 +21,10 @@ def box_at(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: float)
     """Return the index of the topmost box at a point, None for none.
 
     Args:
-        boxes: The later ones lie on top.
+        boxes: Later ones are on top.
         x_mm: World x.
         y_mm: World y.
-        slack_mm: So far beside a box still counts: one may be thinner than a cell.
+        slack_mm: Tolerance around a box, which may be thinner than a cell.
     """
     for index in reversed(range(len(boxes))):
         box = boxes[index]
@@ -36,17 +36,17 @@ def box_at(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: float)
 
 @dataclass(frozen=True, slots=True)
 class BoxGrip:
-    """A drag under way: of a box, or one that draws a new box."""
+    """A drag in progress, which moves a box or draws a new one."""
 
     boxes: tuple[Obstacle, ...]
-    """As they were when the drag began."""
+    """The boxes at the start of the drag."""
     index: int | None
-    """The box that is held; None draws a new one."""
+    """The box that is dragged; None draws a new one."""
     x_mm: float
     y_mm: float
 
     def dragged_to(self, x_mm: float, y_mm: float) -> tuple[tuple[Obstacle, ...], int] | None:
-        """Return the boxes with the mouse at a point, and the index of the one at hand; None if nothing is changed."""
+        """Return the boxes with the mouse at a point, and the index of the dragged one; None if nothing has changed."""
         if self.index is None:
             box = self._drawn(x_mm, y_mm)
             return None if box is None else ((*self.boxes, box), len(self.boxes))

@@ -1,4 +1,4 @@
-"""Obstacles: a list of boxes, to be typed, or drawn and dragged in the world while this panel is shown."""
+"""The obstacles panel: a list of boxes to edit; while it is shown, the mouse can draw and drag them in the world."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _NONE = "none: a drag draws one"
 
 
 def box_label(number: int, box: Obstacle) -> str:
-    """Return the line of one obstacle."""
+    """Return the list entry of an obstacle."""
     return f"{number:>2}  {box.width_mm:g}×{box.height_mm:g} at {box.x_mm:g}, {box.y_mm:g}"
 
 
 class Obstacles(Vertical):
-    """The list, the four numbers of the box at hand, and what can be done."""
+    """The obstacles panel: the list, the four numbers of the selected box, and the actions."""
 
     TITLE: ClassVar[str] = "Obstacles"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -42,13 +42,13 @@ class Obstacles(Vertical):
 
     @dataclass
     class Edited(Message):
-        """The user wants these obstacles."""
+        """Posted when the user has edited the obstacles."""
 
         obstacles: tuple[Obstacle, ...]
 
     @dataclass
     class Marked(Message):
-        """Another obstacle is at hand."""
+        """Posted when another obstacle was selected."""
 
         index: int | None
 
@@ -57,10 +57,10 @@ class Obstacles(Vertical):
         self.border_title = self.TITLE
         self._boxes: tuple[Obstacle, ...] = ()
         self.at: int | None = None
-        """Index of the obstacle at hand."""
+        """Index of the selected obstacle."""
 
     def compose(self) -> ComposeResult:
-        """List, four fields in two rows, what can be done, and what is wrong."""
+        """Create the child widgets."""
         yield OptionList(compact=True)
         for pair in (("x_mm", "y_mm"), ("width_mm", "height_mm")):
             with Horizontal(classes="field"):
@@ -76,7 +76,7 @@ class Obstacles(Vertical):
         yield Static(_USE, id="message", markup=False)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Nothing: it shows plans, not moments."""
+        """Do nothing: this panel shows plans, not moments."""
 
     def show_plan(self, plan: NextRun) -> None:
         """Show the obstacles of the next run."""
@@ -93,12 +93,12 @@ class Obstacles(Vertical):
         self.post_message(self.Marked(self.at))
 
     def begin(self) -> None:
-        """Take the focus: the list, in which letters are still keys of the app."""
+        """Focus the list, where letters are still keys of the app."""
         self.query_one(OptionList).focus()
         self.post_message(self.Marked(self.at))
 
     def mark(self, index: int | None) -> None:
-        """Have another obstacle at hand."""
+        """Select another obstacle."""
         self.query_one(OptionList).highlighted = index
 
     def _list(self) -> None:
@@ -137,7 +137,7 @@ class Obstacles(Vertical):
         self._take(event.input)
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Take what was typed when its field is left."""
+        """Apply a typed value when its field loses the focus."""
         if isinstance(event.widget, Input) and not event.widget.disabled:
             self._take(event.widget)
 
@@ -155,21 +155,21 @@ class Obstacles(Vertical):
         self.edit((*self._boxes[: self.at], box, *self._boxes[self.at + 1 :]))
 
     def action_add(self) -> None:
-        """Put a box into the middle of the field."""
+        """Add a box in the middle of the field."""
         middle = ((FIELD_WIDTH_MM - _NEW_SIZE_MM) // 2, (FIELD_HEIGHT_MM - _NEW_SIZE_MM) // 2)
-        # One on top of another would not be seen.
+        # A box on top of another would be invisible.
         shift = 20.0 * len(self._boxes)
         self.edit((*self._boxes, Obstacle(middle[0] + shift, middle[1], _NEW_SIZE_MM, _NEW_SIZE_MM)))
 
     def action_remove(self) -> None:
-        """Take the box at hand away."""
+        """Remove the selected box."""
         if self.at is None:
             self._say("There is none to remove")
             return
         self.edit((*self._boxes[: self.at], *self._boxes[self.at + 1 :]))
 
     def edit(self, boxes: Sequence[Obstacle]) -> None:
-        """Ask for other obstacles."""
+        """Request other obstacles."""
         self.post_message(self.Edited(tuple(boxes)))
 
     def _say(self, wrong: str) -> None:

@@ -1,4 +1,4 @@
-"""Output panel: what the program printed, said and was answered, and the field for `input()`."""
+"""The output panel: prints, speech and answers of a run, and the field for `input()`."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ class Answer(Input):
     ]
 
     class EndOfFile(Message):
-        """The user gave end of file instead of an answer."""
+        """Posted when the user sends end of file instead of an answer."""
 
     def action_end_of_file(self) -> None:
-        """Answer with end of file."""
+        """Send end of file."""
         self.post_message(self.EndOfFile())
 
 
 class Output(Vertical):
-    """What the program prints."""
+    """The output panel."""
 
     TITLE: ClassVar[str] = "Output"
 
     class Answered(Message):
-        """The user answered `input()`; None is end of file."""
+        """Posted when the user has answered `input()`; None is end of file."""
 
         def __init__(self, text: str | None) -> None:
             super().__init__()
@@ -49,33 +49,36 @@ class Output(Vertical):
         self.border_title = self.TITLE
         self._log = Log()
         self._past_log = Log()
-        """What there was at a former time, shown instead of all of it."""
+        """The output up to a past instant, shown instead of the whole output."""
         self._past_log.display = False
         self.asking = False
-        """Whether the field for `input()` is there."""
+        """Whether the field for `input()` is shown."""
 
     def compose(self) -> ComposeResult:
-        """The lines; the field comes when it is wanted."""
+        """Create the child widgets."""
         yield self._log
         yield self._past_log
 
     def clear(self) -> None:
-        """Forget every line."""
+        """Remove every line."""
         self._log.clear()
 
     def look_back(self, rows: Sequence[OutputRow] | None, before: int = 0) -> None:
-        """Show what there was at a former time: its last rows, after `before` others. None: all again."""
+        """Show the output up to a past instant: its last rows, after `before` others.
+
+        None shows the whole output again.
+        """
         self._log.display, self._past_log.display = rows is None, rows is not None
         if rows is not None:
             self._past_log.clear()
             self._past_log.add(rows, before)
 
     def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
-        """Append rows; `skipped` ones before them are only counted."""
+        """Append rows; `skipped` rows before them are only counted."""
         self._log.add(rows, skipped)
 
     def note(self, text: str) -> None:
-        """Append a line that is not the program's."""
+        """Append a line of the app itself."""
         self._log.add([OutputRow(text, 0, 0, 0, NOTE)])
 
     def ask(self, prompt: str) -> None:
@@ -87,7 +90,7 @@ class Output(Vertical):
         answer.focus()
 
     def stop_asking(self) -> None:
-        """Take the field away."""
+        """Remove the field."""
         self.asking = False
         self.query(".prompt, Answer").remove()
 
@@ -102,8 +105,8 @@ class Output(Vertical):
         self._answer(None)
 
     def _answer(self, text: str | None) -> None:
-        # The field goes when the run says that it no longer waits.
+        # The field is removed when the run reports that it no longer waits.
         self.post_message(self.Answered(text))
 
     def show(self, snapshot: Snapshot) -> None:
-        """Rows come by `add`."""
+        """Do nothing: rows arrive through `add`."""

@@ -1,4 +1,4 @@
-"""Lines of the output panel: the newest at the bottom, only changed rows sent to the terminal."""
+"""The lines of the output panel: the newest at the bottom, only changed rows are sent to the terminal."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_o
 
 KEPT_LINES = 2000
 MAX_LINE_CHARS = 2000
-"""What of one line is shown."""
+"""Longest part of a line that is shown."""
 
 NOTE = 0
-"""Stream of a line that is not the program's."""
+"""Stream of a line of the app itself."""
 
 _STYLES = {STDOUT: "", STDERR: "log--error", SPEECH: "log--speech", INPUT: "log--answer", NOTE: "log--note"}
 
@@ -30,7 +30,7 @@ Line = tuple[str, int]
 
 
 def plain(text: str) -> str:
-    """Return text without what a terminal would obey: tabs become spaces, other controls a dot."""
+    """Return a text without control characters: tabs become spaces, others a dot."""
     if text.isprintable():
         return text
     return "".join(char if char.isprintable() else "·" for char in text.expandtabs(4))
@@ -56,7 +56,7 @@ def shown_lines(row: OutputRow, width: int) -> list[str]:
 class Log(Widget, can_focus=True):
     """The lines; follows the newest unless scrolled up."""
 
-    # A ScrollView repaints all its rows for each new line; here rows that stay the same are not sent again.
+    # A ScrollView repaints all rows for each new line; this widget does not resend unchanged rows.
     COMPONENT_CLASSES: ClassVar[set[str]] = {"log--error", "log--speech", "log--answer", "log--note", "log--thumb"}
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -72,17 +72,17 @@ class Log(Widget, can_focus=True):
         super().__init__()
         self._rows: deque[OutputRow] = deque(maxlen=KEPT_LINES)
         self._count = 0
-        """Rows ever added."""
+        """Number of rows ever added."""
         self._lines: list[Line] = []
         self._top: int | None = None
-        """First line in view; None follows the newest."""
+        """First visible line; None follows the newest."""
         self._shown: list[tuple[Line, bool]] = []
-        """Each row of the screen: its line, and whether the scroll thumb is on it."""
+        """For each row of the screen: its line, and whether the scroll thumb covers it."""
 
     # Content
 
     def clear(self) -> None:
-        """Forget every line."""
+        """Remove every line."""
         self._rows.clear()
         self._lines.clear()
         self._count = 0
@@ -90,7 +90,7 @@ class Log(Widget, can_focus=True):
         self._update()
 
     def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
-        """Append rows; `skipped` ones before them are only counted. What is no line of text is left out."""
+        """Append rows; `skipped` rows before them are only counted. Rows that are not text are ignored."""
         texts = [row for row in rows if row.stream in _STYLES]
         self._count += len(texts) + skipped
         newest = texts[-KEPT_LINES:]
@@ -99,7 +99,7 @@ class Log(Widget, can_focus=True):
         self._update()
 
     def _wrap(self, rows: Iterable[OutputRow]) -> None:
-        # The last column is the thumb's.
+        # The last column belongs to the scroll thumb.
         width = self.size.width - 1
         if width < 1:
             return
@@ -112,7 +112,7 @@ class Log(Widget, can_focus=True):
                 self._top = max(0, self._top - too_many)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Wrap anew."""
+        """Wrap the lines for the new width."""
         self._lines.clear()
         self._wrap(self._rows)
         self._shown.clear()
@@ -122,7 +122,7 @@ class Log(Widget, can_focus=True):
 
     @property
     def _all(self) -> int:
-        """How many lines there are to scroll through; the first may say what is not kept."""
+        """Return the number of lines to scroll through; the first one may stand for rows no longer kept."""
         return len(self._lines) + (1 if self._count > len(self._rows) else 0)
 
     def _line(self, at: int) -> Line:
@@ -169,23 +169,23 @@ class Log(Widget, can_focus=True):
     # Scrolling
 
     def action_scroll_lines(self, lines: int) -> None:
-        """Scroll down by some lines, or up by a negative number."""
+        """Scroll down by a number of lines; negative scrolls up."""
         last_top = max(0, self._all - self.size.height)
         top = (last_top if self._top is None else self._top) + lines
-        # Scrolled to the end, the newest line is followed again.
+        # Scrolled to the end, the view follows the newest line again.
         self._top = None if top >= last_top else max(0, top)
         self._update()
 
     def action_scroll_pages(self, pages: int) -> None:
-        """Scroll by some screens."""
+        """Scroll by a number of pages."""
         self.action_scroll_lines(pages * max(1, self.size.height - 1))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Wheel up."""
+        """Scroll up."""
         event.stop()
         self.action_scroll_lines(-3)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        """Wheel down."""
+        """Scroll down."""
         event.stop()
         self.action_scroll_lines(3)

@@ -1,4 +1,4 @@
-"""Positioning: type in where the robot is to stand."""
+"""The positioning panel: type the pose of the robot."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tuisim.config.options import MAX_ANGLE_DEG, MAX_POSITION_MM
 from tuisim.core.geometry import Pose, shown_heading_deg
 
 _FIELDS = {"x": ("X", "mm", MAX_POSITION_MM), "y": ("Y", "mm", MAX_POSITION_MM), "angle": ("Angle", "°", MAX_ANGLE_DEG)}
-"""By id: name, unit, and the largest value either way."""
+"""By id: name, unit, and the largest absolute value."""
 _USE = "Enter places the robot"
 
 
@@ -25,7 +25,7 @@ def parse_field(field: str, text: str) -> float:
     """Return the number typed into a field.
 
     Raises:
-        ValueError: it is none, or out of range; the text says what is allowed.
+        ValueError: the text is no number, or out of range; the message says what is allowed.
     """
     name, _, limit = _FIELDS[field]
     try:
@@ -38,12 +38,12 @@ def parse_field(field: str, text: str) -> float:
 
 
 class Positioning(Vertical):
-    """X, Y and angle of the robot."""
+    """The positioning panel: X, Y and angle of the robot."""
 
     TITLE: ClassVar[str] = "Positioning"
 
     class Applied(Message):
-        """The user wants the robot at a pose."""
+        """Posted when the user sets the pose."""
 
         def __init__(self, pose: Pose) -> None:
             super().__init__()
@@ -55,7 +55,7 @@ class Positioning(Vertical):
         self._shown = {"x": "", "y": "", "angle": ""}
 
     def compose(self) -> ComposeResult:
-        """Three fields, two buttons, and a line that says what is wrong."""
+        """Create the child widgets."""
         for field, (name, unit, _) in _FIELDS.items():
             with Horizontal(classes="field"):
                 yield Label(f"{name}, {unit}", markup=False)
@@ -67,7 +67,7 @@ class Positioning(Vertical):
         yield Static(_USE, id="message", markup=False)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show the pose in the fields that are not being typed into."""
+        """Show the pose in the fields that are not being edited."""
         pose = snapshot.instant.pose
         values = {"x": pose.x_mm, "y": pose.y_mm, "angle": shown_heading_deg(pose.heading_deg)}
         for field, value in values.items():
@@ -79,7 +79,7 @@ class Positioning(Vertical):
                     entry.remove_class("wrong")
 
     def _typing(self, entry: Input) -> bool:
-        # A field with a word in it that was not put there by `show` is left alone until it is applied.
+        # A field with text that `show` did not put there stays unchanged until it is applied.
         return entry.has_focus and entry.value != self._shown[entry.id or ""]
 
     @on(Input.Submitted)

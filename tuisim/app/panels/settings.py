@@ -1,4 +1,4 @@
-"""Settings: every field of robot, pen and world, each with what is wrong with it below."""
+"""The settings panel: every field of robot, pen and world, each with its error below."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LINKS = (
 
 
 class Settings(VerticalScroll, can_focus=False):
-    """A form as long as it takes, scrolled."""
+    """The settings panel: a scrolled form."""
 
     TITLE: ClassVar[str] = "Settings"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -34,7 +34,7 @@ class Settings(VerticalScroll, can_focus=False):
 
     @dataclass
     class Edited(Message):
-        """The user has entered a value."""
+        """Posted when the user has entered a value."""
 
         row: Row
         edit: Field
@@ -46,17 +46,17 @@ class Settings(VerticalScroll, can_focus=False):
         self._plan: NextRun | None = None
         self._fields: list[str] = []
         self._begins = False
-        """Whether it is to take the focus as soon as it has fields."""
+        """Whether to focus the form as soon as it has fields."""
 
     def compose(self) -> ComposeResult:
-        """What can be done besides; the form follows with the plan."""
+        """Create the child widgets."""
         for pair in _LINKS:
             with Horizontal(classes="links"):
                 for action, words in pair:
                     yield Static(f"[@click=app.act('{action}')]{words}[/]")
 
     def show(self, snapshot: Snapshot) -> None:
-        """Nothing: it shows plans, not moments."""
+        """Do nothing: this panel shows plans, not moments."""
 
     def show_plan(self, plan: NextRun) -> None:
         """Show the plan of the next run."""
@@ -72,7 +72,7 @@ class Settings(VerticalScroll, can_focus=False):
                 row.show(edit.read(plan))
 
     async def _rebuild(self, parts: list[FieldGroup]) -> None:
-        """Another robot may have other sensors, so other fields."""
+        """Rebuild the form: another robot may have other sensors, and so other fields."""
         focused = next((row.field for row in self.query(Row) if row.entry.has_focus), None)
         await self.query(".form").remove()
         for part in parts:
@@ -89,7 +89,7 @@ class Settings(VerticalScroll, can_focus=False):
             self.begin()
 
     def begin(self) -> None:
-        """Take the focus: it goes to a field in which letters are still keys of the app."""
+        """Focus a field in which letters are still keys of the app."""
         choice = next(iter(self.query(Choice)), None)
         self._begins = choice is None
         if choice:

@@ -1,4 +1,4 @@
-"""Time bar: the row under the world that shows the run's time, what stood out in it, and where one is."""
+"""The time bar: the row below the world with the run's time, its markers, and the instant in view."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from tuisim.charts.text_runs import Run
 from tuisim.runs.recording import ERROR, SAMPLE
 
 MIN_BAR_COLS = 12
-"""The bar is not made shorter than this for the sake of the words beside it."""
+"""Minimum length of the bar, whatever the text beside it."""
 
 _PAST, _LATER, _BEYOND = Style(color="#5fafff"), Style(color="#44505e"), Style(color="#2a333d")
 _CURSOR = Style(color="#10151c", bgcolor="#ffd75f", bold=True)
 _WORDS, _STRONG = Style(color="#9fb0c3"), Style(color="#ffd75f", bold=True)
 
-# The most telling first: where several fall into one cell, that one is shown.
+# By priority: of several markers in one cell, the first in this order is shown.
 _MARKS: Mapping[str, tuple[str, Style]] = {
     ERROR: ("✗", Style(color="#ff6e6e", bold=True)),
     BREAK: ("●", Style(color="#ff8787")),
@@ -34,34 +34,34 @@ _MARKS: Mapping[str, tuple[str, Style]] = {
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """What the bar shows."""
+    """The times that the bar shows."""
 
     tick: int
-    """The one that is looked at."""
+    """The tick in view."""
     newest: int
     tick_hz: int
     past: bool
     over: bool
-    """Whether the run has ended, so that its end is the end of the bar."""
+    """Whether the run has ended, so that the bar ends at the run's end."""
 
     @property
     def end_s(self) -> float:
-        """Time at the right end: that of the run once it is over, and before that a round one."""
+        """Time at the right end: the end of a finished run, else a round time."""
         now_s = self.newest / self.tick_hz
         return max(now_s, 1 / self.tick_hz) if self.over else time_limits(now_s)[1]
 
     def column(self, tick: int, columns: int) -> int:
-        """Return where a tick is in a bar of so many columns."""
+        """Return the column of a tick in a bar of that length."""
         return min(columns - 1, round(tick / self.tick_hz / self.end_s * (columns - 1)))
 
     def tick_at(self, column: int, columns: int) -> int:
-        """Return the tick at a column; one beyond the newest is the newest."""
+        """Return the tick at a column, at most the newest one."""
         share = min(max(column, 0), columns - 1) / max(columns - 1, 1)
         return min(self.newest, round(share * self.end_s * self.tick_hz))
 
 
 def words(moment: Moment, width: int) -> str:
-    """Return what stands beside the bar, as much as there is room for."""
+    """Return the text beside the bar, as much as fits."""
     at_s, now_s = moment.tick / moment.tick_hz, moment.newest / moment.tick_hz
     if not moment.past:
         return f"{now_s:.2f} s"
@@ -73,7 +73,7 @@ def words(moment: Moment, width: int) -> str:
 
 
 def mark_cells(moment: Moment, marks: Iterable[tuple[int, str]], columns: int) -> dict[int, Run]:
-    """Return the marks by column."""
+    """Return the markers by column."""
     order = list(_MARKS)
     found: dict[int, int] = {}
     for tick, kind in marks:
@@ -83,7 +83,7 @@ def mark_cells(moment: Moment, marks: Iterable[tuple[int, str]], columns: int) -
 
 
 def bar_cells(moment: Moment, marks: Mapping[int, Run], columns: int) -> list[Run]:
-    """Return the bar."""
+    """Return the cells of the bar."""
     here, now = moment.column(moment.tick, columns), moment.column(moment.newest, columns)
     cells: list[Run] = [
         ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND) for at in range(columns)
@@ -96,28 +96,28 @@ def bar_cells(moment: Moment, marks: Mapping[int, Run], columns: int) -> list[Ru
 
 
 class TimeBar(LinesView):
-    """The row."""
+    """The time bar."""
 
     DEFAULT_CSS = "TimeBar { height: 1; width: 1fr; display: none; }"
 
     @dataclass
     class Scrubbed(Message):
-        """The user chose an instant; None is now."""
+        """Posted when the user chooses an instant; None is now."""
 
         tick: int | None
 
     def __init__(self) -> None:
         super().__init__()
         self.marks: Callable[[], Sequence[tuple[int, str]]] = tuple
-        """Gives the ticks that stand out, with what they stand for."""
+        """Returns the marked ticks, with the kind of each marker."""
         self._moment: Moment | None = None
         self._columns = 0
         self._marked: tuple[object, dict[int, Run]] = None, {}
-        """The marks as they are drawn, and what they were made from."""
+        """The markers as drawn, and the data they were made from."""
         self._dragging = False
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment of a run; before the first there is no bar."""
+        """Show a moment of a run; before the first run there is no bar."""
         there = snapshot.state != IDLE and (snapshot.now_tick > 0 or snapshot.past)
         if self.display != there:
             self.display = there
@@ -152,7 +152,7 @@ class TimeBar(LinesView):
             self.post_message(self.Scrubbed(None if tick >= self._moment.newest else tick))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go where the mouse is, and follow it; the words beside the bar lead back to now."""
+        """Go to the instant at the mouse, and follow it; the text beside the bar returns to now."""
         if event.button != 1 or self._moment is None:
             return
         if event.x >= self._columns:
@@ -169,12 +169,12 @@ class TimeBar(LinesView):
             self._choose(event)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Stay there."""
+        """Stop following the mouse."""
         if self._dragging:
             event.stop()
             self._dragging = False
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Stay there: a dialog has taken the mouse."""
+        """Stop following the mouse: a dialog has captured it."""
         self._dragging = False

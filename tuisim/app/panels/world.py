@@ -1,4 +1,4 @@
-"""World: the mat from above with robot, pen trace, rays and obstacles; the robot can be dragged."""
+"""The world panel: the mat from above with robot, pen trace, rays and obstacles; the robot can be dragged."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 
 TURN_STEP_DEG = 5.0
-"""How far one notch of the mouse wheel turns the robot."""
+"""Turn of the robot per notch of the mouse wheel."""
 
 _RAY_LAG_PX = 1.0
-"""Rays are cast anew once the robot has moved so far or turned them so far at their ends:
-they change far more cells than the robot does, and this little cannot be seen."""
+"""Rays are recomputed once their ends have moved this far: they change far more cells than the robot does, and a
+smaller move is invisible."""
 
 _ANY_PEN = PenSpec()
 
 _SHOWS_UNTIL_TAKEN = 10
-"""Moments shown before a dropped robot that was not taken jumps back."""
+"""Number of updates after which a dropped robot that was not accepted jumps back."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Grip:
-    """A drag under way: where it began."""
+    """A drag in progress: where it began."""
 
     pose: Pose
     x_mm: float
@@ -49,7 +49,7 @@ class _Grip:
 
 
 class World(Widget, can_focus=True):
-    """The panel: a frame around the picture."""
+    """The world panel: a frame around the picture."""
 
     TITLE: ClassVar[str] = "World"
 
@@ -60,9 +60,9 @@ class World(Widget, can_focus=True):
 
     @dataclass
     class PoseDragged(Message):
-        """The user moved or turned the robot.
+        """Posted while the user moves or turns the robot.
 
-        `done` is False while the mouse button is still down.
+        `done` is False while the mouse button is down.
         """
 
         pose: Pose
@@ -70,7 +70,7 @@ class World(Widget, can_focus=True):
 
     @dataclass
     class BoxesDragged(Message):
-        """The user moved an obstacle or drew a new one."""
+        """Posted when the user has moved an obstacle or drawn a new one."""
 
         obstacles: tuple[Obstacle, ...]
         index: int
@@ -83,7 +83,7 @@ class World(Widget, can_focus=True):
         self.time_bar = TimeBar()
 
     def compose(self) -> ComposeResult:
-        """The picture, and the time below it."""
+        """Create the child widgets."""
         yield self._view
         yield self.time_bar
 
@@ -94,7 +94,7 @@ class World(Widget, can_focus=True):
         self.post_message(self.BoxesDragged(obstacles, index))
 
     def edit_boxes(self, on: bool, marked: int | None = None) -> None:
-        """Let the mouse draw and move obstacles, or not; the one at hand is marked."""
+        """Enable or disable drawing and moving obstacles with the mouse; `marked` is the selected one."""
         self.border_subtitle = "drag draws or moves an obstacle" if on else ""
         self._view.edit_boxes(on, marked)
 
@@ -110,7 +110,7 @@ class World(Widget, can_focus=True):
 
     @property
     def zoom(self) -> int:
-        """1, 2 or 4; above 1 the view follows the robot."""
+        """Zoom factor: 1, 2 or 4; above 1 the view follows the robot."""
         return self._view.zoom
 
     @zoom.setter
@@ -120,25 +120,25 @@ class World(Widget, can_focus=True):
         self._view.repaint_scene()
 
     def cycle_zoom(self) -> None:
-        """Go to the next zoom, and from the last to the first."""
+        """Go to the next zoom factor, and from the last to the first."""
         self.zoom = ZOOMS[(ZOOMS.index(self.zoom) + 1) % len(ZOOMS)]
 
     def set_mat(self, pixels: Pixels) -> None:
-        """Lay out a mat: shape (1143, 2362, 3), one pixel a mm. Until then the panel is blank."""
+        """Set the mat: shape (1143, 2362, 3), one pixel per mm. Until then the panel is blank."""
         self._view.set_mat(pixels)
 
     def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = _ANY_PEN) -> None:
-        """Add points that a pen drew, joined to those before; NaN lifts it."""
+        """Add points that a pen drew, joined to the previous ones; NaN lifts the pen."""
         self._view.trace.add(np.array(xs_mm), np.array(ys_mm), pen)
 
     def clear_trace(self) -> None:
-        """Forget the trace."""
+        """Clear the trace."""
         self._view.clear_trace()
 
     def show_past_trace(
         self, points_mm: tuple[Sequence[float], Sequence[float]] | None, pen: PenSpec = _ANY_PEN
     ) -> None:
-        """Show what a pen had drawn at a former time, x and y, instead of all that was drawn; None: all again."""
+        """Show the trace up to a past instant, x and y, instead of the whole trace; None shows all again."""
         past = None
         if points_mm is not None:
             past = PenTrace()
@@ -157,7 +157,7 @@ class WorldView(PixelView):
 
     Args:
         dragged: Called with a pose and whether the drag is over.
-        boxes_dragged: Called with the obstacles after a drag of one, and its index.
+        boxes_dragged: Called with the obstacles after a drag, and the index of the dragged one.
     """
 
     def __init__(
@@ -173,12 +173,12 @@ class WorldView(PixelView):
         self._edits_boxes = False
         self._box_grip: BoxGrip | None = None
         self._draft: tuple[Obstacle, ...] | None = None
-        """The obstacles as the drag under way makes them."""
+        """The obstacles during the current drag."""
         self._marked: int | None = None
         self._mat: Pixels | None = None
         self.trace = PenTrace()
         self.past_trace: PenTrace | None = None
-        """Shown instead of `trace` while a former time is looked at."""
+        """Shown instead of `trace` while a past instant is in view."""
         self._trace_drawn = 0
         self._painter: ScenePainter | None = None
         self._port: Viewport | None = None
@@ -193,24 +193,24 @@ class WorldView(PixelView):
         self.repaint_scene()
 
     def set_mat(self, pixels: Pixels) -> None:
-        """Lay out a mat."""
+        """Set the mat."""
         self._mat = pixels
         self._painter = None
         self.repaint_scene()
 
     def edit_boxes(self, on: bool, marked: int | None) -> None:
-        """Let the mouse draw and move obstacles, or not."""
+        """Enable or disable drawing and moving obstacles with the mouse."""
         if (on, marked) != (self._edits_boxes, self._marked):
             self._edits_boxes, self._marked = on, marked
             self.repaint_scene()
 
     def clear_trace(self) -> None:
-        """Forget the trace."""
+        """Clear the trace."""
         self.trace.wipe()
         self.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment, if it differs from what is shown."""
+        """Show a moment, if it differs from the last one."""
         self._snapshot = snapshot
         if self._held is not None and self._grip is None:
             self._held_shows -= 1
@@ -219,7 +219,7 @@ class WorldView(PixelView):
         self._draw()
 
     def repaint_scene(self) -> None:
-        """Draw again, whatever was drawn last."""
+        """Redraw unconditionally."""
         self._scene = None
         self._draw()
 
@@ -267,7 +267,7 @@ class WorldView(PixelView):
         return still or max(moved_mm, turned_mm, lengthened_mm) > _RAY_LAG_PX * self._port.mm_per_px
 
     def _at(self, event: events.MouseEvent) -> tuple[float, float]:
-        """World position under the mouse: the middle of the cell, or finer where the terminal tells."""
+        """Return the world position under the mouse: the middle of the cell, or finer if the terminal reports pixels."""
         assert self._port is not None
         col, row = event.pointer_x, event.pointer_y
         if col == event.x and row == event.y:
@@ -275,7 +275,7 @@ class WorldView(PixelView):
         return self._port.to_mm(col, 2 * row)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Take hold of the robot, or of an obstacle, or begin to draw one."""
+        """Grab the robot or an obstacle, or start to draw one."""
         if event.button != 1 or self._port is None or self._snapshot is None:
             return
         if not self._grip_robot(event) and self._edits_boxes:
@@ -299,7 +299,7 @@ class WorldView(PixelView):
         return True
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Move or turn what is held."""
+        """Move or turn what was grabbed."""
         if self._box_grip is not None:
             event.stop()
             dragged = self._box_grip.dragged_to(*self._at(event))
@@ -315,7 +315,7 @@ class WorldView(PixelView):
             self._draw()
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Let go of what is held."""
+        """End the drag."""
         if self._box_grip is not None:
             event.stop()
             self.release_mouse()
@@ -330,7 +330,7 @@ class WorldView(PixelView):
             self._tell(self._held, True)
 
     def on_mouse_release(self) -> None:
-        """Give up a drag: a dialog has taken the mouse."""
+        """Cancel the drag: a dialog has captured the mouse."""
         if self._grip is not None:
             self._grip, self._held_shows = None, _SHOWS_UNTIL_TAKEN
         if self._box_grip is not None:
