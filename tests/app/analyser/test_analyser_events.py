@@ -103,7 +103,7 @@ async def test_events_and_differences_by_keys(two_runs: list[StoredRun]) -> None
         await pilot.press("J", "J")
         assert model.row == events[0].row
         await typed(pilot, "D", f"={first.id}", "enter")
-        assert "that is the run itself" in text_of(pilot)
+        assert "that is the same run" in text_of(pilot)
         await typed(pilot, f"={second.id}", "enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, Differences))
         await pilot.press("enter")

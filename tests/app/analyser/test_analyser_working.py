@@ -44,7 +44,7 @@ async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeyp
             await until(pilot, lambda: screen.job is None)
             assert so(model), keys
         await typed(pilot, "slash", "=nowhere at all", "enter")
-        await until(pilot, lambda: any("is nowhere" in told.message for told in pilot.app._notifications))
+        await until(pilot, lambda: any("was not found" in told.message for told in pilot.app._notifications))
         old, new = TableTask("older"), TableTask("newer")
         screen.begin(old)
         screen.begin(new)

@@ -1,4 +1,4 @@
-"""The analyser by itself, as `tuisim analyse` starts it."""
+"""The stand-alone analyser, as `tuisim analyse` starts it."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ class AnalyserApp(TerminalApp):
         super().__init__()
         self.wanted = wanted
         self.failure: TuisimError | None = None
-        """What kept the log from being opened."""
+        """The error that prevented the log from being opened."""
 
     def on_mount(self) -> None:
-        """Show the analyser; leaving it ends the app."""
+        """Show the analyser; closing it ends the app."""
         self.push_screen(_First(self.wanted), lambda _: self.exit())
 
 
 class _First(Analyser):
-    """The only screen: an error before there is anything to see ends the app."""
+    """The only screen: an error before anything is shown ends the app."""
 
     def take(self, model: Model) -> None:
         first = self.model is None
         super().take(model)
         if first:
-            # Also what drawing has imported stays: no key waits for a search through all that.
+            # Modules imported by drawing stay as well; no key should wait for a garbage collection of all that.
             self.call_after_refresh(gc.freeze)
 
     def complain(self, error: TuisimError) -> None:
@@ -60,7 +60,7 @@ def run_analyser(wanted: LogRequest) -> int:
     Raises:
         LogError: there is no such log, or it cannot be read.
     """
-    # What is imported by now stays until the end: there is no use in looking for garbage in it.
+    # Modules imported by now stay until the end: exclude them from garbage collection.
     gc.freeze()
     app = AnalyserApp(wanted)
     app.run()

@@ -17,23 +17,23 @@ if TYPE_CHECKING:
     from tuisim.app.analyser.screen import Analyser
 
 _SEARCHED_AT_ONCE = 20_000
-"""Rows in which bands are found within a few hundredths of a second."""
+"""Up to this many rows, the search for bands takes a few hundredths of a second."""
 
 
 class Finder:
-    """Finds what a pane shows, each thing once at a time.
+    """Computes the content of panes, each one once at a time.
 
     Args:
-        screen: Shows it again when it is there.
+        screen: Updated when a result has arrived.
     """
 
     def __init__(self, screen: Analyser) -> None:
         self._screen = screen
         self.busy: dict[str, Model] = {}
-        """The log that is worked on, by pane."""
+        """The log that is being processed, by pane."""
 
     def look(self, model: Model, pane: str) -> None:
-        """Find what a pane is going to show and is not there yet; at once where that is quick."""
+        """Compute the missing content of a pane; small logs synchronously."""
         names = {"bands": model.unsearched, "statistics": model.unsummed}.get(pane, list)()
         if not names or self.busy.get(pane) is model:
             return
@@ -68,17 +68,17 @@ Made = TypeVar("Made")
 
 
 def work(screen: Analyser, word: str, rows: int, do: Callable[[TableTask], Made], then: Callable[[Made], None]) -> None:
-    """Do something, and then something with its result; newer work takes the place of older.
+    """Run a function and pass on its result; newer work replaces older work.
 
     Args:
-        screen: Shows the word meanwhile.
-        word: What is being done.
-        rows: How many it is done with.
-        do: The work; it reads the log, and changes nothing.
-        then: What is done with the result, on the screen.
+        screen: Shows the progress.
+        word: Label of the work.
+        rows: Number of rows; decides between background and synchronous work.
+        do: The work; must only read the log.
+        then: Called with the result, in the app's thread.
 
     Raises:
-        TuisimError: what `do` raises if it is done at once; else it is told on the screen.
+        TuisimError: raised by `do` if it runs synchronously; otherwise the error is shown on the screen.
     """
     if rows <= AT_ONCE:
         then(do(TableTask(word)))

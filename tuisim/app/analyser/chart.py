@@ -1,4 +1,4 @@
-"""The chart of a log: one for all variables, or one for each, with the cursor of the whole screen in it."""
+"""The chart of a log: one for all variables, or one for each, with the cursor."""
 
 from __future__ import annotations
 
@@ -25,26 +25,26 @@ if TYPE_CHECKING:
 
 _EVENTS = Style(color="#ffaf5f", bold=True)
 _LEAST_FACET_ROWS = 6
-"""A chart of one variable that is lower says nothing."""
+"""Minimum height of the chart of one variable."""
 FACETS_ROWS = 2 * _LEAST_FACET_ROWS
-"""Lower than that there is one chart for all."""
+"""Below this height there is one chart for all variables."""
 
 
 @dataclass(slots=True)
 class ChartLook:
-    """How the chart is drawn."""
+    """The display options of the chart."""
 
     facets: bool = False
     """One chart for each ticked variable."""
     marks: bool = False
     hold: bool = False
-    """Keep each value until the next one comes, instead of going straight to it."""
+    """Hold each value until the next one (steps), instead of a straight line between them."""
     against: tuple[str, str] | None = None
-    """What is drawn against what, x and y, instead of all over time."""
+    """The variables to draw against each other, x and y, instead of all over time."""
 
 
 class _One(Traces):
-    """One trace, as a facet draws it."""
+    """A single trace, for a facet."""
 
     def __init__(self, trace: LogTrace) -> None:
         super().__init__()
@@ -62,13 +62,13 @@ class LogChart(Widget):
 
     @dataclass
     class Pointed(Message):
-        """A time was pointed at with the mouse."""
+        """Posted when a time was clicked."""
 
         time_s: float
 
     @dataclass
     class Ticked(Message):
-        """The tick box of a variable was pointed at."""
+        """Posted when the tick box of a variable was clicked."""
 
         name: str
 
@@ -82,16 +82,16 @@ class LogChart(Widget):
         self._model: Model | None = None
 
     def compose(self) -> ComposeResult:
-        """The text is the only child."""
+        """Create the child widgets."""
         yield self._text
 
     def take(self, model: Model) -> None:
-        """Turn to another log, or to the same one drawn in another way."""
+        """Switch to another log, or redraw the same one with other options."""
         self._painters.clear()
         self.show(model)
 
     def show(self, model: Model) -> None:
-        """Draw what is looked at."""
+        """Draw the current view of the model."""
         self._model = model
         width, height = self._text.size
         if not width or not height or not self.display:
@@ -126,7 +126,7 @@ class LogChart(Widget):
         self._text.set_lines([*lines, *(self._event_marks(model) if marked else []), *measured])
 
     def _event_marks(self, model: Model) -> list[list[Run]]:
-        """The line below the charts with a mark where something crosses a threshold."""
+        """Return the line below the charts with a marker for each threshold crossing."""
         _, picture = self._pictures[-1]
         if not picture.columns:
             return [[]]
@@ -143,7 +143,7 @@ class LogChart(Widget):
         return max(self._pictures[0][1].columns, 1) if self._pictures else 1
 
     def time_beside(self, time_s: float, columns: int) -> float:
-        """Return the time so many columns right of another one."""
+        """Return the time that is a number of columns to the right of another one."""
         low, high = self._model.x_limits() if self._model else (0.0, 1.0)
         return time_s + columns * (high - low) / self.columns()
 
@@ -156,12 +156,12 @@ class LogChart(Widget):
             self.show(self._model)
 
     def _cell(self, event: events.MouseEvent) -> tuple[int, int]:
-        """Column and row of the mouse in the text."""
+        """Return column and row of the mouse in the text."""
         origin = self._text.region
         return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go to what is pointed at."""
+        """Go to the time, or toggle the variable, that was clicked."""
         column, row = self._cell(event)
         for first, picture in self._pictures:
             for box in picture.boxes:
@@ -173,17 +173,17 @@ class LogChart(Widget):
                 self.post_message(self.Pointed(time_s))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Read what the variables are where the mouse is."""
+        """Show the values of the variables at the mouse."""
         column, row = self._cell(event)
         times_s = (picture.time_at(column, row - first) for first, picture in self._pictures)
         self._read(next((time_s for time_s in times_s if time_s is not None), None))
 
     def on_leave(self) -> None:
-        """The mouse reads nothing any more."""
+        """Stop showing the values at the mouse."""
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        """Say below the chart what the variables are at a time."""
+        """Show below the chart the values of the variables at a time."""
         read: list[Run] = []
         if time_s is not None and self._model is not None:
             unit = "mm" if self._model.alignment == DISTANCE else "s"
@@ -192,14 +192,14 @@ class LogChart(Widget):
 
 
 def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:
-    """As many facets as there is room for, the selected one among them."""
+    """Return as many facets as fit, the selected one among them."""
     at = next((at for at, trace in enumerate(facets) if trace.name == selected), 0)
     first = min(max(at - most + 1, 0), max(len(facets) - most, 0))
     return facets[first : first + most]
 
 
 def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
-    """The line that says what lies between the two cursors."""
+    """Return the line with the differences between the two cursors."""
     if model.mark_s is None or not model.log.rows:
         return []
     plain, strong = Style(color="#9fb0c3"), Style(color="#ffffff", bold=True)

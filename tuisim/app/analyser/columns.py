@@ -1,4 +1,4 @@
-"""Asking what the columns of a table mean, where their names do not tell."""
+"""The dialog for the meaning of a table's columns, if their names do not say."""
 
 from __future__ import annotations
 
@@ -28,22 +28,22 @@ if TYPE_CHECKING:
 
 _SHOWN_VALUES, _NAME_CELLS, _VALUE_CELLS = 4, 20, 12
 _COLUMNS_AT_MOST = 500
-"""More cannot be chosen from by going through them."""
+"""More columns are too many to choose from one by one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """What the user says of the columns."""
+    """The user's choice of columns."""
 
     time: str
-    """Column with the time; `ROW` to count the rows."""
+    """The time column; `ROW` to count the rows."""
     unit: str
-    """Of times that are numbers."""
+    """Unit of the time, if it is a number."""
     values: tuple[str, ...]
 
 
 def columns_of(log: Log) -> Columns:
-    """Return what a log's columns are taken for."""
+    """Return the current meaning of a log's columns."""
     unit = next((unit for unit, seconds in SECONDS.items() if seconds == log.layout.unit_s), "s")
     return Columns(log.layout.time, unit, log.layout.values)
 
@@ -55,14 +55,14 @@ def candidates(table: pa.Table) -> list[str]:
 
 
 class AskColumns(Dialog[Columns]):
-    """Gives what the user says; nothing if all is to stay as it is.
+    """Returns the user's choice; None if nothing is to change.
 
     Args:
-        log: The table, and what its columns are taken for.
+        log: The table, and the current meaning of its columns.
     """
 
     TITLE_TEXT = "What are the columns?"
-    HINT = "Enter takes it · Escape leaves it as it is"
+    HINT = "Enter applies · Escape changes nothing"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("t", "time", "Time", show=False),
         Binding("space", "value", "Value", show=False),
@@ -76,7 +76,7 @@ class AskColumns(Dialog[Columns]):
         self._said = columns_of(log)
 
     def content(self) -> ComposeResult:
-        """The columns, each with its first values."""
+        """Return the list of columns, each with its first values."""
         yield OptionList(markup=False)
         yield Static(id="message", classes="wrong", markup=False)
         keys = Table.grid(padding=(0, 2))
@@ -86,7 +86,7 @@ class AskColumns(Dialog[Columns]):
         yield Static(keys)
 
     def on_mount(self) -> None:
-        """List the columns; begin with the first one."""
+        """List the columns, with the first one selected."""
         self._list(0)
         self.query_one(OptionList).focus()
 
@@ -124,7 +124,7 @@ class AskColumns(Dialog[Columns]):
         self._list(self._at)
 
     def action_time(self) -> None:
-        """Take the column at hand for the time, or none."""
+        """Use the selected column as time, or none."""
         name, said = self._names[self._at], self._said
         if name == said.time:
             self._say(replace(said, time=ROW))
@@ -132,14 +132,14 @@ class AskColumns(Dialog[Columns]):
             self._say(replace(said, time=name, values=tuple(value for value in said.values if value != name)))
 
     def action_value(self) -> None:
-        """Take the column at hand for values, or not."""
+        """Use the selected column as values, or not."""
         name, said = self._names[self._at], self._said
         wanted = {*said.values} ^ {name}
         time = ROW if name == said.time else said.time
         self._say(replace(said, time=time, values=tuple(n for n in self._names if n in wanted)))
 
     def action_unit(self) -> None:
-        """Take the next unit for the time."""
+        """Go to the next unit of the time."""
         units = list(SECONDS)
         self._say(replace(self._said, unit=units[(units.index(self._said.unit) + 1) % len(units)]))
 
@@ -156,7 +156,7 @@ class AskColumns(Dialog[Columns]):
 
 
 def ask(screen: Analyser) -> None:
-    """Ask what the columns of the file mean."""
+    """Ask for the meaning of the file's columns."""
     model = screen.model
     if model is None or not model.subject.wanted.file:
         screen.say("Only the columns of a file can be chosen: those of a run are known")
@@ -174,14 +174,14 @@ def _apply(screen: Analyser, said: Columns | None) -> None:
     if not model.subject.done:
         screen.open(wanted)
         return
-    # All of it has been read: the same rows mean something else now.
+    # All of it has been read: the same rows have another meaning now.
     layout = choose_columns(model.log.bare().table, said.time, said.values, said.unit)
     screen.wanted = wanted
     screen.take(Model(OpenedLog(wanted, model.log.with_layout(layout))))
 
 
 def ask_if_unsure(screen: Analyser) -> None:
-    """Ask as soon as there is something to choose from, if the names of the columns do not tell."""
+    """Ask for the meaning of the columns if their names do not say, as soon as the first rows are read."""
     model = screen.model
     if model is not None and model.subject.wanted.file and not model.log.layout.sure and screen.is_current:
         ask(screen)

@@ -1,4 +1,4 @@
-"""The lower half of the analyser: one of the panes."""
+"""The lower half of the analyser, which shows one of the panes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class PaneView(Widget):
-    """Shows a pane, its title among those of the others."""
+    """Shows a pane, with the titles of all panes above it."""
 
     ALLOW_SELECT = False
     DEFAULT_CSS = """
@@ -28,27 +28,27 @@ class PaneView(Widget):
         super().__init__()
         self.name_shown = "table"
         self.chosen = 0
-        """Row that stands out, in all panes but the table."""
+        """Selected row, in all panes but the table."""
         self._text = LinesView()
         self._model: Model | None = None
 
     def compose(self) -> ComposeResult:
-        """The text is the only child."""
+        """Create the child widgets."""
         yield self._text
 
     @property
     def lines(self) -> int:
-        """How many rows are seen at once."""
+        """The number of visible rows."""
         return max(self._text.size.height - 1, 1)
 
     def turn_to(self, name: str) -> None:
-        """Show another pane."""
+        """Switch to another pane."""
         self.name_shown, self.chosen = name, 0
 
     def show(self, model: Model) -> None:
-        """Draw what is looked at."""
+        """Draw the current view of the model."""
         self._model = model
-        # The brackets tell the pane that is shown also without colours.
+        # Brackets mark the current pane even without colours.
         titles = (f"\\[{pane.title}]" if name == self.name_shown else pane.title for name, pane in PANES.items())
         self.border_title = " ".join(titles)
         self.border_subtitle = _told(model) if self.name_shown == "table" else ""
@@ -66,7 +66,7 @@ class PaneView(Widget):
 
 
 def _told(model: Model) -> str:
-    """What the table shows, in a few words."""
+    """Return a summary of what the table shows."""
     rows, total = model.rows, model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else f"{total:,} rows"
     conditions = " and ".join(map(str, rows.conditions))

@@ -1,4 +1,4 @@
-"""What stands below the chart, as lines of text: table, bands, statistics, notes, runs. Pure drawing.
+"""The panes below the chart as lines of text: table, bands, statistics, notes, runs. Pure drawing.
 
 To add a pane: write its two functions and add a line to `PANES`.
 """
@@ -31,9 +31,9 @@ HERE = Style(color="#ffffff", bgcolor="#2f4a66")
 CHOSEN = Style(color="#ffd75f", bold=True)
 _WIDEST = 28
 _SAMPLED = 40
-"""Rows of a table that decide how wide a column is, besides those that are seen."""
+"""Number of rows that determine the width of a table's column, besides the visible ones."""
 _MEASURED = 1000
-"""In another pane of more rows, those that are seen decide it."""
+"""In other panes with more rows than this, the visible ones determine it."""
 
 EMPTY = (
     "This log is empty. Print values with a name:",
@@ -48,13 +48,13 @@ class Pane:
 
     title: str
     rows: Callable[[Model], Sequence[Cells]]
-    """Its rows as texts; not for the table, which has too many."""
+    """Its rows as texts; None for the table, which has too many."""
     heads: Cells
     below: Callable[[Model], Sequence[str]] = lambda _: ()
-    """Sentences below the rows."""
+    """Text below the rows."""
     empty: str = ""
     wraps: bool = False
-    """Whether its last column is prose, which goes on in further lines instead of being cut."""
+    """Whether its last column is prose, which wraps instead of being cut."""
 
 
 def _figure(value: float, digits: str = ".4g") -> str:
@@ -65,7 +65,7 @@ Thing = TypeVar("Thing")
 
 
 class _MadeWhenSeen(Sequence[Cells], Generic[Thing]):
-    """Rows that are made when they are looked at: a long log has a hundred thousand bands or events."""
+    """Rows that are created on access: a long log has a hundred thousand bands or events."""
 
     def __init__(self, things: Sequence[Thing], row: Callable[[Thing], Cells]) -> None:
         self._things, self._row = things, row
@@ -98,7 +98,7 @@ def _event(event: Event) -> Cells:
 
 def _statistics(model: Model) -> list[Cells]:
     rows = []
-    # Of a short log nothing is missing for longer than it takes to draw it.
+    # A short log is processed faster than it is drawn.
     missing = model.unsummed() if model.log.rows > AT_ONCE else []
     for trace in model.traces.ticked():
         if trace.name in missing:
@@ -114,7 +114,7 @@ def _between(model: Model) -> list[str]:
     span = model.measured()
     if span is None:
         return []
-    return [f"Between {span[0]:.3f} and {span[1]:.3f}, from A to the cursor; a takes A away and all counts again"]
+    return [f"Between {span[0]:.3f} and {span[1]:.3f}, from A to the cursor; a removes A and uses all rows again"]
 
 
 def _notes(model: Model) -> list[Cells]:
@@ -168,11 +168,11 @@ PANES: Mapping[str, Pane] = {
         empty="This log is a file: R opens stored runs instead, several to lay them over each other",
     ),
 }  # fmt: skip
-"""Every pane by its name."""
+"""The panes by name."""
 
 
 def pane_frame(name: str, model: Model) -> pd.DataFrame:
-    """Return the rows of a pane other than the table; bands with every figure that is known of them."""
+    """Return the rows of a pane other than the table; bands with all their properties."""
     import pandas as pd
 
     if name == "bands":
@@ -180,7 +180,7 @@ def pane_frame(name: str, model: Model) -> pd.DataFrame:
     pane = PANES[name]
     frame = pd.DataFrame([list(row) for row in pane.rows(model)], columns=[head or "#" for head in pane.heads])
     for head in frame.columns:
-        # Thousands are set off for people only.
+        # Thousands separators are for display only.
         numbers = pd.to_numeric(frame[head].str.replace(",", ""), errors="coerce")
         frame[head] = numbers if numbers.notna().all() else frame[head]
     return frame
@@ -191,8 +191,8 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
 
     Args:
         name: Key of `PANES`.
-        model: What is looked at.
-        chosen: Row that stands out; the table has that of the cursor.
+        model: The current view.
+        chosen: Selected row; in the table it is that of the cursor.
         width: Characters.
         height: Lines, at least 1.
     """
@@ -204,7 +204,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     rows = pane.rows(model)
     if not rows:
         searching = name == "bands" and model.unsearched()
-        said = "The bands are being searched for …" if searching else pane.empty
+        said = "Searching for bands …" if searching else pane.empty
         return [[(text, DIM)] for text in _wrapped([said], width, height)]
     below = _wrapped(pane.below(model), width, max(0, height // 3))
     room = max(height - 1 - len(below), 1)
@@ -222,13 +222,13 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
             chosen_at = range(len(shown), len(shown) + len(made))
             made = [[*line, (" " * width, HERE)] for line in made]
         shown += made
-    # Where rows take several lines, the chosen one stays in sight.
+    # With rows of several lines, the selected one stays visible.
     start = max(min(chosen_at.start, chosen_at.stop - room), 0)
     return lines + shown[start : start + room] + [[(text, DIM)] for text in below]
 
 
 def _rows_of(texts: Sequence[str], widths: Sequence[int], style: Style, width: int) -> list[Line]:
-    """A row as lines: one, or as many as the last text needs in a pane of that width, 0 for no matter how wide."""
+    """Return a row as lines: one, or as many as the last text needs in that width; 0 is unlimited."""
     from textwrap import wrap
 
     margin = sum(widths[:-1]) + 2 * (len(widths) - 1)
@@ -239,7 +239,7 @@ def _rows_of(texts: Sequence[str], widths: Sequence[int], style: Style, width: i
 
 
 def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
-    """The columns that are seen whole, and the last of all if it is a text that may be cut."""
+    """Return the columns that fit completely, and the last one if it is a text that may be cut."""
     left, seen = width, []
     for at in columns:
         if widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
@@ -250,7 +250,7 @@ def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) ->
 
 
 def _first(chosen: int, count: int, room: int) -> int:
-    """First row shown, so that the chosen one is near the middle."""
+    """Return the first row shown, so that the selected one is near the middle."""
     return min(max(chosen - room // 2, 0), max(count - room, 0))
 
 
@@ -263,7 +263,7 @@ def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:
 
 
 def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
-    """The first lines of texts; only as much of each is wrapped as can be seen."""
+    """Return the first lines of wrapped texts; only the visible part of each is wrapped."""
     from textwrap import wrap
 
     seen = (text[: (most + 1) * max(width, 10)] for text in texts)
@@ -271,7 +271,7 @@ def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
 
 
 def table_lines(model: Model, width: int, height: int) -> list[Line]:
-    """Return the rows of the table around the cursor, with as many columns as there is room for."""
+    """Return the rows of the table around the cursor, with as many columns as fit."""
     rows = model.rows
     if not len(rows):
         return [[("No row fulfils the conditions: U shows all again", DIM)]]
@@ -305,7 +305,7 @@ def _is_number(text: str) -> bool:
 
 
 def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], list[int]]:
-    """The columns that are shown and how wide they are: the frozen ones, then those up to the chosen one."""
+    """Return the columns shown and their widths: the frozen ones, then those up to the selected one."""
     rows = model.rows
     seen = shown[:_SAMPLED]
 
@@ -317,7 +317,7 @@ def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], lis
     left = width - sum(widths.values()) - 2 * len(frozen)
     others = rows.columns[rows.frozen :]
     at = max(rows.column - rows.frozen, 0)
-    # First leftwards from the chosen column until the width is used up, then on to the right of it.
+    # First leftwards from the selected column until the width is used up, then on to its right.
     chosen: list[str] = []
     for column in [*reversed(others[: at + 1]), *others[at + 1 :]]:
         need = wide(column) + 2

@@ -1,4 +1,4 @@
-"""One line to type in: where to go, a filter, what to search for, a note."""
+"""A dialog with one line of input: a target, a filter, a search text, a note."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from tuisim.errors import TuisimError
 _LAST_WORD = re.compile(r"`[^`]+$|[^\W\d]\w*$")
 
 Form = tuple[str, str]
-"""What may be typed, and what it means."""
+"""An accepted form, and what it means."""
 
 
 class _Line(Input):
-    """The field: tab takes the offered end of the word.
+    """The input; tab accepts the suggested completion.
 
     Args:
-        value: What stands there at first.
-        words: What may be offered.
+        value: Initial text.
+        words: Possible completions.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "cursor_right", "Take the offered word", show=False)]
@@ -38,17 +38,17 @@ class _Line(Input):
 
     @on(Input.Changed)
     def _offer(self, event: Input.Changed) -> None:
-        # At once: Textual's own suggester leaves work undone, and a warning, when the field closes first.
+        # Done synchronously: Textual's own suggester leaves a task behind, with a warning, when the field closes first.
         if (offered := completed(event.value, self._words)) is not None:
             self.post_message(SuggestionReady(event.value, offered))
 
 
 def completed(line: str, words: Sequence[str]) -> str | None:
-    """Return the line with its last word ended, None if there is nothing to offer.
+    """Return the line with its last word completed, None if there is no completion.
 
     Args:
-        line: What has been typed.
-        words: What may be offered, the first that begins like the last word of the line.
+        line: The typed text.
+        words: Possible completions; the first one with the prefix is used.
     """
     match = _LAST_WORD.search(line)
     if match is None:
@@ -56,22 +56,22 @@ def completed(line: str, words: Sequence[str]) -> str | None:
     typed = match[0]
     begun = (word for word in words if word.lower().startswith(typed.lower()) and len(word) > len(typed))
     word = next(begun, None)
-    # What was typed stays: an offer only adds to it.
+    # The typed text stays: a completion only appends to it.
     return None if word is None else line + word[len(typed) :]
 
 
 class LinePrompt(Dialog[bool]):
-    """Gives True once what was typed has been done.
+    """Returns True once the action has been carried out.
 
     Args:
-        title: What it is about.
-        do: Does it; a TuisimError is told and the line can be mended.
-        value: What stands there at first, selected: what is typed takes its place.
-        forms: What may be typed.
-        words: What the word that is being typed may become; tab takes what is offered.
+        title: Title of the dialog.
+        do: The action; a TuisimError is shown and the line can be corrected.
+        value: Initial text, selected, so that typing replaces it.
+        forms: The accepted forms.
+        words: Possible completions of the current word; tab accepts one.
     """
 
-    HINT = "Enter does it · Escape closes"
+    HINT = "Enter applies · Escape closes"
 
     def __init__(
         self,
@@ -89,7 +89,7 @@ class LinePrompt(Dialog[bool]):
         self._forms = forms
 
     def content(self) -> ComposeResult:
-        """The field, what is wrong with what stands there, and what may stand there."""
+        """Return the field, its error line, and the accepted forms."""
         yield _Line(self._value, self._words)
         yield Static(id="message", classes="wrong", markup=False)
         forms = Table.grid(padding=(0, 2))

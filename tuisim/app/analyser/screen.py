@@ -38,7 +38,7 @@ _KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
 _ALWAYS = ("help", "leave")
 _LOOK_S = 1.0
 _PATIENCE = 10.0
-"""Times as long as the reading took there is no other one."""
+"""The pause between two readings of a growing log, as a multiple of the last reading time."""
 
 
 def _palette() -> type[Provider]:
@@ -48,7 +48,7 @@ def _palette() -> type[Provider]:
 
 
 class Analyser(ClosesOnce[None]):
-    """One log, looked at from all sides. Modal, so that no key of the lab below it works here.
+    """The views of one log. Modal, so that no key of the app below it works here.
 
     Args:
         wanted: What to open.
@@ -72,12 +72,12 @@ class Analyser(ClosesOnce[None]):
         self.model: Model | None = None
         self.searched = ""
         self.job: TableTask | None = None
-        """What is being done beside the screen."""
+        """The current background job."""
         self.finder = Finder(self)
         self._reading = False
         self._began_s = self._next_look_s = 0.0
         self._stamp: object = None
-        """How long the log was when it was read."""
+        """Length of the log when it was last read."""
         self.title_line = LinesView()
         self.title_line.id = "title"
         self.keys = LinesView()
@@ -97,18 +97,18 @@ class Analyser(ClosesOnce[None]):
         yield self.keys
 
     def on_mount(self) -> None:
-        """Begin to open the log."""
+        """Start to open the log."""
         self.open(self.wanted)
         self.set_interval(_LOOK_S, self.look_again)
 
     def on_resize(self) -> None:
-        """Fit the keys to the width."""
+        """Fit the footer to the width."""
         self.call_after_refresh(self._show_keys)
 
     # Opening
 
     def open(self, wanted: LogRequest) -> None:
-        """Open another log; the one that is shown stays until then."""
+        """Open another log in the background; the current one stays until then."""
         self.wanted = wanted
         self._reading, self._began_s = True, monotonic()
         self._tell("opening …")
@@ -122,7 +122,7 @@ class Analyser(ClosesOnce[None]):
                 model, before = Model(subject), self.model
                 if before is not None and before.subject.wanted is wanted:
                     model.define_as(before)
-                # What the first chart needs of a long log is reckoned here, where no key waits for it.
+                # Data for the first chart of a long log is computed here, in the background.
                 model.traces.span_s()
                 self.app.call_from_thread(self.take, model)
         except TuisimError as error:
@@ -140,7 +140,7 @@ class Analyser(ClosesOnce[None]):
             self.update()
 
     def take(self, model: Model) -> None:
-        """Show what has been read, unless something else is wanted by now."""
+        """Show the log that was read, unless another one was requested since."""
         subject, before = model.subject, self.model
         if subject.wanted is not self.wanted:
             return
@@ -163,7 +163,7 @@ class Analyser(ClosesOnce[None]):
                 self.say(note)
 
     def look_again(self) -> None:
-        """Read on when the log has grown; the longer the reading took, the seldomer."""
+        """Read on when the log has grown; the longer a reading takes, the less often."""
         model = self.model
         if self.job is not None:
             self._tell(self._progress())
@@ -172,10 +172,10 @@ class Analyser(ClosesOnce[None]):
         if model.subject.stamp() != self._stamp:
             self.open(self.wanted)
 
-    # Showing
+    # Display
 
     def update(self) -> None:
-        """Show what has changed, everywhere."""
+        """Update the views that have changed."""
         model = self.model
         if model is None:
             return
@@ -186,7 +186,7 @@ class Analyser(ClosesOnce[None]):
         self.beside.show(model)
 
     def at_hand(self) -> Model:
-        """Return what is shown now: a log that grows may be another one than when a question was asked.
+        """Return the current model: a growing log may have another one than when a question was asked.
 
         Raises:
             LogError: there is none yet.
@@ -196,13 +196,13 @@ class Analyser(ClosesOnce[None]):
         return self.model
 
     def begin(self, task: TableTask) -> None:
-        """Say what is being done beside the screen; nobody waits for older work any more."""
+        """Show the name of a background job; results of older jobs are ignored."""
         self.give_up()
         self.job = task
         self.update()
 
     def end(self, task: TableTask, then: Callable[[], None]) -> None:
-        """Take the result of work, unless newer work has begun."""
+        """Handle the result of a job, unless a newer job has started."""
         if task is self.job:
             self.job = None
             try:
@@ -212,17 +212,17 @@ class Analyser(ClosesOnce[None]):
             self.update()
 
     def give_up(self) -> None:
-        """Wait no more for what is being done."""
+        """Ignore the result of the current job."""
         if self.job is not None:
             self.job.stopped = True
         self.job = None
 
     def on_unmount(self) -> None:
-        """Nobody waits for work any more."""
+        """Ignore the results of running jobs."""
         self.give_up()
 
     def redraw_chart(self) -> None:
-        """Draw the chart anew, in another way."""
+        """Redraw the chart after its options have changed."""
         if self.model is not None:
             self.chart.take(self.model)
 
@@ -232,7 +232,7 @@ class Analyser(ClosesOnce[None]):
         self.call_after_refresh(self.update)
 
     def choose(self, number: int) -> None:
-        """Choose a row of a pane other than the table; the cursor goes where it is about."""
+        """Select a row of a pane other than the table; the cursor goes to its time."""
         model, name = self.model, self.pane.name_shown
         if model is None:
             return
@@ -255,7 +255,7 @@ class Analyser(ClosesOnce[None]):
         model.follow_cursor()
 
     def _progress(self) -> str:
-        """How far the log has been read."""
+        """Return how much of the log has been read."""
         subject = self.model.subject if self.model else None
         if subject is None or subject.done:
             return ""
@@ -285,10 +285,10 @@ class Analyser(ClosesOnce[None]):
             line += [(f" {action.label}", _KEY), (f" {action.footer} ", _WORD)]
         self.keys.set_lines([line])
 
-    # What the user does
+    # User actions
 
     def action_act(self, name: str) -> None:
-        """Do what a key stands for."""
+        """Run the action of a key."""
         if is_leaving(self.app):
             return
         action = ACTIONS[name]
@@ -298,13 +298,13 @@ class Analyser(ClosesOnce[None]):
         action.do(self)
 
     def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
-        """Go to a time that was pointed at."""
+        """Go to a time that was clicked."""
         if self.model is not None and self.model.log.rows:
             self.model.go_to_time(message.time_s)
             self.update()
 
     def on_log_chart_ticked(self, message: LogChart.Ticked) -> None:
-        """Choose a variable and tick it, or not."""
+        """Select a variable, and toggle it."""
         if self.model is not None:
             self.model.selected = message.name
             ACTIONS["tick"].do(self)
@@ -314,7 +314,7 @@ class Analyser(ClosesOnce[None]):
         self.dismiss(None)
 
     def copy(self, text: str, what: str) -> None:
-        """Put a text into the clipboard of the user's own terminal."""
+        """Copy a text to the clipboard of the user's terminal."""
         self.app.copy_to_clipboard(text)
         self.say(f"Copied: {what}")
 
@@ -323,7 +323,7 @@ class Analyser(ClosesOnce[None]):
         self.notify(text, timeout=3, markup=False)
 
     def export(self, path: Path, pane: str) -> None:
-        """Write the rows of a pane to a file, those of the table with the columns that are shown.
+        """Write the rows of a pane to a file; of the table, only the columns shown.
 
         Raises:
             ExportError: the file cannot be written.

@@ -1,4 +1,4 @@
-"""Where the robot was when a sample was read, and what its sensors saw: from the run, or from what the log says."""
+"""The robot's pose and sensor view at the time of a sample, from the recording or from the log."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ class WorldAt:
     """The world of one run, at any time of it.
 
     Args:
-        spec: What the run was made of.
+        spec: The run's specification.
         mat: Its mat.
         run: The run, if it is in the store.
-        log: Where the poses stand if it is not.
+        log: The source of the poses otherwise.
     """
 
     def __init__(self, spec: RunSpec, mat: Mat, run: StoredRun | None, log: Log) -> None:
@@ -37,14 +37,14 @@ class WorldAt:
         self._recording = Recording(run) if run is not None else None
         self._log = log
         self.text = run.program.text if run is not None else ""
-        """The program, empty if it is not known."""
+        """The program, empty if unknown."""
 
     def at(self, time_s: float, row: int) -> Snapshot:
-        """Return what was the case at a time.
+        """Return the snapshot at a time.
 
         Args:
             time_s: Simulated time.
-            row: Row of the log that says the same.
+            row: The row of the log at that time.
         """
         found = self._recorded(time_s) if self._recording is not None else None
         return found or self._logged(time_s, row)
@@ -73,7 +73,7 @@ class WorldAt:
 
 
 def tells_places(subject: OpenedLog) -> bool:
-    """Return whether a log tells where a robot was."""
+    """Return whether a log has poses of a robot."""
     if subject.runs:
         return True
     named = set(_POSE) <= set(subject.log.table.column_names)
@@ -81,7 +81,7 @@ def tells_places(subject: OpenedLog) -> bool:
 
 
 def place_of(subject: OpenedLog, run: int) -> WorldAt | None:
-    """Return the world of a run of a log, None if nothing tells what it was. Slow the first time for each mat.
+    """Return the world of a run of a log, None if it is unknown. Blocks, long the first time for each mat.
 
     Args:
         subject: The log.
@@ -107,7 +107,7 @@ def place_of(subject: OpenedLog, run: int) -> WorldAt | None:
 
 
 def _spec_in(metadata: Mapping[str, Any], run: int) -> RunSpec | None:
-    """The specification that an export of ours carries."""
+    """Return the specification in the metadata of an export, if any."""
     try:
         entry = metadata["runs"][run]
         return from_plain({key: value for key, value in entry.items() if key not in ("run", "program")})

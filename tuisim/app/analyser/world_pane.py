@@ -1,4 +1,4 @@
-"""What stands beside the log: the world where the sample was read, the line that printed it, the pixels seen."""
+"""The pane beside the log: the world at the time of the sample, the line that printed it, the pixels seen."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ class Beside(Vertical):
     def __init__(self) -> None:
         super().__init__()
         self.wanted = True
-        """Whether it is to be seen where there is something to see."""
-        # Here the robot stands where it was; the mouse cannot move it.
+        """Whether to show it if there is something to show."""
+        # The robot is shown where it was; the mouse cannot move it.
         self._world = WorldView(lambda pose, done: None, lambda boxes, index: None)
         self._world.disabled = True
         self._source = LinesView()
@@ -50,7 +50,7 @@ class Beside(Vertical):
         self._laid: WorldAt | None = None
 
     def compose(self) -> ComposeResult:
-        """World, source line, pixels."""
+        """Create the child widgets."""
         for title, view in (("World", self._world), ("Source", self._source)):
             frame = Vertical(view, classes="frame")
             frame.border_title = title
@@ -58,17 +58,17 @@ class Beside(Vertical):
         yield self._arrays
 
     def on_resize(self) -> None:
-        """Leave the pixels out where there is little room."""
+        """Hide the pixels if there is little room."""
         self._arrays.display = self.size.height >= 34
         self.call_after_refresh(self.show_again)
 
     def show_again(self) -> None:
-        """Draw what was shown last."""
+        """Redraw what was shown last."""
         if self._model is not None:
             self.show(self._model)
 
     def take(self, model: Model) -> None:
-        """Turn to another log."""
+        """Switch to another log."""
         self._model, self._laid = model, None
         self._places.clear()
         self._asked.clear()
@@ -76,7 +76,7 @@ class Beside(Vertical):
         self.show(model)
 
     def show(self, model: Model) -> None:
-        """Show the row that is looked at."""
+        """Show the row of the cursor."""
         self._model = model
         if not model.log.rows or not self.display:
             return
@@ -108,7 +108,7 @@ class Beside(Vertical):
             self.show(model)
 
     def _lines(self, place: WorldAt, line: int) -> list[list[Run]]:
-        """The program around a line, with that one in the middle."""
+        """Return the program around a line, with that line in the middle."""
         texts = source_lines(place.text)
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:

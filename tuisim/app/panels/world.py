@@ -267,7 +267,7 @@ class WorldView(PixelView):
         return still or max(moved_mm, turned_mm, lengthened_mm) > _RAY_LAG_PX * self._port.mm_per_px
 
     def _at(self, event: events.MouseEvent) -> tuple[float, float]:
-        """Return the world position under the mouse: the middle of the cell, or finer if the terminal reports pixels."""
+        """Return the world position under the mouse: the cell centre, or finer if the terminal supports it."""
         assert self._port is not None
         col, row = event.pointer_x, event.pointer_y
         if col == event.x and row == event.y:

@@ -1,4 +1,4 @@
-"""The brick: its display, text screen, lights and buttons, as lines of text."""
+"""The brick as lines of text: display, text screen, lights and buttons."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ _PRESSED = Style(color="#101010", bgcolor="#ffd866", bold=True)
 _DARK_LED_RGB = (48, 48, 48)
 
 HALF_BLOCK_SCALE = 0.7
-"""From this scale on the display is drawn in half blocks; smaller it is drawn in dots, which keep twice the detail."""
+"""From this scale on, the display is drawn in half blocks; below it in dots, which keep twice the detail."""
 
 _SHADES = 5
-"""Shades between paper and ink that half blocks have: more would only cost bytes."""
+"""Shades between paper and ink for half blocks: more would only cost bytes."""
 
 _DOT_SHARE = 0.25
-"""A dot is dark if so much of what it stands for is: thin lines are not lost."""
+"""A dot is dark if at least this share of its area is dark, so that thin lines stay visible."""
 
 _SYMBOLS = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "right": "▶", "down": "▼"}
-"""In the order in which they stand in one row."""
+"""In the order of the single-row layout."""
 
 _PAD_ROWS, _PAD_COLUMNS = 3, 23
 _PLACES = {"backspace": (0, 0), "up": (0, 10), "left": (1, 5), "enter": (1, 10), "right": (1, 15), "down": (2, 10)}
@@ -46,7 +46,7 @@ _DOT_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], n
 
 @dataclass(frozen=True, slots=True)
 class ButtonBox:
-    """Where a button is: row, first column, first column after it."""
+    """The area of a button: row, first column, column after the last."""
 
     row: int
     first: int
@@ -63,13 +63,13 @@ class BrickPicture:
 
 
 def draw_brick(face: BrickState, pressed: Collection[str], width: int, height: int) -> BrickPicture:
-    """Return the brick in a panel of that inner size.
+    """Return the brick for a panel of that inner size.
 
     Args:
-        face: What it shows.
+        face: State of the brick.
         pressed: Buttons that are held down.
         width: Columns, at least 1.
-        height: Rows, at least 1; the buttons come first, then the display, then the sound.
+        height: Rows, at least 1; the buttons have priority, then the display, then the sound.
     """
     pad_rows = _PAD_ROWS if height >= 9 and width >= _PAD_COLUMNS + 2 * _LED_COLUMNS else 1
     sound_rows = 1 if height >= pad_rows + 3 else 0
@@ -91,7 +91,7 @@ def _screen(face: BrickState, width: int, rows: int) -> list[list[Run]]:
 
 
 def _text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
-    """The text in the terminal's own letters; what does not fit is cut."""
+    """Return the text screen in the terminal's own font; the rest is cut."""
     columns = min(width, screen.columns)
     left, top = (width - columns) // 2, max(0, (rows - screen.rows) // 2)
     lines: list[list[Run]] = [[] for _ in range(top)]
@@ -128,11 +128,10 @@ def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
 
 
 def shrunk(ink: NDArray[np.uint8], rows: int, columns: int) -> NDArray[np.float64]:
-    """Return the share of dark pixels in each field of a coarser grid.
+    """Return the share of dark pixels in each cell of a coarser grid.
 
     Args:
-        ink: 1 where a pixel is dark, shape (h, w).
-        rows, columns: The coarser grid, at most h and w.
+        ink: 1 where a pixel is dark, shape (h, w). rows, columns: The coarser grid, at most h and w.
 
     Returns:
         0 to 1, shape (rows, columns).
@@ -182,16 +181,16 @@ def _shade(step: int) -> Color:
 
 
 def led_rgb(red: int, green: int) -> Rgb:
-    """Return the colour of a pair of lights of brightness 0 to 255: together they are amber."""
+    """Return the colour of a pair of lights with brightness 0 to 255: red and green mix to amber."""
     if not red and not green:
         return _DARK_LED_RGB
-    # A lamp that is on at all is seen to be on; the green ones are the brighter.
+    # A lamp that is on at all must be visible; the green ones are brighter.
     levels = [round(48 + 207 * level / 255) if level else 30 for level in (red, round(0.75 * green))]
     return levels[0], levels[1], 20
 
 
 def led_name(red: int, green: int) -> str:
-    """Return the colour of a pair of lights in a word."""
+    """Return the name of the colour of a pair of lights."""
     if not red and not green:
         return "off"
     if not green:
@@ -201,14 +200,14 @@ def led_name(red: int, green: int) -> str:
 
 
 def _lamps(face: BrickState) -> list[tuple[int, int]]:
-    """Red and green of the left and of the right pair."""
+    """Return red and green of the left and of the right pair."""
     if not face.leds:
         return [(0, 255), (0, 255)]
     return [(face.leds.get(f"{side} red", 0), face.leds.get(f"{side} green", 0)) for side in ("left", "right")]
 
 
 def _lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
-    """One row of a pair of lights; the word is for terminals and eyes without colours."""
+    """Return one row of a pair of lights; the word is for terminals and users without colour."""
     red, green, blue = led_rgb(*lamp)
     ink = "#101010" if 3 * red + 6 * green > 1000 else "#d8d8d8"
     style = Style(color=ink, bgcolor=Color.from_rgb(red, green, blue))

@@ -1,4 +1,4 @@
-"""Cells: two pixels one above the other, packed into a number, and what changed between two frames."""
+"""Cells: two pixels one above the other packed into a number, and the difference between two frames."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def to_cells(picture: Pixels) -> Cells:
 
 
 def changed_runs(old: Cells, new: Cells, gap: int = MERGE_GAP) -> list[tuple[int, int, int]]:
-    """Return the runs of cells that differ between two frames of one shape.
+    """Return the runs of cells that differ between two frames of the same shape.
 
     Args:
-        old: What is on the screen.
-        new: What shall be there.
+        old: The frame on the screen.
+        new: The next frame.
         gap: Runs with fewer unchanged cells than this between them are joined.
 
     Returns:

@@ -1,4 +1,4 @@
-"""Colours a terminal can show: full colour, 256, 16, and grey."""
+"""The colours that a terminal supports: full colour, 256, 16, and grey."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _STANDARD = np.array(
     ],
     np.int32,
 )  # fmt: skip
-"""The 16 colours about as the common terminals show them; no two agree exactly."""
+"""The 16 colours roughly as common terminals show them; no two agree exactly."""
 
 _BAYER = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
 _DITHER = 24.0
@@ -35,7 +35,7 @@ _LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 
 @dataclass(frozen=True, slots=True)
 class ColorMode:
-    """What the terminal can show."""
+    """The colours that the terminal supports."""
 
     depth: int = TRUECOLOR
     grey: bool = False
@@ -43,16 +43,15 @@ class ColorMode:
 
 
 def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode) -> Pixels:
-    """Return pixels in colours that the terminal has.
+    """Return pixels in colours that the terminal supports.
 
-    With 16 colours, shades between them become fixed patterns of dots, so that a pale band
-    on white does not vanish.
+    With 16 colours, shades between them are dithered, so that a pale band on white does not vanish.
 
     Args:
         pixels: Shape (n, 3).
-        rows: The picture row of each, shape (n,); the pattern of dots hangs on it.
+        rows: The picture row of each, shape (n,); the dither pattern depends on it.
         cols: The picture column of each, shape (n,).
-        mode: What the terminal can show.
+        mode: The colours that the terminal supports.
 
     Returns:
         Shape (n, 3).
@@ -63,7 +62,7 @@ def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[
         return pixels
     if mode.depth >= PALETTE_256:
         return _palette_rgb()[_nearest_256(pixels.astype(np.int32))]
-    # Strong colours are near enough to one of the 16; dots would only spoil them.
+    # Strong colours are close enough to one of the 16; dithering would only spoil them.
     paleness = 1 - (pixels.max(axis=1).astype(np.float32) - pixels.min(axis=1)) / 255
     offset = (_BAYER[rows % 4, cols % 4] - 7.5) / 8 * _DITHER * paleness
     shaded = np.clip(pixels + offset[:, None], 0, 255).astype(np.int32)
@@ -71,14 +70,14 @@ def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[
 
 
 def sgr_index(rgb: int, depth: int) -> int:
-    """Return the palette number that comes nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
+    """Return the palette number nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
     color = np.array([[rgb >> 16, rgb >> 8 & 255, rgb & 255]], np.int32)
     return int((_nearest_256(color) if depth >= PALETTE_256 else _nearest_16(color))[0])
 
 
 @lru_cache(maxsize=1)
 def _palette_rgb() -> Pixels:
-    """Return the 256 colours, of which the first 16 are never asked for."""
+    """Return the 256 colours; the first 16 are never used."""
     cube = [(red, green, blue) for red in _CUBE for green in _CUBE for blue in _CUBE]
     return np.array([(0, 0, 0)] * 16 + cube + [(grey,) * 3 for grey in _GREYS], np.uint8)
 
@@ -95,7 +94,7 @@ def _nearest_256(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
 
 
 def _nearest_16(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
-    # Green weighs most and blue least, as in the eye.
+    # Green weighs most and blue least, as in human vision.
     errors = ((pixels[:, None, :] - _STANDARD) ** 2) @ np.array([3, 5, 2])
     nearest: npt.NDArray[np.intp] = errors.argmin(axis=1)
     return nearest

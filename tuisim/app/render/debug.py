@@ -1,4 +1,4 @@
-"""What a program that stands still looks like, as lines of text."""
+"""The state of a paused program as lines of text."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ REASONS = {
     "asked": "paused", "ticks": "ticks done", "step": "step", "line": "line reached", "break": "break",
     "instant": "recorded", "end": "end of the program",
 }  # fmt: skip
-"""Words for `protocol.PAUSES`."""
+"""Texts for `protocol.PAUSES`."""
 
 DOES = {
-    "running": ("space  pauses    n  holds at the next line",),
+    "running": ("space  pauses    n  pauses at the next line",),
     "waiting": ("The Output panel takes the answer.",),
 }
-"""By state of a program that stands nowhere: what can be done."""
+"""By state of a program that is not paused: the available keys."""
 OVER = (
-    "The program is over.",
+    "The program has ended.",
     "",
     "N  its last line    ,  a tick back",
     "g  go to …          <  a second back",
-    "n  step through it anew",
+    "n  step through it again",
 )
 EMPTY = (
-    "The program stands nowhere yet.",
+    "The program has not started.",
     "",
     "n  next line      t  breakpoint",
     "s  into a call    u  out of it",
@@ -54,23 +54,23 @@ EMPTY = (
 
 @dataclass(frozen=True, slots=True)
 class DebugView:
-    """What the panel shows."""
+    """The content of the debug panel."""
 
     state: str = ""
-    """Word for the run when it stands nowhere."""
+    """Word for the state of the run when it is not paused."""
     paused: Paused | None = None
     looked: Inspected | None = None
     past: bool = False
     busy: bool = False
-    """Whether a former instant is still being worked out."""
+    """Whether a past instant is still being computed."""
     source: str = ""
-    """The line itself, of a module beside the program: the code panel does not show that."""
+    """The source line, in a module beside the program, which the code panel does not show."""
     now: tuple[int, float] | None = None
-    """Tick and simulated time of the instant that the other panels show."""
+    """Tick and simulated time of the instant in the other panels."""
 
     @property
     def is_elsewhere(self) -> bool:
-        """Whether another instant than the one that is known here is looked at."""
+        """Whether the instant in view differs from the one that is known here."""
         return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
 
 
@@ -78,13 +78,13 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     """Return the text for a panel of that inner width."""
     if view.paused is None or view.looked is None:
         if view.busy:
-            return _told("", ("working out that instant …",), width)
+            return _told("", ("computing that instant …",), width)
         if view.state in DOES:
             return _told(view.state, DOES[view.state], width)
         return _told("", OVER if view.state == "ended" else EMPTY, width)
     lines = _known(view, view.paused, view.looked, width)
     if view.is_elsewhere and view.now:
-        # What is known belongs to another instant: it is pale until that of this one is there.
+        # The known data belongs to another instant: it is dimmed until that of this one has arrived.
         tick, time_s = view.now
         head: Line = [(cut(f"{time_s:.2f} s · tick {tick} …", width), _HEAD)]
         return [head, *([(text, _PALE) for text, _ in line] for line in lines[1:])]
@@ -92,7 +92,7 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
 
 
 def _known(view: DebugView, paused: Paused, looked: Inspected, width: int) -> list[Line]:
-    """What is known of the instant at which the program stands."""
+    """Return the known data of the instant at which the program is paused."""
     lines = [_where(view, paused, width)]
     if view.source:
         lines.append([(cut(f"  {view.source.strip()}", width), _VALUE)])
@@ -127,7 +127,7 @@ def _known(view: DebugView, paused: Paused, looked: Inspected, width: int) -> li
 
 
 def _told(head: str, texts: Sequence[str], width: int) -> list[Line]:
-    """Words where there is nothing else to show; in a narrow panel each key has a line of its own."""
+    """Return a text for an otherwise empty panel; in a narrow one, each key has a line of its own."""
     if max(map(len, texts)) > width:
         parts = [part for text in texts for part in re.split(" {3,}", text)]
         texts = [row for part in parts for row in textwrap.wrap(part, width) or [""]]
@@ -156,7 +156,7 @@ def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Li
     lines: list[Line] = [[(cut(title, width), _HEAD)]]
     if not variables:
         lines.append([("  none", _PALE)])
-    # What has changed is what one looks for.
+    # Changed variables are highlighted.
     for variable in sorted(variables, key=lambda one: not one.changed):
         style = _CHANGED if variable.changed else _VALUE
         lines.append(_pair(variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "))

@@ -1,4 +1,4 @@
-"""Sensor arrays: the discs of pixels under the colour sensors, as one picture."""
+"""The sensor arrays: the discs of pixels under the colour sensors, as one picture."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tuisim.app.render.mat import Pixels
 from tuisim.core.field import disc_mask
 
 FULL_PX = 20
-"""A disc is not drawn larger than this, or than its own diameter if that is less."""
+"""Largest size of a disc, besides its own diameter."""
 
 CORNER_RGB = (58, 70, 88)
-"""Outside the disc: neither black nor white nor a colour of a mat, so that its shape shows on any of them."""
+"""Outside the disc: neither black, white nor a colour of a mat, so that its outline is visible on any of them."""
 
 CORNER_16_RGB = (0, 0, 135)
-"""The same where there are 16 colours: their greys are too few to spare one."""
+"""The same for 16 colours, which have no grey to spare."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +29,13 @@ class DiscLayout:
     side_px: int
     """Side of the box of one disc."""
     corners: tuple[tuple[int, int], ...]
-    """Column and row of the upper left corner of each box."""
+    """Side of the box around a disc."""
     beside: bool
-    """Side by side rather than one above the other."""
+    """Column and row of the upper left corner of each box."""
 
 
 def lay_out(count: int, width_px: int, height_px: int) -> DiscLayout:
-    """Place discs in a picture as large as they fit, at most `FULL_PX`.
+    """Side by side rather than one above the other.
 
     Args:
         count: How many discs.
@@ -64,9 +64,9 @@ def draw_discs(
     """Return the picture of some discs.
 
     Args:
-        layout: Where they are.
-        boxes: For each the pixels of its box: d × d, three bytes a pixel, row-major.
-        ground_rgb: Colour of what is free.
+        layout: Their places.
+        boxes: The pixels of each box: d × d, three bytes a pixel, row-major.
+        ground_rgb: Background colour.
         corner_rgb: Colour of the corners of the boxes.
 
     Returns:
@@ -82,7 +82,7 @@ def draw_discs(
 
 
 def _scaled(box: bytes, side_px: int, corner_rgb: tuple[int, int, int]) -> Pixels:
-    """Return a disc of at most `side_px`, area-averaged if it has to be made smaller."""
+    """Return a disc of at most `side_px`, area-averaged if it has to be shrunk."""
     diameter = round((len(box) / 3) ** 0.5)
     pixels = np.frombuffer(box, np.uint8).reshape(diameter, diameter, 3).copy()
     pixels[~np.array(disc_mask(diameter))] = corner_rgb

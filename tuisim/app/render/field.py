@@ -1,4 +1,4 @@
-"""What is on the field: the pen's trace, ultrasonic rays, obstacles, a beacon."""
+"""Drawing on the field: pen trace, ultrasonic rays, obstacles, beacon."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tuisim.runs.arrays import FloatArray
 OBSTACLE_RGB = (175, 95, 0)
 OBSTACLE_EDGE_RGB = (135, 0, 0)
 MARKED_RGB = (255, 215, 0)
-"""Edge of the obstacle that is at hand."""
+"""Edge of the selected obstacle."""
 RAY_RGB = (0, 175, 175)
 _RAY_OPACITY = 0.55
 BEACON_RGB = (215, 0, 135)
@@ -24,14 +24,14 @@ _BEACON_MM = 25.0
 """Radius of a beacon."""
 
 _LONGEST_STEP_MM = 250.0
-"""Two trace points further apart are not joined: the robot was put somewhere else."""
+"""Two trace points further apart are not joined: the robot was placed elsewhere."""
 
 
 def trace_pixels(view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm: float) -> tuple[FloatArray, ...]:
     """Return the picture pixels that a trace covers.
 
     Args:
-        view: What the picture shows.
+        view: The visible part of the field.
         xs_mm: World x of the points in order, shape (n,); NaN lifts the pen.
         ys_mm: World y of the points, shape (n,).
         width_mm: Width of the pen; at least one pixel is drawn.
@@ -70,11 +70,11 @@ def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray,
 
 
 def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: Sequence[tuple[float, float]]) -> None:
-    """Paint rays that start at one point of the world, as far as they are on the field.
+    """Paint rays from one point of the world, as far as they are on the field.
 
     Args:
-        picture: Written in place.
-        view: What the picture shows.
+        picture: Modified in place.
+        view: The visible part of the field.
         x_mm: World x of the sensor.
         y_mm: World y of the sensor.
         rays: (world angle in degrees, length in mm) each.
@@ -100,13 +100,13 @@ def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: S
 
 
 def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None) -> None:
-    """Paint the boxes that stand on the field, each at least one pixel wide and high.
+    """Paint the obstacles, each at least one pixel wide and high.
 
     Args:
-        picture: Written in place.
-        view: What the picture shows.
+        picture: Modified in place.
+        view: The visible part of the field.
         obstacles: The boxes.
-        marked: Index of the one that is at hand.
+        marked: Index of the selected one.
     """
     for index, box in enumerate(obstacles):
         left, bottom = view.to_px(box.x_mm, box.y_mm)
@@ -119,13 +119,13 @@ def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle
 
 
 def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> None:
-    """Paint an infrared beacon, a disc with a light core of at least three pixels across.
+    """Paint an infrared beacon, a disc with a light core at least three pixels wide.
 
     Args:
-        picture: Written in place.
-        view: What the picture shows.
-        x_mm: World x of its middle.
-        y_mm: World y of its middle.
+        picture: Modified in place.
+        view: The visible part of the field.
+        x_mm: World x of its centre.
+        y_mm: World y of its centre.
     """
     col, row = (math.floor(at) for at in view.to_px(x_mm, y_mm))
     radius = max(1, round(_BEACON_MM / view.mm_per_px))

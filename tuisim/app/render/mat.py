@@ -1,4 +1,4 @@
-"""The mat made small: averaged over areas, with thin lines kept visible."""
+"""Area-averaged downscaling of the mat that keeps thin lines visible."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _edges(start_mm: float, mm_per_px: float, count: int, size_mm: int) -> tuple
     first, last = int(inside[0]), int(inside[-1]) + 1
     edges = np.floor(start_mm + np.arange(first, last + 1) * mm_per_px + 0.5).astype(np.intp)
     edges = np.clip(edges, 0, size_mm)
-    # Where a picture pixel is smaller than one of the mat, it shows the one that begins there.
+    # Where a picture pixel is smaller than a mat pixel, it shows the one that begins there.
     edges[:-1] = np.minimum(edges[:-1], size_mm - 1)
     edges[-1] = max(edges[-1], edges[-2] + 1)
     return slice(first, last), edges
@@ -83,7 +83,7 @@ def _keep_detail(mean: npt.NDArray[np.float32], low: npt.NDArray[np.float32], hi
 
 
 class MatPictures:
-    """Small pictures of one mat, remembered by viewport.
+    """Scaled pictures of one mat, cached by viewport.
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).

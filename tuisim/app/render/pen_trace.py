@@ -1,4 +1,4 @@
-"""The trace of the pen: what it has drawn, in the colours and widths it had then."""
+"""The trace of the pen, in the colours and widths that it was drawn with."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def pen_rgb(color: str) -> Rgb:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """Part of the trace, drawn with one pen."""
+    """A part of the trace, drawn with one pen."""
 
     xs_mm: FloatArray
     """Shape (n,); NaN lifts the pen."""
@@ -35,19 +35,19 @@ class Piece:
 
     @property
     def pen(self) -> tuple[Rgb, float]:
-        """What the pen was like."""
+        """The colour and width of the pen."""
         return self.rgb, self.width_mm
 
 
 class PenTrace:
-    """Everything that the pen has drawn and nobody has wiped off."""
+    """Everything that the pen has drawn since the trace was last cleared."""
 
     def __init__(self) -> None:
         self._pieces: list[Piece] = []
         self.count = 0
-        """How many points were ever added; grows with every change but wiping."""
+        """Number of points ever added; grows with every change but clearing."""
         self.wiped = 0
-        """How often it was wiped off."""
+        """How often the trace was cleared."""
 
     def add(self, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> None:
         """Add points, joined to the last ones if the pen is the same; NaN lifts it."""
@@ -61,19 +61,19 @@ class PenTrace:
         self._pieces.append(Piece(xs_mm, ys_mm, rgb, width_mm))
 
     def wipe(self) -> None:
-        """Forget everything."""
+        """Clear the trace."""
         self._pieces.clear()
         self.wiped += 1
 
     def pieces(self, first: int) -> Iterator[Piece]:
-        """Return the pieces from one on."""
+        """Return the pieces from index `first` on."""
         return iter(self._pieces[first:])
 
     def __len__(self) -> int:
         return len(self._pieces)
 
     def join(self) -> None:
-        """Make one piece of those that follow each other with the same pen, so that drawing them is one step."""
+        """Merge consecutive pieces of the same pen, so that they are drawn in one step."""
         joined = []
         for (rgb, width_mm), alike in groupby(self._pieces, key=lambda piece: piece.pen):
             pieces = list(alike)

@@ -19,7 +19,7 @@ _GHOST_OPACITY = 0.75
 
 @dataclass(frozen=True, slots=True)
 class SceneState:
-    """What is on the mat at one moment."""
+    """The objects on the mat at one moment."""
 
     robot: RobotSpec
     pose: Pose
@@ -27,24 +27,24 @@ class SceneState:
     rays: tuple[tuple[float, float], ...] = ()
     """(world angle in degrees, length in mm); empty to draw none."""
     rays_from: Pose | None = None
-    """Where the robot was when `rays` were cast; None for `pose`."""
+    """Pose of the robot when `rays` were cast; None for `pose`."""
     ghost: Pose | None = None
-    """A second robot, shown where it was read."""
+    """Pose of a second, translucent robot."""
     marked: int | None = None
-    """Index of the obstacle that is at hand."""
+    """Index of the selected obstacle."""
     pressed: tuple[bool, ...] = ()
-    """Which of the robot's bumpers are pressed."""
+    """Names of the bumpers that are pressed."""
     beacon: BeaconSpec | None = None
     """The infrared beacon on the field."""
 
 
 class ScenePainter:
-    """Draws one field. What stays from frame to frame is drawn once and kept.
+    """Draws one field. Caches what stays the same from frame to frame.
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
         outside_rgb: Colour of what lies off the mat.
-        trace: What the pen has drawn; it may grow, and be exchanged for another.
+        trace: The pen trace; it may grow, and be replaced.
         grey: Draw the robot for a terminal without colours.
     """
 

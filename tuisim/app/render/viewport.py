@@ -1,4 +1,4 @@
-"""Viewport: which part of the field a picture shows, and how large."""
+"""The viewport: which part of the field a picture shows, and its scale."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
 ZOOMS = (1, 2, 4)
-"""How often the whole-field scale can be enlarged."""
+"""Zoom factors, relative to the whole field."""
 
 _KEEP_INSIDE = 0.22
-"""A view that follows moves once the robot is nearer to an edge than this share of its size."""
+"""A following view moves once the robot is nearer to an edge than this share of its size."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Viewport:
     """World y of the top edge of the picture."""
 
     def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
-        """Return the picture column and row of a point of the world; whole numbers are pixel corners."""
+        """Return the picture column and row of a world point; whole numbers are pixel corners."""
         return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_px
 
     def to_mm(self, col_px: float, row_px: float) -> tuple[float, float]:
@@ -42,18 +42,17 @@ def whole_field(width_px: int, height_px: int) -> Viewport:
 
 
 def following(width_px: int, height_px: int, zoom: int, pose: Pose, previous: Viewport | None) -> Viewport:
-    """Return a viewport that keeps the robot in sight.
+    """Return a viewport that keeps the robot visible.
 
-    The view stands still until the robot comes near an edge, and then jumps so that the
-    robot is in the middle again: a picture that moved all the time would have to be sent
-    whole each frame.
+    The view stays still until the robot comes near an edge, and then jumps so that the robot is in the middle again: a
+    picture that moved all the time would have to be sent completely in each frame.
 
     Args:
         width_px: Width of the picture, at least 1.
         height_px: Height of the picture, at least 1.
         zoom: One of `ZOOMS`; 1 shows the whole field and never moves.
-        pose: Where the robot is.
-        previous: The viewport of the last frame, if there was one.
+        pose: The pose of the robot.
+        previous: The viewport of the last frame, if any.
     """
     if zoom == 1:
         return whole_field(width_px, height_px)
@@ -83,7 +82,7 @@ def _around(width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: 
 
 
 def _held(centre_mm: float, shown_mm: float, field_mm: float) -> float:
-    """Return the centre of a view, held so that it shows no more than needed of what is off the field."""
+    """Return the centre of a view, clamped so that as little as possible off the field is shown."""
     if shown_mm >= field_mm:
         return field_mm / 2
     return min(max(centre_mm, shown_mm / 2), field_mm - shown_mm / 2)
@@ -92,7 +91,7 @@ def _held(centre_mm: float, shown_mm: float, field_mm: float) -> float:
 def _well_inside(view: Viewport, pose: Pose) -> bool:
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     margin_col, margin_row = view.width_px * _KEEP_INSIDE, view.height_px * _KEEP_INSIDE
-    # Where the view already touches the end of the field there is nothing more to see.
+    # At the edge of the field there is nothing more to show.
     left = view.left_mm <= 0 or col >= margin_col
     right = view.left_mm + view.width_px * view.mm_per_px >= FIELD_WIDTH_MM or col <= view.width_px - margin_col
     top = view.top_mm >= FIELD_HEIGHT_MM or row >= margin_row

@@ -1,4 +1,4 @@
-"""Rows of a form: a name, a field that is typed into or chosen from, and below it what is wrong."""
+"""Rows of a form: a label, a text field or a choice, and an error line below."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tuisim.errors import ConfigError, TuisimError
 
 
 def reason(error: TuisimError) -> str:
-    """Return what is wrong, without where: that stands beside the field."""
+    """Return the message of an error without its location, which the field shows."""
     message = error.message
     if isinstance(error, ConfigError) and error.key and not error.file:
         message = message.removeprefix(f"{error.key}: ")
@@ -26,10 +26,10 @@ def reason(error: TuisimError) -> str:
 
 
 def typed_number(text: str, error: type[ConfigError]) -> float:
-    """Return a number that was typed, with a point or a comma.
+    """Parse a typed number, with a point or a comma.
 
     Raises:
-        ConfigError: of the class `error`: it is none.
+        ConfigError: of the class `error`: the text is no number.
     """
     try:
         return float(text.strip().replace(",", "."))
@@ -49,7 +49,7 @@ class Choice(Widget, can_focus=True):
 
     @dataclass
     class Stepped(Message):
-        """The user wants the choice so many steps on."""
+        """Posted when the user asks for another choice, some steps further on."""
 
         choice: Choice
         by: int
@@ -60,7 +60,7 @@ class Choice(Widget, can_focus=True):
 
     @property
     def value(self) -> str:
-        """The word shown; setting it tells nobody."""
+        """The word shown; setting it posts no message."""
         return self._word
 
     @value.setter
@@ -70,11 +70,11 @@ class Choice(Widget, can_focus=True):
             self.refresh()
 
     def action_step(self, by: int) -> None:
-        """Ask for another."""
+        """Ask for the choice `by` steps further on."""
         self.post_message(self.Stepped(self, by))
 
     def on_click(self, event: events.Click) -> None:
-        """Ask for the one before at the left end, else for the next."""
+        """Ask for the previous choice at the left end, else for the next."""
         event.stop()
         self.action_step(-1 if event.x == 0 else 1)
 
@@ -83,7 +83,7 @@ class Choice(Widget, can_focus=True):
         self.refresh()
 
     def on_blur(self) -> None:
-        """Show that they do no longer."""
+        """Show that the keys no longer work here."""
         self.refresh()
 
     def render(self) -> Text:
@@ -98,9 +98,9 @@ class Row(Vertical):
     """One row of a form.
 
     Args:
-        field: Id of what it edits; rows are told apart by it.
-        label: Its name; empty gives the field the whole width.
-        chosen: Whether it is chosen from, not typed into.
+        field: Id of the edited field, which identifies the row.
+        label: Its label; empty gives the field the whole width.
+        chosen: Whether it is a choice instead of a text field.
     """
 
     DEFAULT_CSS = """
@@ -113,7 +113,7 @@ class Row(Vertical):
 
     @dataclass
     class Entered(Message):
-        """The user has typed something, or asks for another choice."""
+        """Posted when the user has typed a value, or asks for another choice."""
 
         row: Row
         text: str
@@ -129,7 +129,7 @@ class Row(Vertical):
         self._shown = ""
 
     def compose(self) -> ComposeResult:
-        """Name and field, and the line below."""
+        """Create the child widgets."""
         with Horizontal():
             if self._label:
                 yield Label(self._label, markup=False)
@@ -137,7 +137,7 @@ class Row(Vertical):
         yield Static(classes="message", markup=False)
 
     def show(self, text: str) -> None:
-        """Show a value, unless another is being typed."""
+        """Show a value, unless another one is being typed."""
         if text != self._shown or not self._typing:
             self._shown = self.entry.value = text
             self.complain("")
@@ -147,14 +147,14 @@ class Row(Vertical):
         return self.entry.has_focus and self.entry.value != self._shown
 
     def complain(self, text: str) -> None:
-        """Say what is wrong below the field; empty for nothing."""
+        """Show an error below the field; empty removes it."""
         self.set_class(bool(text), "-wrong")
         self.entry.set_class(bool(text), "wrong")
         if self.is_mounted:
             self.query_one(".message", Static).update(text)
 
     def refuse(self, error: TuisimError) -> None:
-        """Say below the field why what was entered is not taken."""
+        """Show below the field why its value was rejected."""
         self.complain(reason(error))
 
     @on(Input.Submitted)
@@ -163,7 +163,7 @@ class Row(Vertical):
         self._enter()
 
     def on_descendant_blur(self) -> None:
-        """Take what was typed when the field is left."""
+        """Apply the typed value when the field loses the focus."""
         if isinstance(self.entry, Input) and self.entry.value != self._shown:
             self._enter()
 

@@ -1,4 +1,4 @@
-"""A field for a number."""
+"""A text field for a number."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _SIGNS = frozenset({
     "colon", "equals_sign", "left_parenthesis", "left_square_bracket", "less_than_sign", "greater_than_sign",
     "question_mark", "right_parenthesis", "right_square_bracket", "space",
 })  # fmt: skip
-"""Keys of characters that stand in no number."""
+"""Keys of punctuation that cannot be part of a number."""
 
 
 class NumberInput(Input):
-    """A field for a number, in which letters and signs that stand in no number are still keys of the app."""
+    """A text field for a number; letters and other characters remain keys of the app."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(key, f"app.act('{action.id}')", action.title, show=False, priority=True)

@@ -1,4 +1,4 @@
-"""A slider: a whole number from 0 to some end, set with the mouse or the arrow keys."""
+"""A slider: a whole number from 0 to a maximum, set with the mouse or the arrow keys."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Slider(Widget, can_focus=True):
 
     Args:
         maximum: The number at the right end.
-        id: As of any widget.
+        id: Id of the widget.
     """
 
     DEFAULT_CSS = "Slider { height: 1; width: 1fr; min-width: 6; }"
@@ -37,16 +37,16 @@ class Slider(Widget, can_focus=True):
 
     @dataclass
     class Changed(Message):
-        """The user has set another number."""
+        """Posted when the user sets another number."""
 
         slider: Slider
         value: int
         done: bool = True
-        """False while the mouse holds the knob; its last number comes again when it lets go."""
+        """False while the mouse holds the knob; its last number is posted again on release."""
 
         @property
         def control(self) -> Slider:
-            """The slider, so that handlers can be chosen by its id."""
+            """The slider, so that handlers can select it by id."""
             return self.slider
 
     def __init__(self, maximum: int, id: str) -> None:  # noqa: A002 (as every widget's)
@@ -57,7 +57,7 @@ class Slider(Widget, can_focus=True):
 
     @property
     def value(self) -> int:
-        """The number; setting it tells nobody."""
+        """The number; setting it posts no message."""
         return self._value
 
     @value.setter
@@ -74,27 +74,27 @@ class Slider(Widget, can_focus=True):
             self.post_message(self.Changed(self, self._value, not self.dragging))
 
     def action_move(self, step: int) -> None:
-        """Go up or down."""
+        """Change the number by a step."""
         self._choose(self._value + step)
 
     def action_put(self, value: int) -> None:
-        """Go to a number."""
+        """Set the number."""
         self._choose(value)
 
     def action_put_last(self) -> None:
-        """Go to the right end."""
+        """Set the maximum."""
         self._choose(self.maximum)
 
     def _knob(self) -> int:
         return round(self._value / self.maximum * (self.size.width - 1))
 
     def _under(self, event: events.MouseEvent) -> int:
-        """The number under the mouse."""
+        """Return the number under the mouse."""
         last = max(self.size.width - 1, 1)
         return round(min(max(event.x, 0), last) / last * self.maximum)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Take the knob to the mouse and hold it."""
+        """Move the knob to the mouse and grab it."""
         if event.button == 1:
             event.stop()
             self.focus()
@@ -104,20 +104,20 @@ class Slider(Widget, can_focus=True):
                 self._choose(self._under(event))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Take the knob along."""
+        """Drag the knob."""
         if self.dragging:
             event.stop()
             self._choose(self._under(event))
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Let go of the knob."""
+        """Release the knob."""
         if self.dragging:
             event.stop()
             self._let_go()
             self.release_mouse()
 
     def on_mouse_release(self) -> None:
-        """Let go: a dialog has taken the mouse."""
+        """Release the knob: a dialog has captured the mouse."""
         if self.dragging:
             self._let_go()
 
@@ -126,12 +126,12 @@ class Slider(Widget, can_focus=True):
         self.post_message(self.Changed(self, self._value))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Go up a step."""
+        """Increase the number by a step."""
         event.stop()
         self._choose(self._value + STEP)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        """Go down a step."""
+        """Decrease the number by a step."""
         event.stop()
         self._choose(self._value - STEP)
 
@@ -140,7 +140,7 @@ class Slider(Widget, can_focus=True):
         self.refresh()
 
     def on_blur(self) -> None:
-        """Show that they do no longer."""
+        """Show that the keys no longer work here."""
         self.refresh()
 
     def render(self) -> Text:
@@ -149,6 +149,6 @@ class Slider(Widget, can_focus=True):
         filled, empty, held = (
             self.get_component_rich_style(f"slider--{part}", partial=True) for part in ("filled", "empty", "knob")
         )
-        # A form of its own for the focus, so that it is seen without colours too.
+        # A different glyph shows the focus, so that it is visible without colours too.
         mark = Text("◆" if self.has_focus else "●", held + Style(bold=True))
         return Text.assemble(("━" * knob, filled), mark, ("─" * (width - knob - 1), empty), no_wrap=True, end="")

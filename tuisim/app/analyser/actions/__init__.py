@@ -1,1 +1,1 @@
-"""What the keys of the analyser do."""
+"""Functions behind the keys of the analyser."""

@@ -1,4 +1,4 @@
-"""What the keys for events do: ask for thresholds, and go from one crossing to the next."""
+"""Functions behind the keys for events: set thresholds, and go to the next or previous crossing."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log
 
 _FORMS = (
-    ("Colour < 50", "where it comes below 50"),
-    ("Colour > 50", "where it comes above"),
+    ("Colour < 50", "where it falls below 50"),
+    ("Colour > 50", "where it rises above 50"),
     ("Colour = 50", "both"),
     ("Colour = 50 +- 5", "only if it goes 5 beyond on either side"),
     ("Colour < 50, Left > 3", "several"),
@@ -24,7 +24,7 @@ _FORMS = (
 
 
 def show(screen: Analyser) -> None:
-    """Show the events; ask for what is one if there is nothing to show, or they are shown already."""
+    """Show the events; ask for thresholds if there are none, or if the events are shown already."""
     model = screen.model
     if model is None:
         return
@@ -48,14 +48,14 @@ def ask(screen: Analyser) -> None:
         thresholds = thresholds_of(text, log)
         work(
             screen,
-            "events are searched for …",
+            "searching for events …",
             log.rows,
             lambda _: (log, thresholds, events_of(log, thresholds)),
             found,
         )
 
     def found(those: tuple[Log, tuple[Threshold, ...], list[Event]]) -> None:
-        # Of a log that has grown meanwhile they are found anew.
+        # The log may have grown meanwhile: search again.
         screen.at_hand().events.take(*those)
         screen.choose(0)
         screen.update()
@@ -65,7 +65,7 @@ def ask(screen: Analyser) -> None:
 
 
 def jump(screen: Analyser, step: int) -> None:
-    """Go to the next event, or the one before."""
+    """Go to the next event, or the previous one."""
     model = screen.model
     if model is None:
         return
@@ -83,7 +83,7 @@ def jump(screen: Analyser, step: int) -> None:
 
 
 def go_to(screen: Analyser, number: int) -> None:
-    """Put the cursor at an event."""
+    """Put the cursor on an event."""
     model = screen.model
     if model is None:
         return

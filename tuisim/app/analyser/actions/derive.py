@@ -1,4 +1,4 @@
-"""Asking for a variable that is made of others."""
+"""The prompt for a derived variable."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ _FORMS: tuple[Form, ...] = (
     ("integral(Colour)", "sum over time"),
     ("resample(Colour, 0.1)", "at even moments, every 0.1 s"),
     ("(Left + Right) / 2", "+ - * / // % ** < > == and or not, a if b else c"),
-    ("speed =", "takes it away again"),
+    ("speed =", "removes it again"),
 )
-_RECKONING: Form = (RECKONING, "where the wheels say the robot is, and the error_mm")
+_RECKONING: Form = (RECKONING, "the pose by dead reckoning, and the error_mm")
 
 
 def ask(screen: Analyser) -> None:
-    """Ask for a variable that is made of others."""
+    """Ask for a derived variable."""
     model = screen.model
     if model is None:
         return
 
     def go(text: str) -> None:
         model = screen.at_hand()
-        work(screen, "reckoning …", model.log.rows, lambda _: (model, *with_definition(model, text)), taken)
+        work(screen, "computing …", model.log.rows, lambda _: (model, *with_definition(model, text)), taken)
 
     def taken(made: tuple[Model, str, Log]) -> None:
         of, text, log = made
@@ -45,18 +45,18 @@ def ask(screen: Analyser) -> None:
         if model is of:
             take(model, text, log)
         else:
-            # The log has grown meanwhile.
+            # The log may have grown meanwhile.
             derive(model, text)
         screen.redraw_chart()
         screen.update()
 
     can_reckon = set(NEEDED) <= set(model.log.table.column_names)
     forms = (*_FORMS, *((_RECKONING,) if can_reckon else ()), ("functions", ", ".join(FUNCTIONS)))
-    screen.app.push_screen(LinePrompt("Reckon a variable", go, forms=forms, words=tuple(words(model.log))))
+    screen.app.push_screen(LinePrompt("Derive a variable", go, forms=forms, words=tuple(words(model.log))))
 
 
 def words(log: Log) -> Iterator[str]:
-    """Yield what may stand in an expression: variables, columns, functions."""
+    """Yield the words allowed in an expression: variables, columns, functions."""
     columns = (at.name for at in log.table.schema if is_numeric(at.type))
     known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *columns, TIME))
     yield from (name if name.isidentifier() else f"`{name}`" for name in known)

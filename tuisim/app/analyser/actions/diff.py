@@ -1,4 +1,4 @@
-"""Where two runs part: told in a dialog, from which one goes there."""
+"""Shows where two runs differ, in a dialog from which the user can go there."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WHICH = (("last", "the newest run"), ("12", "run 12"))
 
 
 def show(screen: Analyser) -> None:
-    """Tell what differs between the first two runs that are open; of one run, ask for the other."""
+    """Show the differences between the first two open runs; with a single run, ask for the other one."""
     model = screen.model
     if model is None:
         return
@@ -38,7 +38,7 @@ def show(screen: Analyser) -> None:
                 raise LogError("with which run?", "its number, its id, or last")
             other = RunStore().load_run(text)
             if other.id == first.id:
-                raise LogError("that is the run itself", f"another one than {_named(first)}")
+                raise LogError("that is the same run", f"a run other than {_named(first)}")
             _compare(screen, model, first, other)
 
         screen.app.push_screen(LinePrompt(f"Compare {_named(first)} with", go, forms=_WHICH))
@@ -61,16 +61,16 @@ def _tell(screen: Analyser, model: Model, first: StoredRun, second: StoredRun, d
         if wished and parted_s is not None and screen.model is model:
             _go_to(screen, model, parted_s)
 
-    # After the dialog that has asked for the run is gone.
+    # Wait until the dialog that asked for the run is closed.
     screen.call_later(screen.app.push_screen, Differences(_named(first), _named(second), diff, samples=True), answered)
 
 
 def _go_to(screen: Analyser, model: Model, time_s: float) -> None:
-    """Put the cursor, of the first run, where the runs part."""
+    """Put the cursor, in the first run, where the runs begin to differ."""
     name = model.selected.partition(" #")[0]
     selected = next((trace.name for trace in model.traces if trace.name in (name, f"{name} #1")), model.selected)
     if not model.log.rows:
-        screen.say(f"They part at {time_s:.2f} s; no sample was printed")
+        screen.say(f"They differ from {time_s:.2f} s; no sample was printed")
         return
     model.selected = selected
     model.go_to_moment(time_s)

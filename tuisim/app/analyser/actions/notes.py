@@ -1,4 +1,4 @@
-"""Notes of the analyser: on a sample, on a band, or on the span between the two cursors."""
+"""Notes of the analyser: on a sample, on a band, or on the range between the two cursors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def write(screen: Analyser) -> None:
-    """Ask for a note; on a band it begins with what is known of it."""
+    """Ask for a note; on a band, its known properties are filled in."""
     model = screen.model
     if model is None or not model.log.rows:
         return
@@ -34,7 +34,7 @@ def write(screen: Analyser) -> None:
 
     def keep(text: str) -> None:
         if not text:
-            raise LogError("the note is empty", "Escape leaves it")
+            raise LogError("the note is empty", "Escape cancels")
         screen.at_hand().add_note(text, start_s, stop_s, name, run)
         screen.say("Noted: n lists the notes")
         screen.update()
@@ -43,7 +43,7 @@ def write(screen: Analyser) -> None:
 
 
 def _mark_time_s(model: Model) -> float:
-    """Time in its run of the sample at the other cursor."""
+    """Return the time, in its run, of the sample at the second cursor."""
     trace = model.trace_of_row(model.row)
     if model.mark_s is None or not len(trace.pyramid.times_s):
         return model.time_of(model.row)
@@ -51,7 +51,7 @@ def _mark_time_s(model: Model) -> float:
 
 
 def delete(screen: Analyser) -> None:
-    """Delete the chosen note."""
+    """Delete the selected note."""
     model = screen.model
     if model is None or screen.pane.name_shown != "notes" or not model.notes:
         screen.say("n lists the notes; delete then deletes the chosen one")

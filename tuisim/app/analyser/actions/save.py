@@ -1,4 +1,4 @@
-"""What leaves the analyser as a picture or a page: the chart as shown, the report."""
+"""Saves the chart as shown, or the report."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from tuisim.app.analyser.screen import Analyser
 
 _MANY_ROWS = 20_000
-"""A search for bands in more of them would hold up the keys."""
+"""With more rows than this, searching for bands would block the keys."""
 _CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it stands here"))
 _REPORTS = (("run-report.html", "program, world, chart, bands, statistics and notes on one page"),)
 
 
 def ask_chart(screen: Analyser) -> None:
-    """Ask for the file that the chart is saved to: as shown, with the time and the variables that are chosen."""
+    """Ask for the file to save the chart to: with the time range and the variables as shown."""
     from tuisim.charts.figure import View
     from tuisim.charts.files import save_chart
 
@@ -35,7 +35,7 @@ def ask_chart(screen: Analyser) -> None:
 
     def go(text: str) -> None:
         target = _file(text, "such as chart.svg")
-        # Text has the size of the chart that it is taken from, if that is to be seen; pictures have their own.
+        # Text gets the size of the chart on the screen, if visible; images have their own size.
         shown = screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
         size = (shown.width, shown.height) if shown else None
         save_chart(model, View(look.facets, look.marks, look.hold, look.against), target, size)
@@ -46,7 +46,7 @@ def ask_chart(screen: Analyser) -> None:
 
 
 def ask_report(screen: Analyser) -> None:
-    """Ask for the file that the report is written to."""
+    """Ask for the file to write the report to."""
     from tuisim.report.report import check_report, default_name
 
     model = screen.model
@@ -69,7 +69,7 @@ def _file(text: str, hint: str) -> Path:
 
 
 def _write(screen: Analyser, subject: OpenedLog, target: Path, names: Sequence[str]) -> None:
-    """Write the report, beside the screen."""
+    """Write the report in the background."""
     from tuisim.logs.plateau_process import plateaus_aside
     from tuisim.logs.plateaus import plateaus
     from tuisim.report.report import write_report

@@ -1,7 +1,7 @@
-"""Every key of the analyser: what it does and what it is called.
+"""The table of the analyser's keys: what each one does, and its name.
 
-To add a key: write its function in `doing.py` or `tabling.py` and add a line to `ACTIONS`. Binding, footer, help and
-command palette follow from the line.
+To add a key: write its function in this package and add a line to `ACTIONS`. Binding, footer, help and command palette
+follow from the line.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ class Action:
 
     id: str
     key: str
-    """As Textual names it."""
+    """In Textual's notation."""
     label: str
-    """As people write it."""
+    """Display name of the key."""
     title: str
     group: str
     do: Callable[[Analyser], None]
     footer: str = ""
-    """Short word for the footer; empty keeps it out."""
+    """Short label for the footer; empty leaves the key out of it."""
     of_rows: bool = True
-    """Whether it does something with the rows, and so nothing if there are none."""
+    """Whether it acts on the rows, and so needs some."""
 
 
-# The footer shows them in this order, as far as they fit.
+# The footer shows the actions in this order, as far as they fit.
 ACTIONS: Mapping[str, Action] = {
     action.id: action
     for action in (
@@ -79,7 +79,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("hold", "H", "H", "Hold each value until the next, or not", CHART, view.hold),
         Action("align", "A", "A", "Lay runs over each other by time, distance or an event", CHART, view.ask_alignment),
         Action("against", "k", "k", "Draw the path, or one variable against another", CHART, view.ask_against),
-        Action("derive", "d", "d", "Reckon a variable: slope(Colour), (Left + Right) / 2", LOG, derive.ask, "reckon"),
+        Action("derive", "d", "d", "Derive a variable: slope(Colour), (Left + Right) / 2", LOG, derive.ask, "reckon"),
         Action("larger", "plus", "+", "Chart and pane, chart alone, pane alone", CHART, view.larger, of_rows=False),
         Action("column-before", "less_than_sign", "<", "Column before", TABLE, partial(table_view.choose, step=-1)),
         Action("column", "greater_than_sign", ">", "Next column", TABLE, partial(table_view.choose, step=1)),
@@ -103,11 +103,11 @@ ACTIONS: Mapping[str, Action] = {
         Action("columns", "C", "C", "Say what the columns of the file are", LOG, columns.ask, of_rows=False),
         Action("open-runs", "R", "R", "Open other runs, several laid over each other", LOG,
                 view.ask_runs, of_rows=False),
-        Action("differences", "D", "D", "Where two runs part, and go there", LOG, diff.show, of_rows=False),
+        Action("differences", "D", "D", "Where two runs differ, and go there", LOG, diff.show, of_rows=False),
         Action("beside", "w", "w", "World beside the log, or not", PANE, view.beside, of_rows=False),
         Action("help", "question_mark", "?", "Help", LOG, view.show_help, "help", of_rows=False),
         Action("suspend", "ctrl+z", "ctrl+z", "Suspend: fg in the shell comes back", LOG, view.suspend, of_rows=False),
         Action("leave", "q,escape", "q", "Leave the analyser", LOG, view.leave, "leave", of_rows=False),
     )
 }  # fmt: skip
-"""Every key by the id of what it does."""
+"""The actions by id."""

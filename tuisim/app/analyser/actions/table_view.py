@@ -1,4 +1,4 @@
-"""What the keys of the analyser's table do: columns, sorting, filters, search, and copying."""
+"""Functions behind the keys of the table: columns, sorting, filters, search, and copying."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tuisim.app.analyser.screen import Analyser
 
 MOST_COPIED = 10_000
-"""Rows: terminals drop what is much longer."""
+"""Most rows to copy: terminals drop longer texts."""
 
 _FILES = (("rows.csv", "text"), (".parquet .arrow .jsonl", "the same with all types and what the log says of its runs"))
 _FILTERS = (
@@ -29,14 +29,14 @@ _FILTERS = (
 
 
 def choose(screen: Analyser, step: int) -> None:
-    """Go to another column."""
+    """Select another column."""
     if screen.model is not None:
         screen.model.rows.choose(step)
         screen.update()
 
 
 def sort(screen: Analyser) -> None:
-    """Sort by the chosen column: upwards, downwards, not at all."""
+    """Sort by the selected column: ascending, descending, not at all."""
     if screen.model is None:
         return
     model, rows = screen.model, screen.model.rows
@@ -48,7 +48,7 @@ def sort(screen: Analyser) -> None:
 
 
 def _arrange(screen: Analyser, model: Model, arrangement: TableView) -> None:
-    """Show rows that were chosen and put in order, the cursor among them."""
+    """Show filtered and sorted rows, the cursor among them."""
     if screen.model is not model:
         return
     rows = model.rows
@@ -59,7 +59,7 @@ def _arrange(screen: Analyser, model: Model, arrangement: TableView) -> None:
 
 
 def ask_filter(screen: Analyser) -> None:
-    """Ask which rows to show."""
+    """Ask for a filter."""
     model = screen.model
     if model is None:
         return
@@ -87,7 +87,7 @@ def show_all(screen: Analyser) -> None:
 
 
 def ask_search(screen: Analyser) -> None:
-    """Ask what to search for."""
+    """Ask for a search text."""
 
     def go(text: str) -> None:
         screen.searched = text
@@ -99,7 +99,7 @@ def ask_search(screen: Analyser) -> None:
 
 
 def find(screen: Analyser, step: int) -> None:
-    """Go to the next or the former place found."""
+    """Go to the next or previous match."""
     if not screen.searched:
         ask_search(screen)
     else:
@@ -110,10 +110,10 @@ def find(screen: Analyser, step: int) -> None:
 
 
 def _find(screen: Analyser, step: int) -> None:
-    """Go to the next place found, or the former one.
+    """Go to the next or previous match; may search in the background.
 
     Raises:
-        LogError: there is none, if that is known at once.
+        LogError: there is no match, if that is known at once.
     """
     model, text = screen.model, screen.searched
     if model is None:
@@ -124,7 +124,7 @@ def _find(screen: Analyser, step: int) -> None:
     def search(task: TableTask) -> int:
         place = rows.find(text, here, step, task)
         if place is None:
-            raise LogError(f"{text!r} is nowhere", "in the rows and columns that are shown")
+            raise LogError(f"{text!r} was not found", "in the rows and columns that are shown")
         return place
 
     def found(place: int) -> None:
@@ -138,21 +138,21 @@ def _find(screen: Analyser, step: int) -> None:
 
 
 def hide(screen: Analyser) -> None:
-    """Hide the chosen column."""
+    """Hide the selected column."""
     if screen.model is not None:
         screen.model.rows.hide()
         screen.update()
 
 
 def freeze(screen: Analyser) -> None:
-    """Keep the chosen column at the left, or let it go."""
+    """Freeze the selected column at the left, or release it."""
     if screen.model is not None:
         screen.model.rows.freeze()
         screen.update()
 
 
 def ask_export(screen: Analyser) -> None:
-    """Ask for the file that the rows of the pane are written to, those of the table with the columns that are shown."""
+    """Ask for the file to export the rows of the pane to; of the table, only the columns shown."""
     pane = screen.pane.name_shown
     if screen.model is None or (pane != "table" and not PANES[pane].rows(screen.model)):
         screen.say("There are no rows here to export: t shows the table")
@@ -168,21 +168,21 @@ def ask_export(screen: Analyser) -> None:
 
 
 def copy_value(screen: Analyser) -> None:
-    """Copy the chosen cell."""
+    """Copy the selected cell."""
     if screen.model is not None and screen.model.log.rows:
         rows = screen.model.rows
         screen.copy(rows.text(screen.model.row, rows.chosen), f"{rows.chosen} of row {screen.model.row + 1}")
 
 
 def copy_row(screen: Analyser) -> None:
-    """Copy the row of the cursor, its cells apart by tabs."""
+    """Copy the row of the cursor, with tabs between the cells."""
     if screen.model is not None and screen.model.log.rows:
         rows, row = screen.model.rows, screen.model.row
         screen.copy("\t".join(rows.text(row, column) for column in rows.columns), f"row {row + 1}")
 
 
 def copy_pane(screen: Analyser) -> None:
-    """Copy the pane: of the table all rows that are shown, under their heads."""
+    """Copy the pane: of the table all rows shown, with the header."""
     model, name = screen.model, screen.pane.name_shown
     if model is None or not model.log.rows:
         return

@@ -1,4 +1,4 @@
-"""What the keys of the analyser do, but for table and notes."""
+"""Functions behind the keys of the analyser, except those of table and notes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WHERE = (("120", "row 120"), ("2.5s", "the sample nearest to 2.5 seconds"), ("5
 _ALIGNMENTS = (
     ("time", "their beginnings"),
     ("distance", "how far each has driven"),
-    ("Colour < 50", "the moment at which each first comes to that"),
+    ("Colour < 50", "the moment at which each first meets that"),
 )
 _AGAINST = (
     ("y_mm against x_mm", "the path of the robot"),
@@ -39,7 +39,7 @@ def turn_to(screen: Analyser, pane: str) -> None:
 
 
 def rows(screen: Analyser, step: int) -> None:
-    """Go to another row of the pane."""
+    """Move by rows of the pane."""
     model, pane = screen.model, screen.pane
     if model is None:
         return
@@ -54,7 +54,7 @@ def rows(screen: Analyser, step: int) -> None:
 
 
 def pages(screen: Analyser, step: int) -> None:
-    """Go to another page of the pane."""
+    """Move by pages of the pane."""
     rows(screen, step * screen.pane.lines)
 
 
@@ -78,7 +78,7 @@ def columns(screen: Analyser, step: int) -> None:
 
 
 def ask_where(screen: Analyser) -> None:
-    """Ask where to go."""
+    """Ask for a row or a time, and go there."""
     model = screen.model
     if model is None:
         return
@@ -94,7 +94,7 @@ def ask_where(screen: Analyser) -> None:
         elif text.isdecimal() and 0 < int(text) <= model.log.rows:
             model.go_to_row(int(text) - 1)
         else:
-            raise LogError(f"{text!r} is no place", f"a row from 1 to {model.log.rows}, or a time such as 2.5s")
+            raise LogError(f"{text!r} is no row or time", f"a row from 1 to {model.log.rows}, or a time such as 2.5s")
         model.follow_cursor()
         screen.update()
 
@@ -102,49 +102,49 @@ def ask_where(screen: Analyser) -> None:
 
 
 def mark(screen: Analyser) -> None:
-    """Put the other cursor here, or take it away."""
+    """Set the second cursor here, or remove it."""
     if screen.model is not None:
         screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
         screen.update()
 
 
 def zoom(screen: Analyser, factor: float) -> None:
-    """Show less or more time."""
+    """Show a shorter or longer time range."""
     if screen.model is not None:
         screen.model.zoom(factor)
         screen.update()
 
 
 def pan(screen: Analyser, share: float) -> None:
-    """Show what is earlier or later."""
+    """Show an earlier or later time range."""
     if screen.model is not None:
         screen.model.pan(share)
         screen.update()
 
 
 def fit(screen: Analyser) -> None:
-    """Show the whole time."""
+    """Show the whole time range."""
     if screen.model is not None:
         screen.model.limits = None
         screen.update()
 
 
 def select(screen: Analyser, step: int) -> None:
-    """Choose another variable."""
+    """Select another variable."""
     if screen.model is not None:
         screen.model.select(step)
         screen.update()
 
 
 def tick(screen: Analyser) -> None:
-    """Show or hide the chosen variable."""
+    """Show or hide the selected variable."""
     if screen.model is not None and screen.model.selected:
         screen.model.trace.on = not screen.model.trace.on
         screen.update()
 
 
 def facets(screen: Analyser) -> None:
-    """One chart for each variable, or one for all."""
+    """Switch between one chart per variable and one for all."""
     screen.chart.look.facets = not screen.chart.look.facets
     screen.redraw_chart()
     if screen.chart.look.facets and screen.model is not None:
@@ -155,25 +155,25 @@ def facets(screen: Analyser) -> None:
 
 
 def marks(screen: Analyser) -> None:
-    """Points or lines."""
+    """Switch between points and lines."""
     screen.chart.look.marks = not screen.chart.look.marks
     screen.redraw_chart()
 
 
 def hold(screen: Analyser) -> None:
-    """Hold each value until the next one, or not."""
+    """Switch sample-and-hold of values on or off."""
     screen.chart.look.hold = not screen.chart.look.hold
     screen.redraw_chart()
 
 
 def larger(screen: Analyser) -> None:
-    """Chart and pane, chart alone, pane alone."""
+    """Cycle through chart and pane, chart alone, pane alone."""
     both = screen.chart.display and screen.pane.display
     screen.lay_out(chart=both or not screen.chart.display, pane=not both)
 
 
 def beside(screen: Analyser) -> None:
-    """The world beside the log, or not."""
+    """Show or hide the world beside the log."""
     beside, model = screen.beside, screen.model
     if model is not None and not tells_places(model.subject):
         screen.say(NO_PLACE)
@@ -183,7 +183,7 @@ def beside(screen: Analyser) -> None:
 
 
 def ask_alignment(screen: Analyser) -> None:
-    """Ask how runs are laid over each other."""
+    """Ask how to align runs."""
     model = screen.model
     if model is None:
         return
@@ -198,7 +198,7 @@ def ask_alignment(screen: Analyser) -> None:
 
 
 def ask_against(screen: Analyser) -> None:
-    """Ask what to draw against what."""
+    """Ask which variables to draw against each other."""
     model, look = screen.model, screen.chart.look
     if model is None or not model.log.rows:
         return
@@ -222,7 +222,7 @@ def ask_against(screen: Analyser) -> None:
 
 
 def telemetry(screen: Analyser) -> None:
-    """What every tick recorded, or what was printed."""
+    """Switch between telemetry and samples."""
     wanted = screen.wanted
     if wanted.file:
         screen.say("A file has no recording besides: R opens stored runs")
@@ -250,7 +250,7 @@ def show_help(screen: Analyser) -> None:
 
 
 def suspend(screen: Analyser) -> None:
-    """Stop as a job of the shell."""
+    """Suspend the app as a shell job."""
     screen.app.action_suspend_process()
 
 
