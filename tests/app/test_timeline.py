@@ -151,7 +151,7 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
 
 async def test_words_that_are_no_place_are_answered() -> None:
     table = {
-        "": "where to?", "tomorrow": "not an instant", "9999": "the run has reached", "tick 99999": "the run has reached",
+        "": "where to?", "tomorrow": "not an instant", "9999": "run has reached", "tick 99999": "run has reached",
         "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "not an instant",
         "print [": "no regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
         "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is no number",
