@@ -60,7 +60,7 @@ def test_what_is_wrong_in_one_notebook_keeps_no_other_from_running(name: str, he
         ["1.ipynb#1", "finished"], [label, "not_run"], ["3.ipynb#1", "finished"],
     ]  # fmt: skip
     assert done.returncode == 2
-    assert f"tuisim: {label} is not run: " in done.stderr
+    assert f"tuisim: {label} was not run: " in done.stderr
 
 
 def test_the_worst_end_is_the_exit_code_and_json_tells_each(here: Command, tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_the_worst_end_is_the_exit_code_and_json_tells_each(here: Command, tmp_p
         pytest.param(VARIABLES[:2], "--all", "has no notebook with a program", id="none that runs here"),
         pytest.param(LESSON, "", "is a folder of 1 notebook (tuisim run ", id="not told to"),
         pytest.param(LESSON, "--all -b Nope", "tuisim: -b: no such mat 'Nope'", id="wrong switch"),
-        pytest.param(LESSON, "--all -- 5", "whose notebooks take no arguments", id="arguments"),
+        pytest.param(LESSON, "--all -- 5", "notebooks take no arguments", id="arguments"),
         pytest.param(LESSON, "--all --telemetry t.csv", "--telemetry: takes one program", id="telemetry"),
     ],
 )
