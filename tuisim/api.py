@@ -1,4 +1,4 @@
-"""Runs from scripts and notebooks: `simulate` starts a program and returns what it did."""
+"""The Python API: `simulate` runs a program and returns its results."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedRun:
-    """A run that is over."""
+    """A finished run."""
 
     stored: StoredRun
-    """The run as it is kept in the store."""
+    """The run in the run store."""
 
     @property
     def state(self) -> str:
@@ -41,24 +41,24 @@ class SimulatedRun:
 
     @property
     def time_s(self) -> float:
-        """Simulated seconds that it took."""
+        """Its duration in simulated seconds."""
         return self.stored.time_s
 
     @property
     def output(self) -> str:
-        """What the program printed."""
+        """The program's output on stdout."""
         return "".join(row.text + "\n" for row in self.stored.output.rows() if row.stream == STDOUT)
 
     @property
     def samples(self) -> pd.DataFrame:
-        """One row a printed `NAME: number`; columns as in `datalog.frames.SAMPLE_COLUMNS`."""
+        """One row per printed `NAME: number`; columns as in `runs.frames.SAMPLE_COLUMNS`."""
         from tuisim.runs.frames import samples_frame
 
         return samples_frame([self.stored])
 
     @property
     def telemetry(self) -> pd.DataFrame:
-        """One row a tick; times in s, lengths in mm, angles in degrees."""
+        """One row per tick; times in s, lengths in mm, angles in degrees."""
         from tuisim.runs.frames import telemetry_frame
 
         return telemetry_frame(self.stored)
@@ -69,23 +69,23 @@ class SimulatedRun:
 
 
 def world_at_end(run: StoredRun) -> Image:
-    """Return the world as a run left it, or as it is by now, as a Pillow image.
+    """Return the world at the end of a run, or at the latest tick of a running one, as a Pillow image.
 
     Raises:
-        LogError: the recording is damaged, or the mat cannot be found any more.
+        LogError: the recording is damaged, or the mat no longer exists.
     """
     from tuisim.charts.world_image import pen_trace, world_picture
     from tuisim.config.mat_cache import mat_pixels
     from tuisim.runs.mat import mat_files
 
     last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
-    # A robot that a damaged record has nowhere is left out.
+    # A damaged record may have no valid pose: the robot is then omitted.
     pose = last.pose if last and math.isfinite(last.x_mm + last.y_mm + last.heading_deg) else None
     return world_picture(run.spec, mat_pixels(mat_files(run)), pose, (trace,))
 
 
 def _by_name() -> dict[str, Option]:
-    """Every switch that takes part in a run, by its long names."""
+    """Return every switch that affects a run, by its long names."""
     return {
         flag.lstrip("-").replace("-", "_"): switch
         for switch in SWITCHES
@@ -96,10 +96,10 @@ def _by_name() -> dict[str, Option]:
 
 
 def choices_of(choices: Mapping[str, Any]) -> dict[str, Any]:
-    """Return keyword arguments as fields of `Settings`.
+    """Convert keyword arguments to fields of `Settings`.
 
     Args:
-        choices: By the long name of a switch, such as `background` or `x`; None is left out.
+        choices: Values by the long name of a switch, such as `background` or `x`; None is ignored.
 
     Raises:
         ConfigError: there is no such switch, or its value is wrong.
@@ -142,20 +142,20 @@ def simulate(
     timeout_s: float = 600.0,
     **choices: Any,
 ) -> SimulatedRun:
-    """Run a program to its end, as fast as possible, and return what it did.
+    """Run a program as fast as possible, block until it ends, and return its results.
 
-    An exception of the program is no exception here: see `state` and `error`.
+    An exception in the program is not raised here: see `state` and `error`.
 
     Args:
-        program: A file, the name of an example, or a text of several lines.
-        arguments: What the program finds in `sys.argv`, after its path.
-        answers: What `input()` returns, one after another.
-        timeout_s: Simulated seconds allowed.
+        program: A file, the name of an example, or source text of several lines.
+        arguments: The program's `sys.argv[1:]`.
+        answers: The return values of successive `input()` calls.
+        timeout_s: Limit in simulated seconds.
         choices: Switches by their long names: `background="Grey_bands", x=100, seed=7`.
 
     Raises:
-        ConfigError: program, magic line or a choice is wrong; nothing was run.
-        KeyboardInterrupt: ctrl-C; the run has been stopped, and what it logged is stored.
+        ConfigError: the program, its magic line or a choice is wrong; nothing was run.
+        KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     if not timeout_s > 0:
         raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")

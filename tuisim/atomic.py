@@ -1,4 +1,4 @@
-"""Files that are whole or not there: written beside their place, then renamed into it."""
+"""Atomic file writes: a temporary file in the same folder is renamed to its target."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 PART_SUFFIX = ".tmp"
-"""Ends the name of a file that is being written, `.NAME.random.tmp`; a killed process leaves it behind."""
+"""Suffix of a temporary file, `.NAME.random.tmp`; a killed process leaves it behind."""
 
 LEFT_OVER_S = 3600.0
 
@@ -18,15 +18,15 @@ _OWNER_FOLDER, _OWNER_FILE = 0o700, 0o600
 
 
 def private(path: str, flags: int) -> int:
-    """An opener for `open`: only the owner may read or write a file that it makes."""
+    """Opener for `open` that creates files with owner-only permissions."""
     return os.open(path, flags, _OWNER_FILE)
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder, and those above it that are missing, which only the owner may enter; one that is there stays.
+    """Create a folder and its missing parents with owner-only permissions; an existing folder is unchanged.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: it cannot be created.
     """
     missing = [folder]
     while not missing[-1].parent.exists():
@@ -37,22 +37,22 @@ def make_private_folder(folder: Path) -> None:
 
 @contextmanager
 def replacing(path: Path, *, lasting: bool = True, owner_only: bool = False) -> Iterator[BinaryIO]:
-    """Open a new file that takes the place of `path` when the block ends well.
+    """Open a new file that replaces `path` when the block ends without an exception.
 
-    If the block raises, or a write fails, `path` is as it was and nothing is left beside it.
-    A link stays one: the file that it leads to is replaced.
+    If the block raises, or a write fails, `path` is unchanged and no temporary file is left.
+    If `path` is a symbolic link, its target is replaced.
 
     Args:
-        path: The file; its folder must be there.
-        lasting: Whether it must outlive a power cut; False is quicker, for what can be made again.
-        owner_only: Whether nobody else may read it, whatever the umask says: so is all that is in `TUISIM_HOME`.
+        path: The file; its folder must exist.
+        lasting: Whether to `fsync`, so that the file survives a power cut; False is faster.
+        owner_only: Use owner-only permissions regardless of the umask, as for everything in `TUISIM_HOME`.
 
     Raises:
         OSError: the folder or the file cannot be written.
     """
     target = Path(os.path.realpath(path))
-    # Not `tempfile`: its files are readable by the owner only, whatever the umask says. Nor `secrets`, which brings
-    # `random` along: a run's process imports this before its chance comes from the seed.
+    # Not `tempfile`, which ignores the umask. Not `secrets`, which imports `random`: a child process imports this
+    # module before it seeds `random`.
     beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{PART_SUFFIX}")
     try:
         with open(beside, "xb", opener=private if owner_only else None) as handle:
@@ -66,12 +66,12 @@ def replacing(path: Path, *, lasting: bool = True, owner_only: bool = False) -> 
 
 
 def sweep(folder: Path, name: str = "*") -> None:
-    """Remove what killed processes left of files of this name; a `*` stands for any letters.
+    """Remove temporary files that killed processes left for files of this name; `*` is a wildcard.
 
-    Younger than an hour it may be of a process that still writes.
+    Files younger than an hour are kept: a process may still be writing them.
     """
     for beside in folder.glob(f".{name}.*{PART_SUFFIX}"):
-        # Another process may sweep too.
+        # Another process may be sweeping too.
         with suppress(FileNotFoundError):
             if time.time() - beside.stat().st_mtime > LEFT_OVER_S:
                 beside.unlink()

@@ -19,16 +19,16 @@ MOST_LISTED = 20
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names in words: the first ones, and how many more there are; `none` if there are none."""
+    """Return names as a comma-separated list, shortened to `MOST_LISTED`; `none` if there are none."""
     every = list(names)
     more = len(every) - MOST_LISTED
     return ", ".join(every[:MOST_LISTED]) + (f" and {more} more" if more > 0 else "") or "none"
 
 
 def printable(text: str) -> str:
-    """Return a text that stays on its line and that any terminal, font and file takes.
+    """Return a text as a single line that is safe in any terminal, font and file.
 
-    Names come from files and may hold what a terminal would obey; that becomes a question mark, white space a blank.
+    Control characters, which may come from files, become U+FFFD; white space becomes a blank.
     """
     if text.isprintable():
         return text
@@ -44,7 +44,7 @@ class TuisimError(Exception):
     """
 
     exit_code = 2
-    """What the shell command ends with when this error reaches it."""
+    """The exit code of the shell command for this error."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -62,7 +62,7 @@ class ConfigError(TuisimError):
     Args:
         message: What was wrong.
         hint: What is allowed.
-        file: The file it stands in, if there is one.
+        file: The file that contains it, if any.
         key: The key or switch, such as `ultrasonic.max_range_mm` or `-x`.
     """
 
@@ -74,29 +74,29 @@ class ConfigError(TuisimError):
 
 
 class BackgroundError(ConfigError):
-    """No such mat, or an image that cannot serve as one."""
+    """No such mat, or an image that cannot be used as one."""
 
 
 class RobotError(ConfigError):
-    """A robot description is impossible."""
+    """An invalid robot."""
 
 
 class ObstacleError(ConfigError):
-    """An obstacle is impossible."""
+    """An invalid obstacle."""
 
 
 class ProfileError(ConfigError):
-    """No such profile, or an impossible one."""
+    """No such profile, or an invalid one."""
 
 
 class ProgramError(TuisimError):
-    """The user's program could not go on.
+    """The user's program failed.
 
     Args:
         message: What happened.
         hint: What to do next.
         file: The program's file.
-        line: The line in it, from 1; 0 where none is known.
+        line: The line in it, from 1; 0 if unknown.
     """
 
     exit_code = 1
@@ -109,11 +109,11 @@ class ProgramError(TuisimError):
 
 
 class NotSimulated(ProgramError):
-    """The program used a part of ev3dev2 that a simulated brick does not have."""
+    """The program used a part of ev3dev2 that is not simulated."""
 
 
 class HostError(TuisimError):
-    """The child process died early or sent what the protocol does not allow."""
+    """The child process died or violated the protocol."""
 
 
 class LogError(TuisimError):
@@ -123,7 +123,7 @@ class LogError(TuisimError):
         message: What was wrong.
         hint: What to do next.
         file: The file.
-        row: The row in it, from 1; 0 where none is known.
+        row: The row in it, from 1; 0 if unknown.
     """
 
     def __init__(self, message: str, hint: str = "", *, file: str = "", row: int = 0) -> None:
@@ -134,4 +134,4 @@ class LogError(TuisimError):
 
 
 class ExportError(TuisimError):
-    """An export could not be written; nothing half written is left."""
+    """An export could not be written; no partial file is left."""

@@ -199,4 +199,4 @@ async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: 
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         app.loading.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
-        await until(pilot, lambda: sum("means nothing here: owner" in notice for notice in notices(app)) == 1)
+        await until(pilot, lambda: sum("ignored unknown keys: owner" in notice for notice in notices(app)) == 1)

@@ -129,7 +129,7 @@ def test_input(tmp_path: Path, name: str, content: bytes | Callable[[], bytes], 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("t_ms,red\n0,1\n9,2\n", "time is the column 't_ms', in milliseconds (--time COLUMN takes another"),
+        ("t_ms,red\n0,1\n9,2\n", "time is the column 't_ms', in milliseconds (--time COLUMN selects another"),
         ("boot,red\n0,1\n9,2\n", "no column is a time: the rows are counted (--time COLUMN"),
         ("row,red\n1,1\n2,2\n", "no column is a time: the rows are counted (--time COLUMN"),
     ],

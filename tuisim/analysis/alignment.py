@@ -1,4 +1,4 @@
-"""Runs laid over each other: by time, by the distance driven, or by an event in each of them."""
+"""Alignment of runs: by time, by distance driven, or by an event in each run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FORM = "time, distance, or an event such as `Colour < 50`"
 
 
 def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
-    """Return where the samples of each series stand; None: at their times.
+    """Return the x positions of the samples of each series; None: their times.
 
     Args:
         log: Where they come from.

@@ -83,14 +83,14 @@ _THRESHOLD = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Threshold:
-    """What a variable is watched for."""
+    """A threshold of a variable."""
 
     name: str
     op: str
     """`<`: comes below; `>`: comes above; `=`: either."""
     value: float
     hysteresis: float = 0.0
-    """So far from the value before and after, for a crossing to count."""
+    """Hysteresis: the signal must pass the value by this margin on both sides."""
 
     def __str__(self) -> str:
         width = f" +- {self.hysteresis:g}" if self.hysteresis else ""
@@ -120,7 +120,7 @@ class Event:
     time_s: float
     """When it crosses, between two samples."""
     since_s: float
-    """Time since the same variable's event before; not a number for the first."""
+    """Time since the variable's previous event; NaN for the first."""
     value: float
     """At the row."""
 
@@ -171,7 +171,7 @@ def events_of(log: Log, thresholds: Sequence[Threshold]) -> list[Event]:
 
 
 class Events:
-    """The events that are looked at, found anew when the log has changed."""
+    """The current events; they are searched again when the log changes."""
 
     def __init__(self) -> None:
         self.thresholds: tuple[Threshold, ...] = ()
@@ -179,7 +179,7 @@ class Events:
         self._found: list[Event] = []
 
     def take(self, log: Log, thresholds: tuple[Threshold, ...], found: list[Event]) -> None:
-        """Have events that were found."""
+        """Set the events."""
         self.thresholds, self._of, self._found = thresholds, (log, thresholds), found
 
     def found(self, log: Log) -> list[Event]:
@@ -190,7 +190,7 @@ class Events:
 
 
 def place_of_event(model: Model, event: Event) -> float:
-    """Return where an event stands along the chart."""
+    """Return the x position of an event in the chart."""
     trace = model.traces.named(event.variable)
     return event.time_s + float(trace.places[event.sample] - trace.series.time_s[event.sample])
 

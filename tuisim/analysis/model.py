@@ -1,4 +1,4 @@
-"""The state of an analysis: one cursor in time, the selection, derived variables and the notes."""
+"""The state of an analysis: the cursor, the selection, derived variables and notes."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log
 
 _LEAST_SPAN = 1e-9
-"""Of the whole time: the chart zooms in no further."""
+"""Smallest visible fraction of the whole time."""
 _SORTED_AT_ONCE = 200_000
-"""So many values have their quantiles found within a few hundredths of a second."""
+"""Up to this number of values, quantiles take only some hundredths of a second."""
 
 
 class Model:
@@ -57,23 +57,23 @@ class Model:
         if self.log.rows and not ticked:
             raise LogError("no numeric column", "there is nothing to draw", file=self.log.title)
         self.selected: str = ticked[0].name if ticked else ""
-        """Variable whose samples the cursor goes along."""
+        """Variable whose samples the cursor moves along."""
         self.row: int = 0
-        """Row of the table that everything shows."""
+        """The current row of the table, shown by all panes."""
         self.mark_s: float | None = None
-        """The other cursor of the chart."""
+        """The second cursor of the chart, A."""
         self.limits: Limits | None = None
-        """Times that the chart shows, None for all."""
+        """Visible time range, None for all."""
         self.alignment = TIME
-        """How runs are laid over each other."""
+        """How runs are aligned."""
         self._reports: dict[str, BandReport] = {}
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
-        """The bands of the reports that were last asked for."""
+        """Cache of the bands of the latest reports."""
         self.events = Events()
         self.definitions: dict[str, str] = {}
-        """What was derived, as it was typed, by its name."""
+        """Definitions of derived variables as typed, by name."""
         self._words: dict[str, str] = {}
-        """What was found, in a sentence for each variable."""
+        """The results, one sentence per variable."""
         self._summaries: dict[str, Summary] = {}
         self._places = subject.notes_places()
         self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]
@@ -101,7 +101,7 @@ class Model:
 
     @property
     def cursor_s(self) -> float:
-        """Where the row that is looked at stands along the chart: its time, unless it was aligned in another way."""
+        """The x position of the current row: its time, unless runs are aligned otherwise."""
         trace = self.trace_of_row(self.row)
         return float(trace.places[self._sample(trace, self.row)])
 
@@ -112,13 +112,13 @@ class Model:
 
     @staticmethod
     def _sample(trace: LogTrace, row: int) -> int:
-        """Which sample of a variable stands in a row, or is the next one after it."""
+        """Return the index of a variable's sample in a row, or of the next one after it."""
         rows = trace.series.rows
         return min(int(np.searchsorted(rows, row)), len(rows) - 1)
 
     @property
     def sample(self) -> int:
-        """Which sample of the selected variable is looked at, or comes next."""
+        """The index of the selected variable's sample in the current row, or of the next one."""
         return self._sample(self.trace, self.row)
 
     def along(self, name: str) -> FloatArray:
@@ -150,18 +150,18 @@ class Model:
         return int(self.log.table.column("line")[self.row].as_py() or 0)
 
     def go_to_time(self, time_s: float) -> None:
-        """Go to the sample of the selected variable that is nearest to a place of the chart."""
+        """Move the cursor to the selected variable's sample nearest to an x position."""
         if len(self.trace.pyramid.times_s):
             self.row = int(self.trace.series.rows[self.trace.pyramid.nearest(time_s)])
 
     def go_to_moment(self, time_s: float) -> None:
-        """Go to the sample of the selected variable that is nearest to a time of its run."""
+        """Move the cursor to the selected variable's sample nearest to a time of its run."""
         series = self.trace.series
         if len(series.rows):
             self.row = int(series.rows[int(np.nanargmin(np.abs(series.time_s - time_s)))])
 
     def step(self, samples: int) -> None:
-        """Go to a sample of the selected variable before or after the one that is looked at."""
+        """Move the cursor by a number of samples of the selected variable."""
         rows = self.trace.series.rows
         if len(rows):
             # The row may be one of another variable, between two samples.
@@ -169,7 +169,7 @@ class Model:
             self.row = int(rows[min(max(at, 0), len(rows) - 1)])
 
     def take_over(self, other: Model) -> None:
-        """Go on where one was in the same log, of which there is more now."""
+        """Restore the state of another model of the same log, which has grown since."""
         self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
         if other.row == other.log.rows - 1:
             # Whoever looks at the end of a log that grows goes on looking at its end.
@@ -186,7 +186,7 @@ class Model:
             self._align_again(other.alignment)
 
     def define_as(self, other: Model) -> None:
-        """Derive what another model of the same log has derived. Slow for a long log: call it in a thread before."""
+        """Compute the derived variables of another model of the same log. Slow for a long log: call it in a thread."""
         for name, text in other.definitions.items():
             if name not in self.definitions:
                 # Other columns may be variables by now: what needs those that are gone goes with them.
@@ -194,7 +194,7 @@ class Model:
                     derive(self, text)
 
     def take_log(self, log: Log) -> None:
-        """Turn to the same log with other derived variables."""
+        """Switch to the same log with other derived variables."""
         self.log, self.subject = log, replace(self.subject, log=log)
         before = {trace.name: trace for trace in self.traces}
         self.traces.take_log(log)
@@ -214,17 +214,17 @@ class Model:
         self.limits, self.mark_s = limits, mark_s
 
     def go_to_row(self, row: int) -> None:
-        """Go to a row of the table, the nearest there is."""
+        """Move the cursor to the nearest existing row."""
         self.row = min(max(row, 0), max(self.log.rows - 1, 0))
 
     def select(self, step: int) -> None:
-        """Choose another variable."""
+        """Select another variable."""
         names = [trace.name for trace in self.traces]
         if names:
             self.selected = names[(names.index(self.selected) + step) % len(names)]
 
     def align(self, way: str) -> None:
-        """Lay the runs over each other.
+        """Align the runs.
 
         Args:
             way: `time`; `distance`, so far as each has driven; or an event such as `Colour < 50`.
@@ -240,11 +240,11 @@ class Model:
     # The part of the time that the chart shows
 
     def x_limits(self) -> Limits:
-        """Return the times at the chart's edges."""
+        """Return the visible range of the x axis."""
         return self.limits or self.traces.span_s()
 
     def zoom(self, factor: float) -> None:
-        """Show more or less time around the cursor."""
+        """Zoom around the cursor."""
         (low, high), (first, last) = self.x_limits(), self.traces.span_s()
         width = max((high - low) * factor, (last - first) * _LEAST_SPAN)
         if width >= last - first:
@@ -254,7 +254,7 @@ class Model:
         self._show_from(self.cursor_s - share * width, width)
 
     def pan(self, share: float) -> None:
-        """Move what is shown by a part of its width."""
+        """Scroll by a fraction of the visible width."""
         low, high = self.x_limits()
         if self.limits:
             self._show_from(low + share * (high - low), high - low)
@@ -265,7 +265,7 @@ class Model:
         self.limits = low, low + width
 
     def follow_cursor(self) -> None:
-        """Bring the cursor into what the chart shows."""
+        """Move the cursor into the visible range."""
         if self.limits and not self.limits[0] <= self.cursor_s <= self.limits[1]:
             width = self.limits[1] - self.limits[0]
             self._show_from(self.cursor_s - width / 2, width)
@@ -273,7 +273,7 @@ class Model:
     # Bands
 
     def unsearched(self) -> list[str]:
-        """Return the ticked variables whose bands have not been searched for."""
+        """Return the visible variables whose bands have not been searched yet."""
         return [trace.name for trace in self.traces.ticked() if trace.name not in self._reports]
 
     def find_bands(self, names: Sequence[str], search: Callable[[FloatArray], list[Plateau]] = plateaus) -> None:
@@ -283,39 +283,39 @@ class Model:
             self._words[name], self._reports[name] = in_words(report), report
 
     def reports(self) -> list[BandReport]:
-        """Return what was found in the ticked variables."""
+        """Return the band reports of the visible variables."""
         return [self._reports[trace.name] for trace in self.traces.ticked() if trace.name in self._reports]
 
     def bands_in_words(self) -> list[str]:
-        """Return what was found in the ticked variables, a sentence each."""
+        """Return the band reports of the visible variables in words, one sentence each."""
         return [self._words[report.variable] for report in self.reports()]
 
     def bands(self) -> Sequence[Band]:
-        """Return the bands of the ticked variables, as far as they were searched for."""
+        """Return the bands of the visible variables that have been searched."""
         reports = self.reports()
         if reports != self._reported[0]:
             self._reported = reports, [band for report in reports for band in report.bands]
         return self._reported[1]
 
     def measured(self) -> Limits | None:
-        """Return the part of the chart between the two cursors, None if there is one cursor only."""
+        """Return the range between the two cursors, None if A is not set."""
         if self.mark_s is None or not self.log.rows:
             return None
         return min(self.mark_s, self.cursor_s), max(self.mark_s, self.cursor_s)
 
     def unsummed(self) -> list[str]:
-        """Return the ticked variables whose figures are shown and have not been reckoned."""
+        """Return the visible variables whose statistics have not been computed yet."""
         if self.measured() is not None:
             return []
         return [trace.name for trace in self.traces.ticked() if trace.name not in self._summaries]
 
     def sum_up(self, names: Sequence[str]) -> None:
-        """Reckon the figures of variables. Slow for a long log: call it in a thread."""
+        """Compute the statistics of variables. Slow for a long log: call it in a thread."""
         for name in names:
             self._summaries[name] = summary_of(self.traces.named(name).series.values)
 
     def summary(self, name: str) -> Summary:
-        """Return the figures of a variable: of what is between the two cursors, or of all, reckoned once."""
+        """Return the statistics of a variable, between the two cursors or of all samples; cached."""
         span = self.measured()
         if span is not None:
             pyramid = self.traces.named(name).pyramid
@@ -330,7 +330,7 @@ class Model:
 
     @property
     def notes(self) -> list[tuple[int, Note]]:
-        """Every note with the number of its run, from 0, in order of time."""
+        """Every note with the index of its run, in order of time."""
         return [(run, note) for run, notes in enumerate(self._notes) for note in notes]
 
     def add_note(self, text: str, start_s: float, stop_s: float, variable: str, run: int) -> None:
@@ -363,11 +363,11 @@ class Model:
 
 
 RECKONING = "reckoning"
-"""Line that asks for what the wheels say."""
+"""Definition text for dead reckoning from the wheel encoders."""
 
 
 def derive(model: Model, text: str) -> None:
-    """Derive a variable, at once.
+    """Derive a variable; blocks until it is computed.
 
     Raises:
         LogError: as for `with_definition`.
@@ -376,7 +376,7 @@ def derive(model: Model, text: str) -> None:
 
 
 def take(model: Model, text: str, log: Log) -> None:
-    """Let a model have what was derived."""
+    """Apply a derived log to a model."""
     name = RECKONING if text == RECKONING else definition_of(text).name
     model.definitions.pop(name, None)
     if text == RECKONING or definition_of(text).expression:
@@ -387,7 +387,7 @@ def take(model: Model, text: str, log: Log) -> None:
 
 
 def with_definition(model: Model, text: str) -> tuple[str, Log]:
-    """Return a line as it was typed, and the log with what it defines.
+    """Return a definition as typed, and the log with the derived variable.
 
     Raises:
         LogError: the line cannot be read, names what there is not, or there is no such variable to take away.

@@ -1,4 +1,4 @@
-"""What the analyser looks at: a log, and the runs it comes from if they are in the store."""
+"""The source of the analyser: a log, and its runs if they are in the store."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LogRequest:
-    """What was asked for: a file, or runs."""
+    """The log to open: a file, or runs."""
 
     file: str = ""
     """Path, or `-` for the standard input; empty for runs."""
     runs: tuple[str, ...] = ()
     """Numbers, ids, or `last`."""
     telemetry: bool = False
-    """Every tick of the first run instead of the samples."""
+    """Use the telemetry of the first run instead of samples."""
     time: str | None = None
     """Column with the time, None to guess."""
     values: tuple[str, ...] = ()
@@ -34,14 +34,14 @@ class LogRequest:
 
 @dataclass(frozen=True, slots=True)
 class OpenedLog:
-    """A log that was opened, perhaps in part."""
+    """A log that is open, perhaps only in part yet."""
 
     wanted: LogRequest
     log: Log
     runs: tuple[StoredRun, ...] = ()
     """In the order of the log's run column; none for a file."""
     part: float = 1.0
-    """How much of it has been read, 0 to 1; not a number where that is not known."""
+    """Fraction that has been read, 0 to 1; NaN if unknown."""
     done: bool = True
 
     def notes_places(self) -> tuple[Path, ...]:
@@ -56,7 +56,7 @@ class OpenedLog:
         return (notes_of_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
-        """Return something that changes when there is more to read."""
+        """Return a token that changes when the source grows."""
         if self.runs:
             return tuple((run.telemetry.count if self.wanted.telemetry else run.output.length) for run in self.runs)
         try:

@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from tuisim.runs.arrays import IntArray
 
 AT_ONCE = 200_000
-"""Rows that are worked through within a few hundredths of a second."""
+"""Number of rows that are processed within some hundredths of a second."""
 
 
 @dataclass(slots=True)
 class TableTask:
-    """One piece of work while it is done."""
+    """A piece of background work in progress."""
 
     word: str
     part: float = 0.0
-    """Of it that is done, 0 to 1; 0 where that is not known."""
+    """Fraction done, 0 to 1; 0 if unknown."""
     stopped: bool = False
-    """Whether nobody waits for it any more."""
+    """Whether it has been cancelled."""
 
     def __str__(self) -> str:
         return f"{self.word} {self.part:.0%}" if self.part else self.word
@@ -38,7 +38,7 @@ class TableTask:
 FORM = "column, one of < <= > >= == != ~ and a value; several with `and`"
 _CONDITION = re.compile(r"\s*(?P<column>[^<>=!~]+?)\s*(?P<op><=|>=|==|!=|=|<|>|~)\s*(?P<value>.*?)\s*")
 _STRETCH = 100_000
-"""So many rows are searched at once."""
+"""Rows searched at once."""
 _COMPARED: Mapping[str, str] = {
     "<": "less", "<=": "less_equal", ">": "greater", ">=": "greater_equal", "==": "equal", "=": "equal",
     "!=": "not_equal",
@@ -47,7 +47,7 @@ _COMPARED: Mapping[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What a row must fulfil."""
+    """A filter condition."""
 
     column: str
     op: str
@@ -81,11 +81,11 @@ class TableView:
 
     conditions: tuple[Condition, ...]
     fulfilled: IntArray | None
-    """Rows that fulfil the conditions, rising; None for all."""
+    """Rows that match the filter, increasing; None for all."""
     sorted_by: str
     descending: bool
     order: IntArray | None
-    """Those rows as they are shown; None for all as they are in the log."""
+    """These rows in display order; None for all in the order of the log."""
 
 
 class Rows:
@@ -98,9 +98,9 @@ class Rows:
     def __init__(self, log: Log) -> None:
         self._log = log
         self.columns: list[str] = list(log.table.column_names)
-        """Those that are shown, the frozen ones first."""
+        """The visible columns, pinned ones first."""
         self.frozen = 0
-        """So many columns stay at the left."""
+        """Number of pinned columns at the left."""
         self.column = 0
         """Position of the chosen one in `columns`."""
         self.conditions: tuple[Condition, ...] = ()
@@ -119,11 +119,11 @@ class Rows:
         return self.columns[self.column]
 
     def row(self, place: int) -> int:
-        """Return the row of the log that stands at a place of the table."""
+        """Return the row of the log at a position of the table."""
         return place if self._order is None else int(self._order[place])
 
     def place(self, row: int) -> int:
-        """Return the place at which a row of the log stands, or else the nearest to it."""
+        """Return the position of a row of the log, or the nearest one."""
         if self._order is None or not len(self._order):
             return row
         if self.sorted_by:
@@ -157,7 +157,7 @@ class Rows:
         self.arrange(self.filtered(conditions))
 
     def sort(self, column: str, descending: bool) -> None:
-        """Put the rows in the order of a column; empty for that of the log."""
+        """Sort the rows by a column; empty for the order of the log."""
         self.arrange(self.sorted(column, descending))
 
     def filtered(self, conditions: tuple[Condition, ...]) -> TableView:
@@ -171,11 +171,11 @@ class Rows:
         return self._arrangement(conditions, fulfilled, self.sorted_by, self.descending)
 
     def sorted(self, column: str, descending: bool) -> TableView:
-        """Return the same rows in the order of a column; empty for that of the log. Slow for a long log."""
+        """Return the same rows sorted by a column; empty for the order of the log. Slow for a long log."""
         return self._arrangement(self.conditions, self._fulfilled, column, descending)
 
     def arrange(self, arrangement: TableView) -> None:
-        """Show rows that were chosen and put in order."""
+        """Show rows that have been filtered and sorted."""
         self.conditions, self._fulfilled = arrangement.conditions, arrangement.fulfilled
         self.sorted_by, self.descending = arrangement.sorted_by, arrangement.descending
         self._order = arrangement.order
@@ -199,11 +199,11 @@ class Rows:
     # Which columns
 
     def choose(self, step: int) -> None:
-        """Go to another column."""
+        """Select another column."""
         self.column = min(max(self.column + step, 0), len(self.columns) - 1)
 
     def hide(self) -> None:
-        """Hide the chosen column, unless it is the only one."""
+        """Hide the selected column, unless it is the only one."""
         if len(self.columns) > 1:
             self.frozen -= self.column < self.frozen
             del self.columns[self.column]
@@ -215,7 +215,7 @@ class Rows:
         self.frozen = self.column = 0
 
     def freeze(self) -> None:
-        """Keep the chosen column at the left, or let it go."""
+        """Pin the selected column at the left, or unpin it."""
         name = self.columns.pop(self.column)
         if self.column < self.frozen:
             self.frozen -= 1

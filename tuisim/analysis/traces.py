@@ -1,4 +1,4 @@
-"""The variables of a log as traces of a chart: read when they are first drawn, drawn from few points."""
+"""The variables of a log as traces of a chart: loaded on first use, decimated for drawing."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
 
 MOST_ON = 4
-"""So many variables are ticked at first."""
+"""Number of variables that are visible at first."""
 _LIGHT = "_red"
-"""End of the names of what a colour sensor measures in red light."""
+"""Suffix of the red light columns of colour sensors."""
 _ANGLES = ("_deg", "_mm", "_dps")
-"""Ends of names whose values do not fit the scale of light."""
+"""Suffixes of variables that do not share the scale of light readings."""
 _SEEN = 5.0
-"""A variable that takes up less than one such part of a scale has the other one."""
+"""A variable that spans less than 1 / this of a scale is drawn on the other one."""
 
 
 _LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
-"""Times that differ by less than this part of themselves, or by less than this, are one moment."""
+"""Relative and absolute tolerance below which two times are equal."""
 
 
 class LogTrace(Trace):
@@ -59,14 +59,14 @@ class LogTrace(Trace):
 
     @property
     def pyramid(self) -> Pyramid:
-        """Its finite points, in the order in which they stand along the chart."""
+        """Its finite points, sorted by x position."""
         if self._pyramid is None:
             self._pyramid = Pyramid(self.places, self.series.values)
         return self._pyramid
 
     @property
     def places(self) -> FloatArray:
-        """Where its samples stand along the chart, shape (n,): their times, unless it was aligned in another way."""
+        """The x positions of its samples, shape (n,): their times, unless runs are aligned otherwise."""
         return self.series.time_s if self._places is None else self._places
 
     def is_derived_otherwise(self, log: Log) -> bool:
@@ -74,7 +74,7 @@ class LogTrace(Trace):
         return self.name in log.derived and log.derived[self.name] is not self.series
 
     def is_like(self, others: Sequence[LogTrace]) -> bool:
-        """Whether its values can be seen on the scale of others that are on the left one."""
+        """Return whether its values are legible on the left scale, which others use."""
         own = self._least_and_greatest()
         left = [other._least_and_greatest() for other in others if not other.other_scale]
         low, high = min((at[0] for at in left), default=0.0), max((at[1] for at in left), default=0.0)
@@ -86,11 +86,11 @@ class LogTrace(Trace):
         return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
 
     def align(self, places: FloatArray | None) -> None:
-        """Put its samples elsewhere along the chart; None: at their times."""
+        """Set the x positions of its samples; None: their times."""
         self._places, self._pyramid = places, None
 
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
-        """Choose the points that a chart of that width shows."""
+        """Select the points to draw at this chart width."""
         times_s, values = self.pyramid.points(x_limits, columns)
         self._shown = held(times_s, values) if hold else (times_s, values)
 
@@ -113,7 +113,7 @@ class LogTrace(Trace):
 
 
 def held(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the corners of a line that keeps each value until the next one comes."""
+    """Return the corners of a step line."""
     if len(times_s) < 2:
         return times_s, values
     return np.repeat(times_s, 2)[1:], np.repeat(values, 2)[:-1]
@@ -127,11 +127,11 @@ class LogTraces(Traces):
         # A row may lack the name of its variable: then there is a name without samples.
         names = (name for name in log.names if not log.layout.variable or len(log.series(name).rows))
         self._all = [LogTrace(log, name, number) for number, name in enumerate(names)]
-        self._tick_light()
+        self._show_light_columns()
         self._by_log_name = {trace.name: trace for trace in self._all}
 
     def take_log(self, log: Log) -> None:
-        """Turn to the same log with other derived variables; those that are new are ticked."""
+        """Switch to the same log with other derived variables; new ones become visible."""
         kept = [trace for trace in self._all if trace.name in log.names and not trace.is_derived_otherwise(log)]
         known = {trace.name for trace in kept}
         number = max((trace.number for trace in kept), default=-1)
@@ -144,8 +144,8 @@ class LogTraces(Traces):
         self._all = [*kept, *new]
         self._by_log_name = {trace.name: trace for trace in self._all}
 
-    def _tick_light(self) -> None:
-        """Of the many columns of a recording, what colour sensors saw says most."""
+    def _show_light_columns(self) -> None:
+        """Make only the red light columns of colour sensors visible, of the many columns of telemetry."""
         light = [trace for trace in self._all if trace.name.endswith(_LIGHT)]
         for trace in self._all:
             trace.on = trace in light[:MOST_ON] if light else trace.on
@@ -172,7 +172,7 @@ class LogTraces(Traces):
         return [trace for trace in self._all if trace.on]
 
     def span_s(self) -> Limits:
-        """Return the first and the last time of the ticked traces, with room for a moment where they are one."""
+        """Return the first and the last time of the visible traces, widened if they are equal."""
         ends = [trace.pyramid.times_s[[0, -1]] for trace in self.ticked() if len(trace.pyramid.times_s)]
         if not ends:
             return 0.0, 1.0

@@ -1,4 +1,4 @@
-"""Fewer points for the same picture: least and greatest values of blocks, prepared for any zoom."""
+"""Decimation of traces: a pyramid of block minima and maxima, for any zoom."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ _ENOUGH = 4
 """Blocks for each column of the chart: with fewer, edges would be seen at the wrong column."""
 
 _SUMMED_AT_ONCE = 10_000
-"""Points whose figures are reckoned one by one."""
+"""Up to this number of points, statistics are computed directly."""
 
 _MOST = 1e150
-"""What is larger cannot be reckoned with: the distance between two such numbers may be infinite."""
+"""Values beyond this limit are dropped: the difference of two such numbers may overflow."""
 
 
 class Pyramid:
-    """The finite points of a series, in order of time.
+    """The finite points of a series, sorted by time.
 
     Args:
         times_s: Shape (n,).
@@ -66,7 +66,7 @@ class Pyramid:
 
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
         self._index: npt.NDArray[np.intp] | None = None
-        """Which of the given points each one was, None if all are still where they were."""
+        """Index of each point in the input; None if the order is unchanged."""
         if not (_measurable(values) and _measurable(times_s)):
             good = (np.abs(values) < _MOST) & (np.abs(times_s) < _MOST)
             self._index = np.flatnonzero(good)
@@ -82,7 +82,7 @@ class Pyramid:
             self._add_level()
 
     def points(self, x_limits: tuple[float, float], columns: int) -> tuple[FloatArray, FloatArray]:
-        """Return points that look the same as all points do, times and values, a few thousand at most.
+        """Return times and values of at most a few thousand points that give the same drawing as all points.
 
         Args:
             x_limits: First and last time shown; the neighbours of what lies between stay as well.
@@ -111,14 +111,14 @@ class Pyramid:
         self._levels.append((np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts)))
 
     def nearest(self, time_s: float) -> int:
-        """Return which of the given points is nearest to a time; there must be a finite one."""
+        """Return the index of the input point nearest to a time; there must be a finite one."""
         at = int(np.searchsorted(self.times_s, time_s))
         if at == len(self.times_s) or (at and time_s - self.times_s[at - 1] <= self.times_s[at] - time_s):
             at -= 1
         return at if self._index is None else int(self._index[at])
 
     def between(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
-        """Return the points of a span, both ends included."""
+        """Return the points in a time range, both ends included."""
         first, last = self._span(start_s, stop_s)
         return self.times_s[first:last], self.values[first:last]
 
@@ -127,11 +127,11 @@ class Pyramid:
         return int(first), int(last)
 
     def figures(self, start_s: float, stop_s: float) -> Summary:
-        """Return the figures of the points of a span, both ends included, without quantiles."""
+        """Return the statistics of a time range, both ends included, without quantiles."""
         first, last = self._span(start_s, stop_s)
         if last - first <= _SUMMED_AT_ONCE:
             return summary_of(self.values[first:last], quantiles=())
-        # Whole blocks are known, only what is left of those at both ends is looked at.
+        # Whole blocks are cached; only the partial blocks at both ends are computed.
         begin, end = -(-first // _BLOCK), last // _BLOCK
         ends = np.concatenate((self.values[first : begin * _BLOCK], self.values[end * _BLOCK : last]))
         means, squares = (part[begin:end] for part in self._moments())
@@ -144,7 +144,7 @@ class Pyramid:
         return Summary(count, 0, low, mean, high, float(np.sqrt(off / (count - 1))) if low != high else 0.0, ())
 
     def _moments(self) -> tuple[FloatArray, FloatArray]:
-        """Mean of each whole block, and the sum of its squared distances from that; reckoned once."""
+        """Mean and sum of squared deviations of each whole block; cached."""
         if self._sums is None:
             whole = self.values[: len(self.values) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
             means, squares = np.empty(len(whole)), np.empty(len(whole))
@@ -158,6 +158,6 @@ class Pyramid:
 
 
 def _measurable(numbers: FloatArray) -> bool:
-    """Whether all numbers are within measure; there is nothing to be copied to find out."""
+    """Return whether all numbers are within the limit, without a copy."""
     # A single one that is not a number makes least and greatest none, and all comparisons false.
     return not len(numbers) or bool(numbers.min() > -_MOST and numbers.max() < _MOST)

@@ -20,23 +20,23 @@ if TYPE_CHECKING:
     from tuisim.analysis.traces import LogTrace
 
 _MOST = 1e150
-"""What is larger cannot be reckoned with: the distance between two such numbers may be infinite."""
+"""Values beyond this limit are dropped: the difference of two such numbers may overflow."""
 _DOTS_X, _DOTS_Y = 2, 4
 """Parts of a character cell that `seen_points` tells apart."""
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """How a chart is looked at, besides what is ticked and which time is shown."""
+    """Display options of a chart, besides visible variables and time range."""
 
     facets: bool = False
     """One chart for each variable."""
     marks: bool = False
     """Points instead of lines."""
     hold: bool = False
-    """Keep each value until the next one comes."""
+    """Step lines."""
     against: tuple[str, str] | None = None
-    """What is drawn against what, x and y, instead of all over time."""
+    """Pair of x and y to draw against each other, instead of all variables over time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,23 +45,23 @@ class Line:
 
     name: str
     xs: FloatArray
-    """Shape (n,), finite; rising but for a path."""
+    """Shape (n,), finite; increasing except for a path."""
     ys: FloatArray
     """Shape (n,), finite."""
     number: int
-    """Chooses colour and mark."""
+    """Index that selects colour and marker."""
     other_scale: bool = False
-    """Whether it is drawn to the scale on the right where others are drawn to that on the left."""
+    """Whether it uses the right scale."""
 
     @property
     def label(self) -> str:
-        """Its name, with the unit where the name tells it."""
+        """Its name, with the unit if the name has one."""
         return with_unit(self.name)
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A part of the x axis that is set off, with a word on it."""
+    """A highlighted range of the x axis, with a label."""
 
     start: float
     stop: float
@@ -72,7 +72,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """All that is to be seen."""
+    """The data of a whole chart."""
 
     title: str
     lines: tuple[Line, ...]
@@ -84,7 +84,7 @@ class Chart:
     """Whether one variable is drawn against another."""
     spans: tuple[Span, ...] = ()
     zoomed: bool = False
-    """Whether a part of the time is shown: then the vertical axis fits what is seen there."""
+    """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
 
 def with_unit(name: str) -> str:
@@ -94,12 +94,12 @@ def with_unit(name: str) -> str:
 
 
 def unit_of(name: str) -> str:
-    """Return the unit of a variable that its name tells, empty if it tells none."""
+    """Return the unit of a variable from its name, empty if there is none."""
     return units.unit_of(name.partition(" #")[0]).sign
 
 
 def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
-    """Return what a model shows: its ticked variables within its limits.
+    """Return the chart of a model: its visible variables within its limits.
 
     Args:
         model: The log.
@@ -140,7 +140,7 @@ def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: i
 
 
 def _clipped(xs: FloatArray, ys: FloatArray, limits: Limits) -> tuple[FloatArray, FloatArray]:
-    """The part of a line that lies between limits, with the points where it enters and leaves them."""
+    """Clip a line to limits, with interpolated points where it enters and leaves them."""
     inside = (xs >= limits[0]) & (xs <= limits[1])
     if inside.all():
         return xs, ys

@@ -1,4 +1,4 @@
-"""Files of charts: the suffix says what is written."""
+"""Charts as files; the suffix selects the format."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class ChartFormat:
 
     write: Callable[[Chart, Size], bytes]
     size: Size
-    """Width and height if nobody says another."""
+    """Default width and height."""
     least: Size
     most: Size
     unit: str
-    """What the size is counted in."""
+    """Unit of the size."""
     finer: Size = (1, 1)
-    """Parts of a unit that can be told apart."""
+    """Resolution: subdivisions of a unit."""
 
 
 def _svg(chart: Chart, size: Size) -> bytes:
@@ -63,11 +63,11 @@ CHART_FORMATS: Mapping[str, ChartFormat] = {
 """Every format of a chart by the suffix of its files. To add one: write its function and a line here."""
 
 FACET_PX = 200
-"""Height of each facet in a picture if nobody says another."""
+"""Default height of a facet in an image."""
 
 
 def format_of(path: Path) -> ChartFormat:
-    """Return what a file is to hold, by its suffix, if it can be written there.
+    """Return the format for a file's suffix; check that the file can be written.
 
     Raises:
         ExportError: unknown suffix, or it cannot be written.
@@ -102,7 +102,7 @@ def save_chart(model: Model, view: View, path: Path, size: Size | None = None) -
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file, all of it or nothing.
+    """Write a file atomically.
 
     Raises:
         ExportError: it cannot be written; what was there is as it was.

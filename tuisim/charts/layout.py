@@ -1,4 +1,4 @@
-"""Where everything in a chart's picture stands, in pixels; `svg` and `png` only draw it."""
+"""Layout of a chart image in pixels; `svg` and `png` only draw it."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ COLORS: tuple[Rgb, ...] = (
     (31, 119, 180), (217, 95, 2), (27, 158, 119), (201, 60, 140), (117, 112, 199), (166, 118, 29), (214, 39, 40),
     (80, 150, 30), (23, 160, 190), (120, 120, 120),
 )  # fmt: skip
-"""Of the lines; to be told apart on white as well as on black."""
+"""Line colours, distinguishable on white and on black."""
 
 FONT_PX = 13
 """Height of the letters."""
 _LETTER_PX = 7.2
-"""What a letter takes of a line, on the safe side."""
+"""Upper estimate of a character's width."""
 _PAD, _LINE_PX = 10, 20
 _FACET_GAP_PX = 12
 _LONG = 9
@@ -50,7 +50,7 @@ class Words:
     """Middle of the letters."""
     text: str
     anchor: str = "start"
-    """Which part of it stands at x: `start`, `middle` or `end`."""
+    """Anchor at x: `start`, `middle` or `end`."""
     rgb: Rgb | None = None
     """None for the colour of the writing."""
     strong: bool = False
@@ -229,7 +229,7 @@ def _widest(limits: Limits) -> float:
 
 
 def _squared(chart: Chart, frame: _Frame) -> _Frame:
-    """For a path over the field one mm is as long to the right as upwards."""
+    """Use equal scales on both axes, for a path on the field."""
     names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
     if not chart.path or {unit_of(name) for name in names} != {"mm"}:
         return frame

@@ -14,7 +14,7 @@ from tuisim.charts.traces import Trace, Traces
 from tuisim.errors import printable
 
 LEAST_ROWS = 8
-"""A chart of one variable that is lower says nothing."""
+"""Minimum height of a chart of one variable."""
 
 
 class _Drawn(Traces):
@@ -29,7 +29,7 @@ class _Drawn(Traces):
 
 
 def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> Text:
-    """Return a chart as text, each line at most so wide.
+    """Return a chart as text of a given size in characters.
 
     Args:
         chart: What is to be seen.
@@ -66,7 +66,7 @@ def _trace(line: Line) -> Trace:
 
 
 def _on_any_ground(run: Run) -> Run:
-    """What is not data has the terminal's own colour: it may be dark on bright."""
+    """Use the terminal's default colour for everything but data, for light and dark themes."""
     text, style = run
     return run if style.color and style.color.triplet in COLORS else (text, Style())
 

@@ -21,7 +21,7 @@ _CURSOR = Style(color="#ffffff", bgcolor="#44505e")
 _STRONG = Style(color="#ffffff", bold=True)
 
 _ROWS_A_LEGEND_LINE = 8
-"""A chart has one line of tick boxes for so many rows, so that most of it is left for the curves."""
+"""Rows of a chart per line of tick boxes, so that most rows are left for the curves."""
 _MIN_TWO_SCALES = 36
 """Narrower charts have no room for a second scale on the right."""
 
@@ -51,7 +51,7 @@ class ChartState:
     grows: bool = False
     """Whether more is to come, so that the horizontal axis goes on a little beyond the data."""
     zoomed: bool = False
-    """Whether a part of the time is looked at: then the vertical axis fits what is seen there."""
+    """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,7 +266,7 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
 
 
 def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
-    """Return what stands where the canvas would be."""
+    """Return the placeholder for a chart without a canvas."""
     words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
     if some:
         words = (*words, "", "↑ ↓ and space tick a trace") if width >= 26 else words

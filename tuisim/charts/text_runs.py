@@ -1,4 +1,4 @@
-"""What drawings are made of."""
+"""Styled pieces of text, the output of drawing functions."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Line: TypeAlias = list[Run]
 
 
 def cut(text: str, width: int) -> str:
-    """Return a text of at most so many characters; one that is cut ends in an ellipsis."""
+    """Shorten a text to a maximum width; a truncated one ends in an ellipsis."""
     return text if len(text) <= width else text[: max(0, width - 1)] + "…"[:width]
 
 
 def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
-    """Return a line of at most so many characters; one of which more than blanks is cut ends in an ellipsis."""
+    """Shorten a line to a maximum width; it ends in an ellipsis if more than blanks is cut."""
     if sum(len(text) for text, _ in line) <= width or not "".join(text for text, _ in line)[width:].strip():
         return line
     kept: list[Run] = []

@@ -39,7 +39,7 @@ _FRAME_PX = 2
 _MARGIN_LEFT, _MARGIN = 64, 24
 _LETTERS_PX = 12
 _MOST = 1e150
-"""What is larger is drawn there: the distance between two such numbers may be infinite."""
+"""Larger values are clipped to this limit: the difference of two such numbers may overflow."""
 _LONG = 8
 """Labels with more characters than that are written with a power of ten."""
 
@@ -87,7 +87,7 @@ def world_view(robot: RobotSpec) -> WorldView:
 
 @dataclass(frozen=True, slots=True)
 class PenTrace:
-    """What the pen of a run has drawn."""
+    """The pen trace of a run."""
 
     color: str
     width_px: int
@@ -96,7 +96,7 @@ class PenTrace:
 
 
 def pen_trace(spec: RunSpec, telemetry: NDArray[Any]) -> PenTrace:
-    """Return what the pen has drawn.
+    """Return the pen trace of a run.
 
     Args:
         spec: What the run is made of.

@@ -1,4 +1,4 @@
-"""Columns of numbers, texts and names, to and from Arrow, without pandas."""
+"""Conversion of columns to and from Arrow, without pandas."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tuisim.runs.arrays import FloatArray
 
 
 def texts_array(texts: Sequence[str]) -> pa.Array:
-    """Return texts as an array of them."""
+    """Return texts as an Arrow string array."""
     encoded = [text.encode("utf-8", "replace") for text in texts]
     ends = np.cumsum([0, *map(len, encoded)], dtype=np.int32)
     return pa.StringArray.from_buffers(len(texts), pa.py_buffer(ends), pa.py_buffer(b"".join(encoded)))
 
 
 def numbers_of(column: pa.ChunkedArray) -> FloatArray:
-    """Return a column of numbers as floats, shape (n,); not a number where it is empty. Copied only if it must be."""
+    """Return a numeric column as floats, shape (n,), NaN for nulls. Copied only if necessary."""
     if not pa.types.is_floating(column.type) or pa.types.is_float16(column.type):
         column = column.cast(pa.float64(), safe=False)
     kind = np.float32 if pa.types.is_float32(column.type) else np.float64
@@ -44,25 +44,25 @@ def _floats(chunk: pa.Array, kind: Any) -> FloatArray:
 
 
 def whole_numbers_of(chunk: pa.Array) -> np.ndarray[Any, np.dtype[np.int32]]:
-    """Return an array of 32-bit numbers without empty places, shape (n,), not copied."""
+    """Return a 32-bit integer array without nulls, shape (n,), not copied."""
     if not len(chunk):
         return np.empty(0, np.int32)
     return np.frombuffer(chunk.buffers()[1], np.int32, len(chunk), chunk.offset * 4)
 
 
 def whole_numbers(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArray:
-    """Return 64-bit numbers, shape (n,), as a column, not copied."""
+    """Return 64-bit integers, shape (n,), as a column, not copied."""
     return pa.chunked_array([pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(numbers)])])
 
 
 def unique_names(names: Sequence[str], notes: Notes) -> list[str]:
-    """Return names by which columns can be told apart; what is called in another way is noted."""
+    """Return unique column names; renamed columns are noted."""
     unique: list[str] = []
     for at, name in enumerate(names, 1):
         wanted, again = name or f"column {at}", 2
         while wanted in unique:
             wanted, again = f"{name or f'column {at}'} ({again})", again + 1
         if name and wanted != name:
-            notes.say(f"two columns are called {name!r}: the second is {wanted!r} here")
+            notes.say(f"two columns are named {name!r}: the second is renamed to {wanted!r}")
         unique.append(wanted)
     return unique

@@ -1,4 +1,4 @@
-"""Tables as text: comments, heading, separators and cells, as numbers or texts."""
+"""CSV and similar text tables: comments, header, separators and typed cells."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from tuisim.logs.blocks import Block
 from tuisim.logs.warnings import Notes
 
 CODED = pa.dictionary(pa.int32(), pa.string())
-"""Each text is kept once, each row holds its number."""
+"""Dictionary-encoded text."""
 
 _LEAST_REPEATED = 4
-"""Texts are coded that come so many times, on average."""
+"""Texts are dictionary-encoded if each occurs at least this often, on average."""
 _FEWEST_CELLS = 100
-"""Fewer do not tell."""
+"""With fewer cells, texts are not dictionary-encoded."""
 
 
 def text_kind(cells: pa.Array) -> pa.DataType:
-    """Return how a column is kept, by its first cells."""
+    """Return the type for a text column, from its first cells."""
     often = len(cells) > _FEWEST_CELLS and _LEAST_REPEATED * pc.count_distinct(cells).as_py() <= len(cells)
     return CODED if often else pa.string()
 
 
 _NUMBER = r"^[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?$|^[+-]?(?i:inf|infinity|nan)$"
 EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
-"""Cells that say that there is no value."""
+"""Cells that mean a missing value."""
 
 
 def parsed_numbers(cells: pa.Array, decimal_comma: bool) -> tuple[pa.Array, pa.Array]:
-    """Return cells as float64, with nulls for those that hold no number, and which cells were wrong.
+    """Parse cells as float64, with nulls for those that are not numbers.
 
     Args:
         cells: Texts.
@@ -57,14 +57,14 @@ def parsed_numbers(cells: pa.Array, decimal_comma: bool) -> tuple[pa.Array, pa.A
     try:
         return pc.cast(texts, pa.float64()), pc.is_valid(nothing)
     except pa.ArrowInvalid:
-        # Of what is empty the first is false and the second is nothing, which makes false.
+        # For empty cells, false and null give false.
         good = pc.and_kleene(pc.is_valid(texts), pc.match_substring_regex(texts, _NUMBER))
         wrong = pc.and_(pc.invert(good), pc.invert(empty))
         return pc.cast(pc.if_else(good, texts, nothing), pa.float64()), wrong
 
 
 def parsed_booleans(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
-    """Return cells as booleans, with nulls for those that hold none, and which cells were wrong.
+    """Parse cells as booleans, with nulls for others; also return a mask of the invalid cells.
 
     Args:
         cells: Texts such as `true` or `False`.
@@ -77,7 +77,7 @@ def parsed_booleans(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
 
 
 def are_booleans(cells: pa.Array) -> bool:
-    """Return whether cells hold nothing but true and false, at least one of them."""
+    """Return whether all cells that are not empty are true or false, and there is at least one."""
     values, wrong = parsed_booleans(cells)
     return values.null_count < len(values) and not pc.any(wrong).as_py()
 
@@ -93,32 +93,32 @@ def are_numbers(cells: pa.Array, decimal_comma: bool) -> bool | None:
 
 SEPARATORS = (",", ";", "\t", "|")
 BLANKS = " "
-"""Instead of a separator: any blanks are one."""
+"""A separator of any number of blanks."""
 COMMENT = "#"
 _YEARS = range(1900, 2101)
 
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """What the first lines say about a table."""
+    """The format of a table, from its first lines."""
 
     names: tuple[str, ...] = ()
-    """Of the columns; none if there was nothing but comments."""
+    """Names of the columns; empty if there were only comments."""
     separator: str = ","
     """One of `SEPARATORS`, or `BLANKS`."""
     decimal_comma: bool = False
     has_comments: bool = False
-    """Whether lines that begin with `COMMENT` are no rows."""
+    """Whether lines that begin with `COMMENT` are skipped."""
     rows_follow: int = 1
-    """Row of the file that the first row of the table may stand in."""
+    """Line of the file where the table's first row may be."""
 
 
 def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
-    """Return the heading of a table.
+    """Detect the header of a table.
 
     Args:
-        lines: The first lines that are not blank, each with its row in the file.
-        notes: Where it says what was guessed.
+        lines: The first non-blank lines, each with its line number in the file.
+        notes: Receives warnings about guesses.
     """
     comments = [text for _, text in takewhile(lambda line: line[1].startswith(COMMENT), lines)]
     body = lines[len(comments) :]
@@ -141,7 +141,7 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
 
 
 def cells_of(line: str, separator: str) -> list[str]:
-    """Return the cells of a line; a quote that is never closed is but a character."""
+    """Return the cells of a line; an unclosed quote is an ordinary character."""
     if separator == BLANKS:
         return line.split()
     try:
@@ -151,9 +151,9 @@ def cells_of(line: str, separator: str) -> list[str]:
 
 
 def sniff_separator(lines: Sequence[str]) -> str:
-    """Return what separates the cells: what most lines have as often as the first, then what most have equally often.
+    """Return the separator: the one that most lines have as often as the first line, else equally often.
 
-    Blanks separate only where nothing else does, and only if all lines have equally many cells.
+    Blanks are the separator only if there is no other, and all lines have the same number of cells.
     """
 
     def evenness(separator: str) -> tuple[int, int, int]:
@@ -173,7 +173,7 @@ def sniff_separator(lines: Sequence[str]) -> str:
 
 
 def _zeek_separator(comments: Sequence[str]) -> str:
-    """What a log of Zeek names as its separator, such as `#separator \\x09`."""
+    """Return the separator that a Zeek log names, such as `#separator \\x09`."""
     named = next((text.split(maxsplit=1)[-1] for text in comments if text.startswith("#separator")), r"\x09")
     found = re.fullmatch(r"\\x([0-9a-fA-F]{2})", named)
     separator = chr(int(found[1], 16)) if found else named
@@ -181,7 +181,7 @@ def _zeek_separator(comments: Sequence[str]) -> str:
 
 
 def _heading_above(comments: Sequence[str], rows: Sequence[list[str]], separator: str, fields: str) -> list[str]:
-    """Names in the last comment, none if it is no heading: as many as there are cells, and all rows are alike."""
+    """Return column names from the last comment, if they match the number of cells; else an empty list."""
     if fields:
         return [name.strip() for name in fields.split(separator)[1:]]
     if not comments:
@@ -195,12 +195,12 @@ def _heading_above(comments: Sequence[str], rows: Sequence[list[str]], separator
 
 
 def _are_numeric(cells: Sequence[str], decimal_comma: bool = False) -> list[bool | None]:
-    """Whether each cell is a number, None where it is empty."""
+    """Return whether each cell is a number, None for empty cells."""
     return [are_numbers(texts_array([cell]), decimal_comma) for cell in cells]
 
 
 def _is_heading(rows: Sequence[list[str]], decimal_comma: bool) -> bool:
-    """Whether the first row names the columns: few of its cells are numbers, or these count something up."""
+    """Return whether the first row is a header: few of its cells are numbers, or these are increasing."""
     first = _are_numeric(rows[0], decimal_comma)
     numbers = [int(cell) for cell in rows[0][1:] if re.fullmatch(r"\s*\d+\s*", cell)]
     if first[0] is False and len(numbers) == len(first) - 1 > 0 and all(a < b for a, b in pairwise(numbers)):
@@ -221,14 +221,14 @@ _COMMENTS = re.compile(rb"(?m)^#.*$")
 _BLANKS = re.compile(rb"[ \t]+")
 _MARGINS = re.compile(rb"(?m)^[ \t]+|[ \t]+$")
 _MOST_LINES, _MOST_JOINS = 100, 100
-"""Lines that a row may have, and how often one of several lines may turn out to be none."""
+"""Maximum lines of a quoted row, and maximum failed attempts to join lines."""
 
 
 class CsvReader:
     """Reads blocks of one file; names and types of the columns are fixed by the first.
 
     Args:
-        notes: Where it says what was wrong.
+        notes: Receives warnings about bad input.
     """
 
     def __init__(self, notes: Notes) -> None:
@@ -236,7 +236,7 @@ class CsvReader:
         self._heading = Heading()
         self._joins_left = _MOST_JOINS
         self._kinds: dict[str, pa.DataType] = {}
-        """By column; missing while all its cells were empty."""
+        """Type by column; missing while all cells of a column were empty."""
 
     @property
     def _names(self) -> tuple[str, ...]:
@@ -251,14 +251,14 @@ class CsvReader:
         return self._heading.decimal_comma
 
     def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block; None if it holds but the heading."""
+        """Return the rows of a block; None if it has only the header."""
         if not self._heading.names:
             block = self._begin(block)
             if not self._heading.names:
                 return None
         block = self._plain(block)
         rows = None
-        # Most blocks hold what they should; cells are only looked at as texts where one of them does not.
+        # Fast path: parse with the known types; fall back to texts if a cell does not fit.
         columns = self._parsed(block, self._kinds) or self._parsed(block, {})
         if columns is None:
             columns, rows = self._careful(block)
@@ -271,7 +271,7 @@ class CsvReader:
     # The heading
 
     def _begin(self, block: Block) -> Block:
-        # Comments above a table may be many: as many lines are looked at as there are, and some of the table's.
+        # There may be many comments above a table: read all of them, and some lines of the table.
         lines = list(takewhile(lambda line: line[1].startswith(COMMENT), block.lines()))
         lines += islice((line for line in block.lines() if not line[1].startswith(COMMENT)), _SNIFFED_LINES)
         if not lines:
@@ -281,7 +281,7 @@ class CsvReader:
         return Block(heading.rows_follow, skipped[-1], block.newline)
 
     def _plain(self, block: Block) -> Block:
-        """The same rows without comments, and with separators where blanks separate the cells."""
+        """Return the block without comments, and with tabs instead of separating blanks."""
         text = block.text
         if self._heading.has_comments and (text.startswith(b"#") or b"\n#" in text):
             text = _COMMENTS.sub(b"", text)
@@ -292,7 +292,7 @@ class CsvReader:
     # Cells
 
     def _parsed(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
-        """All cells by the library's parser, None if a row is not like the others or a cell not of its kind."""
+        """Parse the block with pyarrow; None if a row has another number of cells, or a cell another type."""
         if block.text.isspace() or not block.text:
             return [pa.nulls(0, pa.string()) for _ in self._names]
         try:
@@ -314,7 +314,7 @@ class CsvReader:
         return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
 
     def _careful(self, block: Block) -> tuple[list[pa.Array], list[int]]:
-        """Cells line by line; short rows are filled up, long ones cut, both are noted."""
+        """Parse line by line; short rows are filled, long ones cut, and both are noted."""
         width = len(self._names)
         rows, numbers, short, long = [], [], [], []
         for row, cells in self._records(block):
@@ -332,7 +332,7 @@ class CsvReader:
         return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
 
     def _records(self, block: Block) -> Iterator[tuple[int, list[str]]]:
-        """Yield each row that is not blank with its cells; one in quotes may go on in the next lines."""
+        """Yield each non-blank row with its cells; a quoted cell may span lines."""
         lines = block.text.decode("utf-8").split("\n")
         after = 0
         for at, line in enumerate(lines):
@@ -342,7 +342,7 @@ class CsvReader:
             yield block.first_row + at, cells_of(line.rstrip("\r"), self._separator) if cells is None else cells
 
     def _joined(self, lines: Sequence[str], at: int, newline: str) -> tuple[list[str] | None, int]:
-        """The cells of a row of several lines and where the next row is; None if it is but one line."""
+        """Return the cells of a row of several lines, or None for a single line, and the index of the next row."""
         ahead = [line + newline for line in lines[at : at + _MOST_LINES]]
         reader = csv.reader(ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True)
         try:
@@ -353,12 +353,12 @@ class CsvReader:
         if further and len(cells) == len(self._names) and not any(map(self._is_row, further)):
             return cells, at + reader.line_num
         if further:
-            # A quote that is never closed is but a character; looking for its end in each line would take too long.
+            # An unclosed quote is an ordinary character; searching for its end from every line would be too slow.
             self._joins_left -= 1
         return None, at + 1
 
     def _is_row(self, line: str) -> bool:
-        """Whether a line seems to be a row by itself rather than text between quotes."""
+        """Return whether a line seems to be a row of its own, not text between quotes."""
         cells = line.split(self._separator)
         if len(cells) != len(self._names):
             return False
@@ -392,6 +392,6 @@ def _count(mask: Any) -> int:
 
 
 def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
-    # A line of nothing but blanks is a row to the library's parser.
+    # pyarrow counts a line of blanks as a row.
     rows = [row for row, line in enumerate(block.text.split(b"\n"), block.first_row) if line]
     return [rows[at] for at in positions]

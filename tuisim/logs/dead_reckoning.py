@@ -1,4 +1,4 @@
-"""Dead reckoning: where the turns of the wheels say that the robot is."""
+"""Dead reckoning: the robot's pose from the wheel encoders."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def dead_reckoning(
 
 
 def error_mm(reckoned: Reckoned, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-    """Return how far the reckoned places are from the true ones, shape (n,)."""
+    """Return the distances between the dead-reckoning positions and the true ones in mm, shape (n,)."""
     return np.hypot(reckoned.x_mm - x_mm, reckoned.y_mm - y_mm)
 
 
@@ -81,11 +81,11 @@ def reckoned_series(log: Log) -> list[Series]:
         spec = from_plain({k: v for k, v in log.metadata["runs"][0].items() if k not in ("run", "program")})
     except (KeyError, IndexError, TypeError) as error:
         hint = "a stored run, or its telemetry exported to a file"
-        raise LogError("does not know the robot", hint, file=log.title) from error
+        raise LogError("has no metadata of the robot", hint, file=log.title) from error
     left, right, x_mm, y_mm, _ = (log.numbers(name) for name in NEEDED)
     found = dead_reckoning(left, right, spec.world.start, spec.robot)
-    made = (found.x_mm, found.y_mm, found.heading_deg, error_mm(found, x_mm, y_mm))
+    columns = (found.x_mm, found.y_mm, found.heading_deg, error_mm(found, x_mm, y_mm))
     base = next((log.series(name) for name in log.names if len(log.series(name).rows) == log.rows), None)
     time_s = base.time_s if base else np.arange(log.rows, dtype=np.float64)
     rows = base.rows if base else np.arange(log.rows)
-    return [Series(name, time_s, values, rows) for name, values in zip(RECKONED, made, strict=True)]
+    return [Series(name, time_s, values, rows) for name, values in zip(RECKONED, columns, strict=True)]

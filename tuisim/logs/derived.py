@@ -1,4 +1,4 @@
-"""Variables made of others: a line such as `speed = slope(distance)`, reckoned for each run by itself."""
+"""Derived variables, such as `speed = slope(distance)`, computed for each run separately."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from tuisim.logs.signals import derivative, integral, known_at, known_in_order, 
 from tuisim.runs.arrays import FloatArray
 
 TIME = "time"
-"""Name of the times of the samples in an expression."""
+"""Name of the sample times in an expression."""
 SIGNALS = {
-    "slope": "change a second",
-    "integral": "sum over time",
-    "average": "mean of so many samples around each",
-    "resample": "at even moments, so many seconds apart",
+    "slope": "derivative, per second",
+    "integral": "integral over time",
+    "average": "centred rolling mean of that many samples",
+    "resample": "samples at a fixed period in seconds",
 }
-"""What may be called besides `FUNCTIONS`, in words."""
+"""Functions besides `FUNCTIONS`, with their descriptions."""
 
 _NAMED = re.compile(r"\s*(?P<name>[^\W\d]\w*)\s*=(?!=)(?P<expression>.*)", re.DOTALL)
 _EVEN = re.compile(
@@ -35,27 +35,27 @@ _EVEN = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """What a variable is made of."""
+    """The definition of a derived variable."""
 
     name: str
     expression: str
-    """Empty to take the variable away."""
+    """Empty to remove the variable."""
     period_s: float | None = None
-    """Distance of its samples; None keeps those that it is made of."""
+    """Sampling period; None keeps the times of its source."""
 
 
 def definition_of(text: str) -> Definition:
-    """Return what a line such as `speed = slope(distance)` defines; without a name the expression is the name.
+    """Parse a line such as `speed = slope(distance)`; without a name the expression is the name.
 
     Raises:
         LogError: there is neither a name nor an expression.
     """
     match = _NAMED.fullmatch(text)
     expression = (match["expression"] if match else text).strip()
-    # What follows ` #` in the name of a variable is the number of its run.
+    # In names of variables ` #` is followed by the number of the run.
     name = match["name"] if match else expression.replace("`", "").replace(" #", "#")
     if not name:
-        raise LogError("nothing to reckon", "such as speed = slope(distance)")
+        raise LogError("nothing to compute", "such as speed = slope(distance)")
     even = _EVEN.fullmatch(expression)
     if even:
         return Definition(name, even["expression"].strip(), float(even["period_s"]))
@@ -63,34 +63,34 @@ def definition_of(text: str) -> Definition:
 
 
 def derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
-    """Return the series that a definition makes, one for each run that has the variable that it names first.
+    """Return the series of a definition, one for each run that has the first variable in it.
 
-    Variables that are read at other moments keep their last value; columns stand in the row of each sample.
+    Variables sampled at other times are forward-filled; columns are read in the row of each sample.
 
     Args:
-        log: Where the others are.
-        definition: What to reckon.
-        otherwise: The variable whose moments are taken if none is named.
+        log: The log that has the other variables.
+        definition: The definition to compute.
+        otherwise: The variable whose sample times are used if the definition names no variable.
 
     Raises:
-        LogError: it cannot be read, or names what there is not.
+        LogError: the expression is invalid, or names an unknown variable.
     """
     if definition.name in log.table.column_names or definition.name in log.names:
         raise LogError(f"there is a column {definition.name!r} already", f"such as other = {definition.expression}")
     names = names_in(definition.expression)
     known = {name.partition(" #")[0] for name in log.names} | set(log.names)
     first = next((name for name in names if name in known), otherwise.partition(" #")[0])
-    # Of several runs each has its own, unless one of them is named.
+    # One series for each run, unless the definition names a single run.
     bases = [log.series(name) for name in log.names if first in (name, name.partition(" #")[0])]
     alone = len(bases) == 1
     return [
         replace(made, name=definition.name if alone else f"{definition.name} #{base.run}")
         for base in bases
-        for made in [_made(log, definition, names, base)]
+        for made in [_computed(log, definition, names, base)]
     ]
 
 
-def _made(log: Log, definition: Definition, names: Sequence[str], base: Series) -> Series:
+def _computed(log: Log, definition: Definition, names: Sequence[str], base: Series) -> Series:
     columns = {TIME: base.time_s, **{name: _column(log, name, base) for name in names if name != TIME}}
     functions: Functions = {
         **FUNCTIONS,
@@ -109,7 +109,7 @@ def _made(log: Log, definition: Definition, names: Sequence[str], base: Series) 
 
 
 def _column(log: Log, name: str, base: Series) -> FloatArray:
-    """The values of a variable or column at each sample of the base."""
+    """Return the values of a variable or column at each sample of the base."""
     for wanted in (name, f"{name} #{base.run}"):
         if wanted in log.names:
             series = log.series(wanted)
@@ -133,9 +133,9 @@ def _of_signal(base: Series, change: Any, values: Any) -> FloatArray:
 
 def _average(values: Any, width: Any) -> FloatArray:
     if np.ndim(width) or not float(width).is_integer():
-        raise LogError("average takes a whole number of samples", "such as average(Colour, 5)")
+        raise LogError("average needs a whole number of samples", "such as average(Colour, 5)")
     return moving_average(np.atleast_1d(values), int(width))
 
 
 def _resampled_within(values: Any, period_s: Any) -> FloatArray:
-    raise LogError("resample must stand around all else", "such as resample(slope(Colour), 0.1)")
+    raise LogError("resample must be the outermost function", "such as resample(slope(Colour), 0.1)")

@@ -1,4 +1,4 @@
-"""A log: a table, what its columns mean, and the series in it."""
+"""A log: a table, its column layout, and the series in it."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ class Member:
     """One series of a log."""
 
     name: str
-    """The variable; of several runs with `#` and the run's number."""
+    """The variable; with several runs followed by ` #` and the run's number."""
     variable: str
-    """What its rows or its column are called."""
+    """The variable without the run's number."""
     run: int
     """Number in the run column, 0 if there is none."""
     rows: IntArray | None
-    """Rows of the table that are its own, rising; None for all."""
+    """Its rows of the table, increasing; None for all."""
 
 
 def members(table: pa.Table, layout: Layout) -> list[Member]:
-    """Return the series of a table, in the order in which they first appear.
+    """Return the series of a table, in order of first appearance.
 
     Args:
         table: The log.
-        layout: What its columns mean.
+        layout: The roles of its columns.
     """
     runs, run_codes = _encoded(table.column(layout.run)) if layout.run else ([0], None)
     several = len(runs) > 1
@@ -51,7 +51,7 @@ def members(table: pa.Table, layout: Layout) -> list[Member]:
         rows_of = [None] if len(names) == 1 else _rows_by_code(codes, len(names))
         run = runs[0] if runs else 0
         return [_member(name, run, rows, False) for name, rows in zip(names, rows_of, strict=True)]
-    # Of all pairs of a variable and a run there may be but few.
+    # Only few of all pairs of variable and run may exist.
     pairs, pair_codes = _encoded(whole_numbers(codes.astype(np.int64) * len(runs) + run_codes))
     rows_of = _rows_by_code(pair_codes, len(pairs))
     found = [(names[pair // len(runs)], runs[pair % len(runs)]) for pair in pairs]
@@ -59,7 +59,7 @@ def members(table: pa.Table, layout: Layout) -> list[Member]:
 
 
 def _member(name: object, run: Any, rows: IntArray | None, several: bool) -> Member:
-    # Rows that do not say of what they are, or of which run, belong to no series.
+    # Rows without a variable or a run belong to no series.
     number = int(run) if run is not None and isfinite(run) else 0
     if name is None or (several and number != run):
         rows = _NO_ROWS
@@ -67,12 +67,12 @@ def _member(name: object, run: Any, rows: IntArray | None, several: bool) -> Mem
 
 
 def _encoded(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
-    """Return the distinct values of a column in the order in which they first appear, and each row's place there."""
+    """Return the distinct values of a column in order of first appearance, and the index of each row's value."""
     if pa.types.is_dictionary(column.type):
         column = column.unify_dictionaries()
         values = column.chunk(0).dictionary.to_pylist() if column.num_chunks else []
         if None in values or len(set(values)) < len(values):
-            # Some writers list a value twice, or nothing as a value.
+            # Some writers have duplicates or nulls in the dictionary.
             column = column.cast(column.type.value_type)
     if not pa.types.is_dictionary(column.type):
         column = column.dictionary_encode("encode")
@@ -87,10 +87,10 @@ def _encoded(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
 
 
 def _rows_by_code(codes: IntArray, count: int) -> list[IntArray]:
-    """Return the rows that hold each code from 0 to below `count`."""
+    """Return the rows of each code from 0 to `count` - 1."""
     if not count:
         return []
-    # Numbers of one or two bytes are sorted in a time in proportion to how many there are.
+    # Integers of one or two bytes are sorted in linear time.
     small = codes.astype(np.min_scalar_type(count))
     order = np.argsort(small, kind="stable")
     ends = np.cumsum(np.bincount(small, minlength=count))
@@ -104,18 +104,18 @@ class Series:
     name: str
     """As in `Log.names`."""
     time_s: FloatArray
-    """Shape (n,): from the time column, or the number of the sample, from 0."""
+    """Shape (n,): times, or sample numbers from 0 without a time column."""
     values: FloatArray
-    """Shape (n,); not a number where a cell is empty."""
+    """Shape (n,); NaN for empty cells."""
     rows: IntArray
-    """Row of the table that each sample stands in, from 0; rising."""
+    """Shape (n,): row of each sample in the table, from 0, increasing."""
     run: int = 0
     """Number in the run column, 0 if there is none."""
 
 
 @dataclass(slots=True)
 class _Kept:
-    """What of a log has been made ready to be reckoned with: only what was asked for, and that only once."""
+    """Cache of a log's converted columns and series, filled on demand."""
 
     members: Mapping[str, Member] | None = None
     series: dict[str, Series] = field(default_factory=dict)
@@ -137,23 +137,23 @@ class Log:
     table: pa.Table
     layout: Layout
     notes: tuple[str, ...] = ()
-    """What was left out or guessed, one sentence each."""
+    """Warnings about skipped or guessed data, one sentence each."""
     left_out: int = 0
     """Rows or cells that could not be read."""
     metadata: Mapping[str, Any] = field(default_factory=dict)
-    """What an export of ours says of its runs."""
+    """Metadata of the runs, if the file was exported by tuisim."""
     derived: Mapping[str, Series] = field(default_factory=dict)
-    """Series that were reckoned from others, by name."""
+    """Derived series, by name."""
     _kept: _Kept = field(default_factory=_Kept, repr=False, compare=False)
 
     @property
     def rows(self) -> int:
-        """How many rows the table has."""
+        """Number of rows of the table."""
         return int(self.table.num_rows)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the series, in the order in which they first appear; of several runs with `#` and its number."""
+        """Names of the series, in order of first appearance; with several runs followed by ` #` and its number."""
         return (*self._members(), *self.derived)
 
     def _members(self) -> Mapping[str, Member]:
@@ -161,14 +161,14 @@ class Log:
         if kept.members is None:
             found: dict[str, Member] = {}
             for member in members(self.table, self.layout):
-                # What has no name or run is called like those that have such a name, but has no rows.
+                # A member without name or run has no rows, and may share the name of one that has rows.
                 if member.name not in found or not _has_rows(found[member.name]):
                     found[member.name] = member
             kept.members = found
         return kept.members
 
     def series(self, name: str) -> Series:
-        """Return a series. Do not write to its arrays: they may be those of another one, or of the table.
+        """Return a series. Its arrays must not be modified: they may be shared.
 
         Raises:
             LogError: there is none of that name.
@@ -200,38 +200,38 @@ class Log:
                 self.table.column(self.layout.time), self.layout.unit_s, self.layout.since_first
             )
         times = self._kept.times_s if rows is None else self._kept.times_s[rows]
-        # A sample without a time of its own stands at the one before it.
+        # Missing times are forward-filled.
         missing = ~np.isfinite(times)
         if missing.any():
-            # What comes before the first time stands there.
+            # Missing times before the first one are back-filled.
             first = int(np.argmin(missing))
             last = np.maximum.accumulate(np.where(missing, first, np.arange(len(times))))
             times = np.zeros(len(times)) if missing.all() else times[last]
         return times
 
     def numbers(self, column: str) -> FloatArray:
-        """Return a column of numbers as floats, shape (n,); not a number where it is empty. Not to be written to."""
+        """Return a numeric column as floats, shape (n,), NaN for empty cells. Must not be modified."""
         if column not in self._kept.numbers:
             self._kept.numbers[column] = numbers_of(self.table.column(column))
         return self._kept.numbers[column]
 
     def with_layout(self, layout: Layout) -> Log:
-        """Return the same log with another meaning of its columns."""
+        """Return the same log with another layout."""
         return replace(self.bare(), layout=layout, _kept=_Kept())
 
     def bare(self) -> Log:
-        """Return the same log without anything that was derived."""
+        """Return the same log without derived series."""
         log = self
         for name in self.derived:
             log = log.without_derived(name.partition(" #")[0])
         return log
 
     def with_derived(self, column: str, series: Sequence[Series]) -> Log:
-        """Return the same log with series that were reckoned from its own.
+        """Return the same log with additional derived series.
 
         Args:
-            column: Name of the column of the table that they become where each has its rows for itself.
-            series: One, or one a run.
+            column: Name of the new column of the table, which is added unless a series has several samples in one row.
+            series: One series, or one per run.
         """
         bare = self.without_derived(column)
         derived = {**bare.derived, **{one.name: one for one in series}}
@@ -244,7 +244,7 @@ class Log:
         return replace(bare, table=table, derived=derived)
 
     def without_derived(self, column: str) -> Log:
-        """Return the same log without what was reckoned under a name."""
+        """Return the same log without the derived series of this name."""
         derived = {name: one for name, one in self.derived.items() if name.partition(" #")[0] != column}
         if len(derived) == len(self.derived):
             return self

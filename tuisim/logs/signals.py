@@ -1,4 +1,4 @@
-"""Signals: functions of a time series that give another one."""
+"""Operations on time series: derivative, integral, rolling mean, resampling."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tuisim.errors import LogError
 from tuisim.runs.arrays import FloatArray, IntArray
 
 Between = Literal["hold", "linear"]
-"""What a signal is between two samples: the last one still, or on the straight line to the next."""
+"""Interpolation between two samples: hold the last value, or linear."""
 
 HOLD: Final = "hold"
 LINEAR: Final = "linear"
@@ -20,7 +20,7 @@ MAX_RESAMPLED = 50_000_000
 
 
 def known_in_order(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
-    """Return the positions of the finite values in the order of their times, those of one moment as they stand.
+    """Return the indices of the finite values, sorted by time (stable).
 
     Args:
         time_s: Shape (n,), in any order.
@@ -29,24 +29,24 @@ def known_in_order(time_s: FloatArray, values: FloatArray) -> IntArray | slice:
     finite = np.isfinite(values)
     falls = bool((time_s[1:] < time_s[:-1]).any())
     if not falls:
-        # Most logs are used as they are, not copied.
+        # Avoids a copy for most logs.
         return slice(None) if finite.all() else np.flatnonzero(finite)
     known = np.flatnonzero(finite)
     return known[np.argsort(time_s[known], kind="stable")]
 
 
 def derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
-    """Return the slope at each sample, in units a second; not a number where time stands still.
+    """Return the derivative at each sample, in units per second, shape (n,); NaN if all times are equal.
 
-    Second-order differences at uneven distances, one-sided at both ends.
+    Second-order differences for uneven spacing (`numpy.gradient`), one-sided at both ends.
 
     Args:
         time_s: Shape (n,), in any order.
-        values: Shape (n,); those that are not finite are passed over and have no slope.
+        values: Shape (n,); values that are not finite are skipped, with NaN in the result.
     """
     slopes = np.full(len(values), np.nan)
     known = known_in_order(time_s, values)
-    # Samples of one moment cannot have a slope between them: the first of them stands for all.
+    # Of several samples at the same time, the first represents all.
     moments, first, which = np.unique(time_s[known], return_index=True, return_inverse=True)
     if len(moments) > 1:
         with np.errstate(all="ignore"):
@@ -59,8 +59,8 @@ def integral(time_s: FloatArray, values: FloatArray, between: Between = LINEAR) 
 
     Args:
         time_s: Shape (n,), in any order.
-        values: Shape (n,); those that are not finite are passed over and have no integral.
-        between: What the signal is between two samples.
+        values: Shape (n,); values that are not finite are skipped, with NaN in the result.
+        between: The interpolation between samples.
     """
     sums = np.full(len(values), np.nan)
     known = known_in_order(time_s, values)
@@ -74,13 +74,13 @@ def integral(time_s: FloatArray, values: FloatArray, between: Between = LINEAR) 
 
 
 def moving_average(values: FloatArray, width: int) -> FloatArray:
-    """Return the mean of the `width` samples around each, of fewer at both ends, shape (n,).
+    """Return the centred rolling mean of `width` samples, of fewer at both ends, shape (n,).
 
-    Values that are not finite are left out of the means.
+    Values that are not finite are ignored.
 
     Args:
         values: Shape (n,).
-        width: Odd, so that nothing is shifted.
+        width: Window in samples; odd, so that the result is not shifted.
 
     Raises:
         LogError: the width is not odd or not positive.
@@ -88,7 +88,7 @@ def moving_average(values: FloatArray, width: int) -> FloatArray:
     if width < 1 or width % 2 == 0:
         raise LogError(f"a moving average needs an odd number of samples, got {width}", "such as 3, 5 or 7")
     known = np.isfinite(values)
-    # A window that reaches beyond both ends of the log takes in no more than one of this width.
+    # Wider windows give the same result.
     width = min(width, 2 * len(values) + 1)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         sums = _window_sums(np.where(known, values, 0.0), width)
@@ -97,10 +97,10 @@ def moving_average(values: FloatArray, width: int) -> FloatArray:
 
 
 def _window_sums(values: FloatArray, width: int) -> FloatArray:
-    """Return the sum of the `width` values around each.
+    """Return the centred rolling sum of `width` values.
 
-    A window is the end of one block of that width and the beginning of the next, so that nothing
-    but its own values adds to it: the difference of two sums of all loses the digits of the small ones.
+    A window is the end of one block of that width and the beginning of the next. The difference of two
+    cumulative sums would lose the digits of small values.
     """
     count, half = len(values), width // 2
     blocks = np.zeros((-(-(count + width - 1) // width), width))
@@ -116,19 +116,19 @@ def _window_sums(values: FloatArray, width: int) -> FloatArray:
 def resample(
     time_s: FloatArray, values: FloatArray, period_s: float, between: Between = HOLD
 ) -> tuple[FloatArray, FloatArray]:
-    """Return a signal at even moments, from the first sample's to the last one's.
+    """Resample a signal at a fixed period, from the first sample to the last.
 
     Args:
         time_s: Shape (n,), in any order.
-        values: Shape (n,); those that are not finite are passed over.
-        period_s: Distance of the moments, above 0.
-        between: What the signal is between two samples.
+        values: Shape (n,); values that are not finite are skipped.
+        period_s: Sampling period, above 0.
+        between: The interpolation between samples.
 
     Returns:
-        The moments in s and the values there.
+        The times in s, and the values at these times.
 
     Raises:
-        LogError: the period is not above 0, or so short that there were too many moments.
+        LogError: the period is not above 0, or gives too many samples.
     """
     if not len(values):
         return np.empty(0), np.empty(0)
@@ -137,14 +137,14 @@ def resample(
 
 
 def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
-    """Return moments so far apart, from `start_s` to at most `stop_s`.
+    """Return times at a fixed period, from `start_s` to at most `stop_s`.
 
     Raises:
-        LogError: the period is not above 0, or so short that there were too many moments.
+        LogError: the period is not above 0, or gives too many samples.
     """
     if not 0.0 < period_s < math.inf:
         raise LogError(f"the period must be above 0 s, got {period_s:g}")
-    # A hair more, so that the last moment is not lost to rounding.
+    # A small margin, so that rounding does not drop the last time.
     count = (stop_s - start_s) / period_s * (1.0 + 1e-12) + 1e-9 + 1
     if count > MAX_RESAMPLED:
         raise LogError(f"a period of {period_s:g} s gives {count:.0f} rows", f"at most {MAX_RESAMPLED}")
@@ -153,32 +153,32 @@ def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
 
 
 def known_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
-    """Return what a signal is at some moments, shape (m,), as `value_at`, whatever was read of it.
+    """Return the values of an unsorted signal at given times, shape (m,); see `value_at`.
 
     Args:
         time_s: Shape (n,), in any order.
-        values: Shape (n,); those that are not finite are passed over.
+        values: Shape (n,); values that are not finite are skipped.
         moments_s: Shape (m,).
-        between: What the signal is between two samples.
+        between: The interpolation between samples.
     """
     known = known_in_order(time_s, values)
     return value_at(time_s[known], values[known], moments_s, between)
 
 
 def value_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
-    """Return what a signal is at some moments; not a number before its first sample.
+    """Return the values of a sorted signal at given times, shape (m,); NaN before its first sample.
 
     Args:
-        time_s: Not falling, shape (n,), see `known_in_order`.
+        time_s: Shape (n,), not decreasing, see `known_in_order`.
         values: Shape (n,).
         moments_s: Shape (m,).
-        between: What the signal is between two samples. After the last one it stays.
+        between: The interpolation between samples. The last value is held after the end.
     """
     if not len(values):
         return np.full(len(moments_s), np.nan)
     if between == LINEAR:
         return np.interp(moments_s, time_s, values, left=np.nan)
-    # Of several samples at one moment the last one counts. A hair for moments counted up in floats.
+    # Of several samples at the same time the last one counts. A small margin for rounding of the times.
     at = np.searchsorted(time_s, moments_s + 1e-9, side="right") - 1
     found = values[np.maximum(at, 0)].astype(np.float64)
     found[at < 0] = np.nan

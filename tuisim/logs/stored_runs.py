@@ -1,4 +1,4 @@
-"""Stored runs as logs: the samples they printed, or every tick."""
+"""Stored runs as logs: printed samples, or telemetry."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def log_of_runs(runs: Sequence[StoredRun]) -> Log:
 
 
 def telemetry_log(run: StoredRun) -> Log:
-    """Return every tick of a run.
+    """Return the telemetry of a run.
 
     Raises:
-        LogError: the recording is damaged, or the mat cannot be found any more.
+        LogError: the recording is damaged, or the mat no longer exists.
     """
     return _log("telemetry", [run], telemetry_frame(run))
 

@@ -1,4 +1,4 @@
-"""Units that the names of columns and variables tell by their ends."""
+"""Units from the suffixes of column and variable names."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ class Unit(NamedTuple):
     """One unit."""
 
     sign: str
-    """As it stands behind a number."""
+    """The symbol after a number."""
     words: str
-    """As a file says it."""
+    """The description in files."""
 
 
 _LEVEL = Unit("", "mean of 0 to 255")
@@ -28,16 +28,16 @@ UNITS = {
     "_green": _LEVEL,
     "_blue": _LEVEL,
 }
-"""Every unit by the end of a name; of two ends that fit, the first counts."""
+"""Every unit by the suffix of a name; the first match counts."""
 
 _NONE = Unit("", "")
 
 SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
-"""Units that a column of times may have, in seconds."""
+"""Units of a time column, in seconds."""
 
 
 MAX_LEVEL = 255.0
-"""Most that a reading of light comes to, in percent or from 0 to 255."""
+"""Maximum of a light reading, in percent or on the scale 0 to 255."""
 
 _LIGHT = re.compile(
     r"colou?r|light|reflect|ambient|bright|intensity|(?:^|[\W_])(?:red|green|blue|gr[ae]y)", re.IGNORECASE
@@ -46,16 +46,16 @@ _PERCENT = re.compile(r"(?:%|_pc|percent|_proximity)$", re.IGNORECASE)
 
 
 def begins_at_zero(name: str, low: float, high: float) -> bool:
-    """Return whether values are those of a reading whose range is known to begin at 0.
+    """Return whether a variable is a reading whose scale starts at 0.
 
     Args:
-        name: Of a variable, which tells a reading of light or a percentage.
-        low, high: The least and the greatest value: outside of 0 to 255 it is something else.
+        name: Name of a variable, checked for words of light readings or percentages.
+        low, high: Minimum and maximum of its values, which must be within 0 to 255.
     """
     name = name.partition(" #")[0]
     return 0 <= low and high <= MAX_LEVEL and bool(_LIGHT.search(name) or _PERCENT.search(name))
 
 
 def unit_of(name: str) -> Unit:
-    """Return the unit that a name tells; both its texts are empty if it tells none."""
+    """Return the unit from a name's suffix; both texts are empty if there is none."""
     return next((unit for end, unit in UNITS.items() if name.endswith(end)), _NONE)

@@ -1,4 +1,4 @@
-"""The run of one cell: its lines, its pictures, the responder's answers, and the kernel's interrupt."""
+"""Runs the program of a cell: output, images, answers of the responder, kernel interrupts."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ from tuisim.runs.samples import Sample, samples_of
 from tuisim.runs.store import RunStore
 
 POLL_S = 0.02
-"""How long a printed line may wait before it is in the cell."""
+"""Interval at which printed lines appear in the cell."""
 
 STOP_WAIT_S = 1.0
 ROWS_AT_ONCE = 2000
-"""So many lines are shown before the next look at the interrupt."""
+"""Lines shown between two checks for an interrupt."""
 
 ROWS_AFTER_INTERRUPT = 1000
-"""So many lines of an interrupted run are still shown; its log has them all."""
+"""Maximum lines shown after an interrupt; the log has all of them."""
 
 ROWS_A_DRAWING = 10_000
-"""So many lines are searched for samples between two looks at the interrupt."""
+"""Lines searched for samples between two checks for an interrupt."""
 
 BYTES_IN_A_HURRY = 1 << 20
-"""So much output is counted at once."""
+"""Output processed at once."""
 
 FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
-"""What the lines begin with that are meant for the responder."""
+"""Prefixes of lines for the responder."""
 
 Responder = Callable[[str], object]
 _SHOWN = {STDOUT, STDERR, SPEECH}
@@ -50,7 +50,7 @@ _SHOWN = {STDOUT, STDERR, SPEECH}
 
 @dataclass(frozen=True, slots=True)
 class CellRun:
-    """What a cell wants to be run."""
+    """A program to run, and how."""
 
     program: Program
     spec: RunSpec
@@ -59,15 +59,15 @@ class CellRun:
     """As in `RunOptions`."""
     refresh_s: float
     traces: tuple[PenTrace, ...]
-    """What former runs have drawn on the mat."""
+    """Pen traces of earlier runs on the mat."""
     responder: Responder | None
-    """Who answers the program, in collaborative mode."""
+    """The function that answers the program, in collaborative mode."""
     quiet: bool
-    """Whether what is spoken is not even shown."""
+    """Whether speech is not shown either."""
 
 
 def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) -> StoredRun:
-    """Run a program to its end, or until the kernel is interrupted, and show it.
+    """Run a program and show it; block until it ends or the kernel is interrupted.
 
     Args:
         wanted: The run.
@@ -103,18 +103,18 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
 
 
 def told_end(run: StoredRun, *, hurry: bool = False) -> str:
-    """Return one line on a run that is over: how it ended, simulated time, samples.
+    """Return a status line of a finished run: state, simulated time, samples.
 
     Args:
         run: The run.
         hurry: Leave out the samples, if they would take long to count.
     """
     what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
-    told = f"{run.state}{what} · {run.time_s:.3f} s"
+    status = f"{run.state}{what} · {run.time_s:.3f} s"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
-        return told
+        return status
     samples = sum(1 for _ in samples_of(run.output.rows()))
-    return f"{told} · {samples} sample{'s' * (samples != 1)}"
+    return f"{status} · {samples} sample{'s' * (samples != 1)}"
 
 
 class _Follower:
@@ -130,11 +130,11 @@ class _Follower:
     def __init__(self, wanted: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
         self._wanted, self._handle, self._screen, self._interruption = wanted, handle, screen, interruption
         self._said: list[Any] = []
-        """What the responder has said, and the program has not got yet."""
+        """Answers of the responder that have not been sent to the program."""
         self._stopping = False
 
     def to_the_end(self) -> None:
-        """Wait until the run is over, and pass everything on meanwhile."""
+        """Block until the run ends; relay its output and events meanwhile."""
         handle, interruption = self._handle, self._interruption
         # Before anything is printed: what a cell shows stands in the same order however fast the program is.
         self._screen.draw_now_and_then()
@@ -197,10 +197,10 @@ class _Screen:
         self._due = 0.0
         self._samples: list[Sample] = []
         self._position = 0
-        """Up to where the output has been searched for samples."""
+        """Position up to which the output has been searched for samples."""
 
     def draw_now_and_then(self) -> None:
-        """Draw if there is no drawing yet, or the last one is old; where drawings would pile up, never."""
+        """Draw if the last drawing is missing or old; never if drawings cannot be updated in place."""
         if not self._stage.redraws or time.monotonic() < self._due:
             return
         self.draw(f"running · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
@@ -208,7 +208,7 @@ class _Screen:
         self._due = time.monotonic() + self._wanted.refresh_s
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
-        """Draw the run as it is now.
+        """Draw the current state of the run.
 
         Args:
             status: One line about it.
@@ -225,14 +225,14 @@ class _Screen:
 
 
 def show_rows(rows: Sequence[OutputRow], *, quiet: bool = False) -> None:
-    """Print rows in the order in which they came, many of one stream at once."""
+    """Print rows in order, batched by stream."""
     shown = _SHOWN - {SPEECH} if quiet else _SHOWN
     for is_error, group in groupby((row for row in rows if row.stream in shown), key=lambda row: row.stream == STDERR):
         print("\n".join(line_of(row) for row in group), file=sys.stderr if is_error else sys.stdout)
 
 
 def _plain(value: Any) -> Any:
-    """Return numbers and arrays of other libraries as Python's own."""
+    """Convert numbers and arrays of other libraries to Python types."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"a {type(value).__name__}")
@@ -247,7 +247,7 @@ def _message(answer: object) -> Any:
 
 
 def _ask(prompt: str) -> str | None:
-    """Ask the person at the notebook; None where nobody can answer."""
+    """Ask the user for input; None if the frontend does not support it."""
     from IPython.core.error import StdinNotImplementedError
 
     try:

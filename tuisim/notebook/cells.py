@@ -1,4 +1,4 @@
-"""The programs in a notebook file, each with the world that the cells before it have set."""
+"""Programs in a notebook file, each with the world set up by the cells before it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SUFFIX = ".ipynb"
 
 _MAGIC = re.compile(r"%(?P<cell>%)?(?P<name>sim_magic\w*)(?P<words>.*)")
 _VARIABLE = re.compile(r"(?<!\$)\$[A-Za-z_][\w.]*|\{[^{}]+\}")
-"""What IPython replaces in a magic line by the value that it has in the notebook."""
+"""Variables that IPython expands in a magic line."""
 
 _NUMBERS = re.compile(r"([0-9]+)|([^0-9]+)")
 _HEADING = re.compile(r"#+\s+(.*\S)")
@@ -37,14 +37,14 @@ class NotebookProgram:
     """The nearest heading above it, empty if there is none."""
     source: ProgramSource
     unknown: str = ""
-    """What its magic line takes from the notebook, such as `$x`: the program runs there only. Empty for nothing."""
+    """A notebook variable in its magic line, such as `$x`: it runs only in the notebook. Empty if there is none."""
     notes: tuple[str, ...] = ()
-    """What had to be left out of the cells between the program before and this one."""
+    """Warnings about skipped parts of the cells between the previous program and this one."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """A magic line, as far as it can be understood outside the notebook."""
+    """A magic line, as far as it can be evaluated outside the notebook."""
 
     magic: re.Match[str]
     settings: Mapping[str, Any]
@@ -52,12 +52,12 @@ class _Words:
 
 
 def is_notebook(word: str) -> bool:
-    """Return whether a word of the command line means a notebook, or a cell of one as `FILE#number`."""
+    """Return whether a word of the command line names a notebook, or a cell of one as `FILE#number`."""
     return word.partition("#")[0].endswith(SUFFIX)
 
 
 def notebooks_in(folder: Path) -> list[Path]:
-    """Return the notebooks of a folder and the folders in it, in the order of their names: 2 comes before 10.
+    """Return the notebooks in a folder and its subfolders, in natural order: 2 comes before 10.
 
     Hidden folders are left out: Jupyter keeps former versions in them.
     """
@@ -69,7 +69,7 @@ def notebooks_in(folder: Path) -> list[Path]:
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
-    """What sorts names by the numbers in them."""
+    """Return a sort key for natural order."""
     return [(int(digits), "") if digits else (-1, text.lower()) for digits, text in _NUMBERS.findall(name)]
 
 
@@ -163,7 +163,7 @@ def _without_variables(words: str) -> tuple[str, str]:
 
 
 def chosen_programs(word: str) -> list[NotebookProgram]:
-    """Return the programs that `FILE` or `FILE#number` means.
+    """Return the programs that `FILE` or `FILE#number` names.
 
     Raises:
         ConfigError: there is no such notebook or program.

@@ -1,4 +1,4 @@
-"""What a cell shows: pictures and tables that change while the program runs, and stay when it is over."""
+"""Output of a cell: images and tables that are updated while the program runs, and then remain."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ Row = tuple[str, str]
 
 
 def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
-    """Return a Pillow image as what a cell shows."""
+    """Return a Pillow image as a displayable object."""
     png = io.BytesIO()
     picture.save(png, "PNG")
     return {"image/png": png.getvalue(), "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>"}
 
 
 def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
-    """Return rows of name and value as what a cell shows.
+    """Return rows of name and value as a displayable table.
 
     Args:
         title: What the table is about.
@@ -67,29 +67,29 @@ def _unit(column: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What there is to show."""
+    """The state to display."""
 
     spec: RunSpec
     files: FieldFiles
     text: str
     """The program."""
     last: TickRecord
-    """The moment that is shown."""
+    """The tick to display."""
     traces: Sequence[PenTrace] = ()
-    """What pens have drawn on the mat by then."""
+    """Pen traces on the mat up to then."""
     samples: Sequence[Sample] = ()
     printed: Sequence[str] | None = None
     """The lines of the last run, where they are not in the cell already."""
 
 
 def start_record(spec: RunSpec) -> TickRecord:
-    """Return the moment before anything has run."""
+    """Return the state before any run."""
     start = spec.world.start
     return TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, *[0] * 7)
 
 
 def instrumentation(scene: Scene) -> list[Row]:
-    """Return motors, sensors and pose at the scene's moment."""
+    """Return motors, sensors and pose of a scene."""
     spec, record, field = scene.spec, scene.last, open_field(scene.files)
     instant = instant_of(record, spec, spec.world.noise)
     rows = [
@@ -140,7 +140,7 @@ _TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
 
 
 class Stage:
-    """The panels of one cell, each a display that is drawn anew in its place.
+    """The panels of one cell, each a display that is updated in place.
 
     Args:
         settings: Which panels are on and off.
@@ -149,7 +149,7 @@ class Stage:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self.redraws = hasattr(get_ipython(), "kernel")
-        """Whether what is shown can be drawn anew in its place; a terminal would repeat it below."""
+        """Whether displays can be updated in place; a terminal would print them again."""
         self._handles: dict[str, DisplayHandle] = {}
 
     def _put(self, panel: str, bundle: dict[str, Any]) -> None:
@@ -162,7 +162,7 @@ class Stage:
                 self._handles[panel] = handle
 
     def shows(self, panel: str) -> bool:
-        """Return whether the cell has put a panel on."""
+        """Return whether a panel is enabled in the cell."""
         return panel in self._settings.panels_on
 
     def show(self, scene: Scene, status: str) -> None:

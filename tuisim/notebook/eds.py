@@ -1,4 +1,4 @@
-"""What the runs of a notebook logged, as frames and pictures.
+"""The logs of a notebook's runs as DataFrames and images.
 
 What these functions need is imported in them: a notebook loads this module whether it uses it or not.
 """
@@ -27,7 +27,7 @@ IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 
 
 def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
-    """Return the samples of runs as one long frame, see `datalog.frames.samples_frame`."""
+    """Return the samples of runs as one long frame, see `runs.frames.samples_frame`."""
     from tuisim.runs.frames import samples_frame
 
     return samples_frame(log)
@@ -69,7 +69,7 @@ def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, flo
 
 
 def arrays_at(spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field) -> list[tuple[ColorSensorSpec, bytes]]:
-    """Return what the colour sensors saw at a tick: RGB bytes, row by row."""
+    """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
     from tuisim.core.sensors.color import pixel_array
     from tuisim.runs.views import instant_of
 
@@ -105,7 +105,7 @@ def _check_logged(index: int, count: int) -> None:
 
 
 def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
-    """Return the pictures of left and right that were logged at one moment.
+    """Return the left and right images that were logged at the same time.
 
     Args:
         frame: As from `get_image_data_from_datalog`.
@@ -124,7 +124,7 @@ def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
 def bw_image_data(
     frame: pd.DataFrame, index: int = -1, threshold: int = 127, crop: Sequence[int] | None = None
 ) -> pd.DataFrame:
-    """Return one logged picture in black and white: a row a pixel row, 1 is dark.
+    """Return one logged image in black and white: one row per pixel row, 1 is dark.
 
     Args:
         frame: As from `get_image_data_from_datalog`.

@@ -1,4 +1,4 @@
-"""The kernel's interrupt while a program runs."""
+"""Kernel interrupts while a program runs."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ Result = TypeVar("Result")
 
 
 class Interruption:
-    """Counts interrupts, instead of letting them strike wherever they come, such as between a child and its handle.
+    """Counts interrupts instead of raising at any point, such as between starting and storing a child.
 
     Only where the code of others runs are they what they always are, see `call`.
     """
 
     def __init__(self) -> None:
         self.count = 0
-        """How often the user has interrupted."""
+        """Number of interrupts."""
         self._allowed = False
         self._before: Any = None
 
@@ -41,7 +41,7 @@ class Interruption:
             raise KeyboardInterrupt
 
     def call(self, act: Callable[[], Result]) -> Result | None:
-        """Call what is not ours: an interrupt ends it at once. Return its result, None if there is none."""
+        """Call a user's function, which an interrupt ends at once. Return its result, None if interrupted."""
         self._allowed = True
         try:
             return None if self.count else act()

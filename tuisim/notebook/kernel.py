@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
 OLD_NAMES = Path(__file__).with_name("course")
-"""Folder with the modules that a course's cells import. Only this kernel looks there."""
+"""Folder with the modules that a course's cells import. Only this kernel adds it to `sys.path`."""
 
 
 def load_ipython_extension(shell: InteractiveShell) -> None:
-    """Let the cells of a course run as they are: its imports mean tuisim, and every magic is there."""
+    """Provide the modules and magics of a course, so that its cells run unchanged."""
     from tuisim.notebook.magics import install
 
     # First, so that these modules win over the old simulator where that is installed.

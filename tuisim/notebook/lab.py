@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Plan:
-    """A cell, checked: what holds from now on."""
+    """The validated settings of a cell."""
 
     lasting: Mapping[str, Any]
     settings: Settings
@@ -37,14 +37,14 @@ class _Plan:
 
 
 class Lab:
-    """A simulated robot that the cells of a notebook share.
+    """The simulated robot shared by the cells of a notebook.
 
     Its world lasts from cell to cell, its log until it is cleared.
     """
 
     def __init__(self) -> None:
         self.autorun = False
-        """Whether a program runs as soon as its cell is there, as with `-R`."""
+        """Whether executing a program cell also runs its program, as with `-R`."""
         self.responder: Callable[[str], object] | None = None
         """In collaborative mode: called with each line that a program prints for the notebook, `PY::` left out.
 
@@ -56,11 +56,11 @@ class Lab:
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
         self._traces: tuple[PenTrace, ...] = ()
-        """What pens have drawn on the mat, until it is cleared or another one."""
+        """Pen traces on the mat, until it is cleared or replaced."""
 
     @property
     def pyresponder(self) -> Callable[[str], object] | None:
-        """What the old simulator calls `responder`."""
+        """Alias of `responder`, for the old simulator's name."""
         return self.responder
 
     @pyresponder.setter
@@ -75,7 +75,7 @@ class Lab:
         return list(self._runs)
 
     def clear_datalog(self) -> None:
-        """Forget what was logged; the runs stay in the store."""
+        """Discard the log; the runs stay in the store."""
         self._runs.clear()
 
     def data(self) -> pd.DataFrame:
@@ -102,7 +102,7 @@ class Lab:
 
     @property
     def state(self) -> dict[str, Any]:
-        """Where the robot is, in mm and degrees, and how the last run ended."""
+        """The robot's pose in mm and degrees, and the end of the last run."""
         record = self._last.telemetry.last() if self._last else None
         pose = record.pose if record else self.spec.world.start
         return {
@@ -126,7 +126,7 @@ class Lab:
     # Cells
 
     def take(self, words: MagicWords, text: str | None, prelude: str) -> None:
-        """Do what a cell says; if anything is wrong with it, nothing changes.
+        """Apply a cell's magic; on an error nothing changes.
 
         Args:
             words: The magic line.
@@ -141,7 +141,7 @@ class Lab:
         plan = self._checked(words, text, prelude)
         runs = plan.settings.autorun or (self.autorun and text is not None)
         if runs and plan.program is None:
-            raise ConfigError("there is no program to run", "put one into a cell below %%sim_magic_preloaded", key="-R")
+            raise ConfigError("there is no program to run", "write one in a cell below %%sim_magic_preloaded", key="-R")
         if words.collaborative and not (self.responder is None or callable(self.responder)):
             raise ConfigError(f"must be a function, got {self.responder!r}", key="roboSim.responder")
         if plan.spec != self._spec or words.move_back:
@@ -201,7 +201,7 @@ class Lab:
                 self._traces = (*self._traces, pen_trace(self._last.spec, self._last.telemetry.array()))
 
     def _scene(self, plan: _Plan) -> tuple[Scene, str]:
-        """What there is to show while nothing runs, and the line about it."""
+        """Return the scene while nothing runs, and its status line."""
         from tuisim.notebook.cell_run import told_end
         from tuisim.notebook.display import Scene, start_record
         from tuisim.runs.records import TEXT_STREAMS, line_of
@@ -218,4 +218,4 @@ class Lab:
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so
-"""The simulator that the magics mean."""
+"""The simulator used by the magics."""

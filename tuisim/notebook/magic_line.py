@@ -1,4 +1,4 @@
-"""The words of a magic line: the switches that all share, and those that only a notebook has."""
+"""Parses a magic line: the shared switches, and those of notebooks only."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ LASTING = frozenset(
         "light_noise", "motor_noise", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
     }
 )  # fmt: skip
-"""Fields of `Settings` that hold until another cell says otherwise; all others are a cell's own."""
+"""Fields of `Settings` that persist until another cell changes them; all others apply to their cell only."""
 
 OF_THE_MAT = ("x_mm", "y_mm", "heading_deg", "obstacles")
-"""Fields that a new mat brings with it."""
+"""Fields that a new mat resets."""
 
 
 @dataclass(frozen=True, slots=True)
 class MagicWords:
-    """A magic line, understood."""
+    """A parsed magic line."""
 
     settings: Mapping[str, Any]
     """By field of `Settings`."""
     sim: str | None = None
-    """Name of the simulator that is meant."""
+    """Name of the simulator variable."""
     preview: bool = False
     preview_code: bool = False
     stop: bool = False
@@ -41,7 +41,7 @@ class MagicWords:
     refresh_s: float = DEFAULT_REFRESH_S
     collaborative: bool = False
     help: str = ""
-    """The text that was asked for instead of anything else."""
+    """The help text, if it was requested."""
 
 
 def _parser(magic: str) -> SwitchParser:
@@ -51,18 +51,18 @@ def _parser(magic: str) -> SwitchParser:
     add = parser.add_argument_group("notebook").add_argument
     add("-s", "--sim", metavar="NAME", help="variable that holds the simulator (roboSim)")
     add("-h", "--help", action="store_true", help="show this")
-    add("-v", "--preview", action="store_true", help="show the program, and what it finds ready")
-    add("--previewcode", action="store_true", help="give what a program finds ready as text, and do no more")
-    add("-S", "--stop", action="store_true", help="tells that nothing runs: a program stops with its cell")
-    add("-m", "--move", action="store_true", help="robot back to its start")
+    add("-v", "--preview", action="store_true", help="show the program and its predefined names")
+    add("--previewcode", action="store_true", help="only return the text of the prelude")
+    add("-S", "--stop", action="store_true", help="has no effect: a program ends with its cell")
+    add("-m", "--move", action="store_true", help="move the robot back to its start")
     add("-F", "--refresh", nargs="?", const=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S, metavar="S",
-        type=lambda text: refresh(text, "-F"), help="seconds between two drawings")  # fmt: skip
+        type=lambda text: refresh(text, "-F"), help="seconds between two redraws")  # fmt: skip
     add("-L", "--collab", action="store_true", help="`roboSim.responder` answers the program")
     return parser
 
 
 def parse_line(line: str, magic: str) -> MagicWords:
-    """Return what the words after a magic mean.
+    """Parse the words after a magic.
 
     Raises:
         ConfigError: a word is no switch, or a value is wrong.

@@ -1,4 +1,4 @@
-"""The magics of `%load_ext tuisim`: words in, one clear line if they are wrong.
+"""The magics of `%load_ext tuisim`.
 
 Loading them is to cost next to nothing: what they need is imported by the first cell that needs it.
 """
@@ -27,7 +27,7 @@ Handler = Callable[[str, str | None], Any]
 
 
 def _guarded(act: Handler) -> Callable[..., Any]:
-    """Let expected errors be one line in the cell."""
+    """Print expected errors as one line in the cell."""
 
     def magic(line: str, cell: str | None = None) -> Any:
         try:
@@ -43,7 +43,7 @@ def _guarded(act: Handler) -> Callable[..., Any]:
 
 
 def _lab(shell: InteractiveShell, name: str | None) -> Lab:
-    """The simulator in a variable of the notebook.
+    """Return the simulator in a variable of the notebook.
 
     Raises:
         ConfigError: there is no such variable, or it is no simulator.
@@ -94,7 +94,7 @@ def _corners(text: str) -> tuple[int, ...]:
 
 
 def _log_parser(magic: str) -> SwitchParser:
-    """The parser of a magic that reads the log."""
+    """Return the parser of a magic that reads the log."""
     from tuisim.config.options import SwitchParser
 
     parser = SwitchParser(prog=f"%{magic}", add_help=False, allow_abbrev=False)

@@ -1,4 +1,4 @@
-"""Pages without anything from elsewhere: their look, and tables of text."""
+"""Self-contained HTML pages: style, sections and tables."""
 
 from __future__ import annotations
 

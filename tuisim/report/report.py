@@ -37,13 +37,13 @@ _WIDTH_PX = 960
 
 
 def default_name(subject: OpenedLog) -> str:
-    """Return what the file of a report is called if nobody says."""
+    """Return the default file name of a report."""
     name = subject.runs[0].program.name if subject.runs else subject.wanted.file
     return f"{Path(name).stem.strip('-.') or 'log'}-report.html"
 
 
 def check_report(path: Path) -> None:
-    """Make sure that a report can be written there.
+    """Check that a report can be written to a path.
 
     Raises:
         ExportError: it cannot, or the suffix is another one.
@@ -105,7 +105,7 @@ def report_of(subject: OpenedLog, names: Sequence[str] = (), search: Search = pl
 
 
 def _with_rows(subject: OpenedLog) -> tuple[OpenedLog, str]:
-    """The log to report on, and what is to be said about it."""
+    """The log of a report, and the facts about it."""
     from tuisim.analysis.source import LogRequest, opening
 
     if subject.log.rows:
@@ -201,17 +201,17 @@ def _programs(runs: Sequence[StoredRun]) -> list[str]:
 
 
 Fact = tuple[str, ...]
-"""What it is, and what it is for each run."""
+"""Pairs of label and function of a run."""
 
 
 def run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
-    """Return the facts of stored runs; what is nowhere the case is left out."""
+    """Return the facts of stored runs; facts that apply to no run are omitted."""
     rows = [(name, *(tell(run) for run in runs)) for name, tell in _FACTS.items()]
     return [row for row in rows if any(row[1:])]
 
 
 def log_facts(log: Log) -> list[Fact]:
-    """Return the facts of a log file, and what it says of its runs if it is an export."""
+    """Return the facts of a log file, and of its runs if it is an export."""
     rows: list[Fact] = [
         ("file", log.title),
         ("rows", f"{log.rows:,}" + (f", and {log.left_out:,} that could not be read" if log.left_out else "")),
@@ -237,11 +237,11 @@ _TRAVELLED: Mapping[str, tuple[str, ...]] = {
     "light noise": ("world", "noise", "light"),
     "motor noise": ("world", "noise", "motor"),
 }
-"""Where an export says it of a run."""
+"""Paths of facts in the metadata of an export."""
 
 
 def _at(entry: Mapping[str, Any], path: Sequence[str]) -> str:
-    """What stands at a place, as text; empty if there is no such place."""
+    """Return the value at a path as text; empty if there is none."""
     found: Any = entry
     for key in path:
         found = found.get(key, "") if isinstance(found, Mapping) else ""

@@ -1,4 +1,4 @@
-"""The field of a run with the way that the robot went."""
+"""The field of a run with the robot's path."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WAY, _HALO = (230, 90, 0), (255, 255, 255)
 
 
 def way_picture(run: StoredRun) -> Image:
-    """Return mat, obstacles, pen trace, robot, and the way of the axle's middle from its start, which has a ring.
+    """Draw mat, obstacles, pen trace, robot, and the path of the axle's midpoint; a ring marks the start.
 
     Raises:
         LogError: the recording is damaged, or the mat cannot be found any more.
@@ -42,7 +42,7 @@ def way_picture(run: StoredRun) -> Image:
 
 
 def as_source(picture: Image) -> str:
-    """Return a picture as the address that holds it, for a page."""
+    """Return an image as a data URL."""
     content = io.BytesIO()
     picture.save(content, "png", optimize=True)
     return f"data:image/png;base64,{base64.b64encode(content.getvalue()).decode()}"

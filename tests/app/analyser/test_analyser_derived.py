@@ -35,11 +35,11 @@ def test_what_is_reckoned(text: str, values: np.ndarray) -> None:
 
 
 REFUSED = {
-    "nothing": ("", "nothing to reckon"),
+    "nothing": ("", "nothing to compute"),
     "an unknown name": ("v = Colur", "no variable 'Colur'"),
     "an unknown function": ("v = open(Colour)", "no function 'open'"),
     "a name that is taken": ("x_mm = Colour", "a column 'x_mm' already"),
-    "resample within": ("v = 2 * resample(Colour, 1)", "around all else"),
+    "resample within": ("v = 2 * resample(Colour, 1)", "the outermost function"),
     "no period": ("v = resample(Colour, 0)", "period must be above 0"),
     "a period below nothing": ("v = resample(Colour, -1)", "period must be above 0"),
     "half a sample": ("v = average(Colour, 2.5)", "whole number"),
