@@ -25,6 +25,17 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(every[:MOST_LISTED]) + (f" and {more} more" if more > 0 else "") or "none"
 
 
+def counted(count: int, one: str, many: str = "") -> str:
+    """Return how many there are of something, in words: `1 row`, `1,500 rows`.
+
+    Args:
+        count: How many.
+        one: What it is, in the singular.
+        many: In the plural, if an `s` does not make it.
+    """
+    return f"{count:,} {one if count == 1 else many or one + 's'}"
+
+
 def printable(text: str) -> str:
     """Return a text as a single line that is safe in any terminal, font and file.
 

@@ -41,6 +41,10 @@ class Terminal:
         for key in keys:
             self._run("send-keys", key)
 
+    def scribble(self, text: str) -> None:
+        """Write over the screen, as another program that has the same terminal."""
+        Path(self._run("display-message", "-p", "#{pane_tty}").strip()).write_text(text)
+
     def resize(self, columns: int, rows: int) -> None:
         self._run("resize-window", "-x", str(columns), "-y", str(rows))
 

@@ -64,7 +64,7 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
     app = LabApp(settings(LOGS, panels_on=frozenset({"chart", "output"}), autorun=True, speed=0.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await until(pilot, lambda: "— finished" in screen_text(app) and "[x] Colour" in screen_text(app))
-        await pilot.press("ctrl+l")
+        await pilot.press("x")
         await until(pilot, lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app))
         recording = app.bridge.timeline.recording
         assert recording is not None

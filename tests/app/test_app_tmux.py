@@ -51,3 +51,24 @@ def test_capital_and_small_letters_are_different_keys(terminal: Terminal) -> Non
     terminal.keys("x", "X")
     # The panels are painted one after another.
     terminal.until(lambda text: "─ Positioning" in text and "pen down" in text)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "opened"),
+    [(["log_greys"], ()), (["log_greys"], ("question_mark",)), (["analyse", "some.csv"], ()), (["log_greys"], ("d",))],
+    ids=["app", "dialog", "analyser", "editor"],
+)
+def test_a_key_draws_what_something_else_has_written_over(
+    terminal: Terminal, tmp_path: Path, arguments: list[str], opened: tuple[str, ...]
+) -> None:
+    (tmp_path / "some.csv").write_text("time,red\n0,5\n1,6\n")
+    terminal.start(arguments, 120, 40)
+    terminal.until(lambda text: "help" in text.splitlines()[-1])
+    for key in opened:
+        terminal.keys("?" if key == "question_mark" else key)
+    if opened:
+        terminal.until(lambda text: "R run" not in text.splitlines()[-1])
+    terminal.scribble("\033[2J\033[10;5HWrite failed: Broken pipe")
+    terminal.until(lambda text: "Broken pipe" in text and not text.splitlines()[-1].strip())
+    terminal.keys("C-l")
+    terminal.until(lambda text: "Broken pipe" not in text and "╭" in text)

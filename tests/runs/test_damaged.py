@@ -72,11 +72,11 @@ CASES: dict[str, Case] = {
     ),
     "mixed separators": ("a.csv", (CSV + "9.9;5\n4.0,80\n").encode(), Read(42, left_out=2, note="too few cells")),
     "short rows": ("a.csv", (CSV + "4.0\n4.1,82\n").encode(), Read(42, left_out=1, note="row 42")),
-    "long rows": ("a.csv", (CSV + "4.0,80,1,2\n4.1,82\n").encode(), Read(42, left_out=1, note="too many cells")),
+    "long rows": ("a.csv", (CSV + "4.0,80,1,2\n4.1,82\n").encode(), Read(42, left_out=1, note="1 row has too")),
     "words among numbers": (
         "a.csv",
         CSV.replace(",20\n", ",oops\n").encode(),
-        Read(40, left_out=1, note="'red' hold no number (row 12"),
+        Read(40, left_out=1, note="1 cell of 'red' holds no number (row 12"),
     ),
     "many words among numbers": (
         "a.csv",
@@ -86,7 +86,7 @@ CASES: dict[str, Case] = {
     "a line of blanks and words in one column": (
         "a.csv",
         b"red\n5\n  \n6\noops\n7\n",
-        Read(5, left_out=1, note="'red' hold no number (row 5"),
+        Read(5, left_out=1, note="1 cell of 'red' holds no number (row 5"),
     ),
     "empty cells": (
         "a.csv",
@@ -213,7 +213,7 @@ CASES: dict[str, Case] = {
     "json lines with words among numbers": (
         "a.jsonl",
         b'{"time": 0, "red": 1}\n{"time": 1, "red": "x"}\n{"time": 2, "red": 5}\n',
-        Read(3, left_out=1, note="'red' hold no number (row 2"),
+        Read(3, left_out=1, note="1 cell of 'red' holds no number (row 2"),
     ),
     "json lines with other columns each": (
         "a.jsonl",
@@ -257,19 +257,19 @@ CASES: dict[str, Case] = {
     "truths": (
         "a.csv",
         b"time,on\n0,True\n1,false\n2,\n" + b"4,TRUE\n" * 50_000 + b"5,maybe\n",
-        Read(50_004, ("on",), 1, "1 cells of 'on' hold neither true", lambda log: values(log, "on")[:2] == [1, 0]),
+        Read(50_004, ("on",), 1, "1 cell of 'on' holds neither true", lambda log: values(log, "on")[:2] == [1, 0]),
     ),
     "times that cannot be read": ("a.csv", b"time,red\nnoon,1\none,2\n", Read(2, note="'time' cannot be read")),
     "json nested without end": ("a.jsonl", b"[" * 100_000 + b'\n{"time": 0, "red": 1}\n', Read(1, left_out=1)),
     "printed lines": (
         "a.txt",
         b"Colour: 98.8\nhello\nColour: 45\nUltrasonic: 3\n",
-        Read(3, ("Colour", "Ultrasonic"), left_out=1, note="no sample (row 2"),
+        Read(3, ("Colour", "Ultrasonic"), left_out=1, note="1 line is no sample (row 2"),
     ),
     "few printed lines among other words": (
         "a.txt",
         b"says: hi\nColour: 98.8\nleft, then right\nhello\nColour: 45\nDist = 4\nbye\n",
-        Read(2, ("Colour",), left_out=5, note="no sample (rows 1, 3, 4"),
+        Read(2, ("Colour",), left_out=5, note="5 lines are no sample (rows 1, 3, 4"),
     ),
     "a table below lines that look printed": (
         "a.txt",

@@ -213,7 +213,7 @@ def test_torn_run_says_what_is_lost(record: Callable[..., Recorder], spec: RunSp
     assert [row.text for row in run.output.all_rows()] == ["a: 1"]
     assert len(run.actions) == 1
     assert run.notes == (
-        "output.bin was cut off: its last 1 bytes are lost",
+        "output.bin was cut off: its last 1 byte is lost",
         "actions.jsonl: the last line was torn and is left out",
     )
 

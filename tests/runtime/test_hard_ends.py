@@ -45,7 +45,7 @@ def test_of_a_long_chain_the_first_and_the_last_errors_are_told(run: Run) -> Non
     text = "e = KeyError('first')\nfor i in range(3000):\n    e, e.__cause__ = ValueError(i), e\nraise e"
     errors = run(text, prelude="none").errors
     assert errors[0] == "KeyError: 'first'"
-    assert "[2981 more errors, each of which led to the next one]" in errors
+    assert "[2,981 more errors, each of which led to the next one]" in errors
     assert sum(line.startswith("ValueError: ") for line in errors) == 19
 
 

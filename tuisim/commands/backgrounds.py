@@ -12,7 +12,7 @@ from tuisim.config.assets import Background
 from tuisim.config.options import SwitchParser
 from tuisim.config.own_mats import Taken, import_originals, mats, own_folder
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.errors import listed
+from tuisim.errors import counted, listed
 
 
 def add_arguments(parser: SwitchParser) -> None:
@@ -70,7 +70,7 @@ def _tell_taken(taken: Sequence[Taken], left: Sequence[str], *, as_json: bool) -
     else:
         rows = [(one.name, one.file, _size(one)) for one in taken]
         echo_lines(table(("MAT", "PICTURE", "PIXELS"), rows))
-    echo_error(f"{len(taken)} image{'s' * (len(taken) != 1)} copied to {own_folder()}; remove one there to undo it")
+    echo_error(f"{counted(len(taken), 'image')} copied to {own_folder()}; remove one there to undo it")
     if left:
         echo_error(f"skipped, not named like a mat: {listed(left)}")
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.core.geometry import shown_heading_deg
+from tuisim.errors import counted
 from tuisim.protocol import NO_ANSWER, Ended
 from tuisim.runs.records import STDERR
 from tuisim.runs.run_folder import RunEnd, StoredRun
@@ -67,7 +68,7 @@ def last_state(facts: dict[str, Any]) -> str:
     """Return the status line of a run, from the result of `describe`."""
     state = facts["state"].replace("_", " ")
     what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
-    samples = "" if facts["samples"] is None else f"{facts['samples']} sample{'s' * (facts['samples'] != 1)} · "
+    samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
         f"x {facts['x_mm']:.2f} mm, y {facts['y_mm']:.2f} mm, heading {shown_heading_deg(facts['heading_deg']):.2f}° · "

@@ -9,7 +9,7 @@ from pathlib import Path
 from tuisim.commands import exit_status
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, counted
 from tuisim.notebook.cells import NotebookProgram, chosen_programs, is_notebook, notebook_programs, notebooks_in
 from tuisim.runs.run_folder import StoredRun
 
@@ -98,7 +98,7 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
         raise ConfigError("is a folder without notebooks", "name a program, or a folder with notebooks", file=word)
     if not run_all:
         hint = f"tuisim run {word} --all runs them all"
-        raise ConfigError(f"is a folder of {len(found)} notebook{'s' * (len(found) > 1)}", hint, file=word)
+        raise ConfigError(f"is a folder of {counted(len(found), 'notebook')}", hint, file=word)
     return found
 
 

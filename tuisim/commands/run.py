@@ -16,7 +16,7 @@ from tuisim.commands.progress import Progress, is_watched, tell
 from tuisim.commands.relay import Follower, Interrupts
 from tuisim.commands.resolve import Prepared, prepare_runs
 from tuisim.config.options import SwitchParser, number
-from tuisim.errors import ConfigError, ExportError, LogError, TuisimError
+from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted
 from tuisim.logs.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
@@ -107,7 +107,7 @@ def _check_only_listed(arguments: Namespace, count: int) -> None:
     """Raise ConfigError if an export or JSON is asked for where a notebook is only listed."""
     if arguments.json or arguments.export or arguments.telemetry is not None:
         (word,) = arguments.programs
-        raise ConfigError(f"has {count} program cells; name one", f"--all, or {word}#1", file=word)
+        raise ConfigError(f"has {counted(count, 'program cell')}; name one", f"--all, or {word}#1", file=word)
 
 
 def _run_all(

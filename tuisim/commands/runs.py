@@ -19,7 +19,7 @@ from tuisim.commands.outputs import check_targets
 from tuisim.commands.progress import Progress, tell
 from tuisim.commands.tables import table
 from tuisim.config.options import SwitchParser, nearest
-from tuisim.errors import ConfigError, LogError
+from tuisim.errors import ConfigError, LogError, counted
 from tuisim.logs.export import EXPORTERS, export_samples, export_telemetry
 from tuisim.runs.frames import damage_note
 from tuisim.runs.handle import ASK_AGAIN_S
@@ -195,7 +195,7 @@ def _remove(store: RunStore, words: Sequence[str], age: str | None) -> None:
         if target:
             echo_error(f"note: run {run_id} was a link; its target was kept: {target}")
     if age is not None:
-        echo(f"{len(found)} run{'s' if len(found) != 1 else ''} removed, {size(freed)}")
+        echo(f"{counted(len(found), 'run')} removed, {size(freed)}")
 
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
@@ -237,7 +237,7 @@ def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
         echo_json({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after})
     else:
         each = f", {after / ticks:.2f} bytes per tick" if ticks else ""
-        echo(f"{len(names)} run{'s' if len(names) != 1 else ''}: {before:,} → {after:,} bytes{each}")
+        echo(f"{counted(len(names), 'run')}: {before:,} → {after:,} bytes{each}")
     return code
 
 

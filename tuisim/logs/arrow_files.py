@@ -50,7 +50,7 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
             try:
                 part = file.read_row_group(at)
             except (pa.ArrowException, OSError, ValueError):
-                notes.add("rows are damaged and were left out", [first], rows)
+                notes.add("row is damaged and was left out", "rows are damaged and were left out", [first], rows)
             else:
                 yield (at + 1) / count, _named(part, notes)
             first += rows
@@ -72,7 +72,12 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                     try:
                         part = _whole(reader.get_batch(at))
                     except (pa.ArrowException, OSError, ValueError):
-                        notes.add("batches of rows are damaged and were left out", [], 1)
+                        notes.add(
+                            "batch of rows is damaged and was left out",
+                            "batches of rows are damaged and were left out",
+                            [],
+                            1,
+                        )
                     else:
                         yield (at + 1) / count, _named(part, notes)
                 return

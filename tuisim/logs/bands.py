@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from tuisim.core.css_colors import css_names
+from tuisim.errors import counted
 from tuisim.logs.dead_reckoning import distance_mm
 from tuisim.logs.log import Log, Series
 from tuisim.logs.plateaus import Plateau, plateaus
@@ -216,6 +217,6 @@ def in_words(report: BandReport) -> str:
         level = sum(band.true_level * band.samples for band in bands) / samples
         times = f" ({len(bands)}x)" if len(bands) > 1 else f" ({ONE_SAMPLE})" if samples == 1 else ""
         said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{times}")
-    known = f"{len(levels)} level{'s' * (len(levels) != 1)}{': ' * bool(said)}{', '.join(said)}"
-    edges = f"{report.transitions} of {report.total} samples lie on edges"
+    known = f"{counted(len(levels), 'level')}{': ' * bool(said)}{', '.join(said)}"
+    edges = f"{report.transitions} of {report.total} samples {'lies' if report.transitions == 1 else 'lie'} on edges"
     return f"{report.variable}: {known}; {edges}"

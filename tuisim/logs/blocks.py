@@ -120,7 +120,8 @@ class LineCutter:
             return
         self._rest += rest
         if len(self._rest) > MAX_LINE_BYTES:
-            self._notes.add(f"lines longer than {MAX_LINE_BYTES >> 20} MiB were left out", [self._row])
+            limit = f"longer than {MAX_LINE_BYTES >> 20} MiB"
+            self._notes.add(f"line {limit} was left out", f"lines {limit} were left out", [self._row])
             self._rest, self._dropping = b"", True
 
     def _block(self, text: bytes) -> Block:

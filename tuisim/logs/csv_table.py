@@ -326,9 +326,13 @@ class CsvReader:
             rows.append(cells[:width])
             numbers.append(row)
         if short:
-            self._notes.add("rows have too few cells: the rest is empty", short)
+            self._notes.add(
+                "row has too few cells: the rest is empty", "rows have too few cells: the rest is empty", short
+            )
         if long:
-            self._notes.add("rows have too many cells: the rest is left out", long)
+            self._notes.add(
+                "row has too many cells: the rest is left out", "rows have too many cells: the rest is left out", long
+            )
         return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
 
     def _records(self, block: Block) -> Iterator[tuple[int, list[str]]]:
@@ -381,9 +385,8 @@ class CsvReader:
         if (count := _count(wrong)) > 0:
             at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
             where = [rows[index] for index in at] if rows else _rows_at(block, at)
-            self._notes.add(
-                f"cells of {name!r} hold {'neither true nor false' if truths else 'no number'}", where, count
-            )
+            what = "neither true nor false" if truths else "no number"
+            self._notes.add(f"cell of {name!r} holds {what}", f"cells of {name!r} hold {what}", where, count)
         return numbers
 
 

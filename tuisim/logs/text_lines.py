@@ -46,7 +46,9 @@ class JsonReader:
             else:
                 broken.append(row)
         if broken:
-            self._notes.add("lines are no JSON object and were left out", broken)
+            self._notes.add(
+                "line is no JSON object and was left out", "lines are no JSON object and were left out", broken
+            )
         if not found:
             return None
         names = dict.fromkeys(name for _, cells in found for name in cells)
@@ -63,7 +65,7 @@ class JsonReader:
             return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())
         wrong = [row for (row, _), cell in zip(found, cells, strict=True) if cell is not None and not _is_number(cell)]
         if wrong:
-            self._notes.add(f"cells of {name!r} hold no number", wrong)
+            self._notes.add(f"cell of {name!r} holds no number", f"cells of {name!r} hold no number", wrong)
         return pa.array(
             [_float(cell) if cell is not None and _is_number(cell) else None for cell in cells], pa.float64()
         )
@@ -118,7 +120,7 @@ class PrintedReader:
             values.append(value)
             times.append(time_s)
         if others:
-            self._notes.add("lines are no sample", others)
+            self._notes.add("line is no sample", "lines are no sample", others)
         if not rows:
             return None
         return pa.table(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from tuisim.errors import counted
+
 ROWS_NAMED = 3
 """Rows that a warning names; more are only counted."""
 
@@ -12,23 +14,25 @@ class Notes:
     """Collects warnings about skipped or guessed data."""
 
     def __init__(self) -> None:
-        self._rows: dict[str, list[int]] = {}
-        self._counts: dict[str, int] = {}
+        self._rows: dict[tuple[str, str], list[int]] = {}
+        self._counts: dict[tuple[str, str], int] = {}
         self._general: dict[str, None] = {}
 
     def say(self, text: str) -> None:
         """Add a warning about the whole file, once."""
         self._general[text] = None
 
-    def add(self, text: str, rows: Iterable[int], count: int | None = None) -> None:
+    def add(self, one: str, many: str, rows: Iterable[int], count: int | None = None) -> None:
         """Add a warning about some rows.
 
         Args:
-            text: The problem, such as `cells that are not numbers`.
+            one: The problem, such as `cell is not a number`.
+            many: The same in the plural.
             rows: Rows of the file, from 1; the first few are enough if `count` is given.
             count: Number of occurrences.
         """
         found = list(rows)
+        text = (one, many)
         self._counts[text] = self._counts.get(text, 0) + (len(found) if count is None else count)
         named = self._rows.setdefault(text, [])
         named += found[: ROWS_NAMED - len(named)]
@@ -40,10 +44,10 @@ class Notes:
 
     def texts(self) -> tuple[str, ...]:
         """Return the warnings, one sentence each."""
-        counted = []
+        texts = []
         for text, count in self._counts.items():
             rows = self._rows[text]
             where = f" ({'row' if len(rows) == 1 == count else 'rows'} {', '.join(map(str, rows))}" if rows else ""
             where += f"{', …' if count > len(rows) else ''})" if rows else ""
-            counted.append(f"{count} {text}{where}")
-        return (*self._general, *counted)
+            texts.append(f"{counted(count, *text)}{where}")
+        return (*self._general, *texts)

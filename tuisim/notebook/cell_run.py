@@ -15,7 +15,7 @@ from typing import Any
 from tuisim.charts.world_image import PenTrace, pen_trace
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, counted
 from tuisim.notebook.display import Scene, Stage, start_record
 from tuisim.notebook.interrupt import Interruption
 from tuisim.protocol import Answer, Reply
@@ -114,7 +114,7 @@ def told_end(run: StoredRun, *, hurry: bool = False) -> str:
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return status
     samples = sum(1 for _ in samples_of(run.output.rows()))
-    return f"{status} · {samples} sample{'s' * (samples != 1)}"
+    return f"{status} · {counted(samples, 'sample')}"
 
 
 class _Follower:

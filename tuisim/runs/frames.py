@@ -118,7 +118,11 @@ def damage_note(run: StoredRun) -> str:
     """
     records = run.telemetry.array()
     lost = len(records) - len(_sound(records))
-    return f"{TELEMETRY_FILE}: {lost} of {len(records)} records are damaged and left out" if lost else ""
+    return (
+        f"{TELEMETRY_FILE}: {lost} of {len(records)} records {'is' if lost == 1 else 'are'} damaged and left out"
+        if lost
+        else ""
+    )
 
 
 def _sound(records: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

@@ -17,7 +17,7 @@ from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import TICK_RECORD, Instant
-from tuisim.errors import LogError
+from tuisim.errors import LogError, counted
 from tuisim.runs.packed.compact import Packed, find_packed
 from tuisim.runs.records import (
     HEADER_BYTES,
@@ -209,7 +209,11 @@ class TelemetryView:
         if self._file.damage:
             return self._file.damage
         lost = published - there
-        return f"{TELEMETRY_FILE} was cut off: the last {lost} of {published} records are lost" if lost else ""
+        return (
+            f"{TELEMETRY_FILE} was cut off: the last {lost} of {published} records {'is' if lost == 1 else 'are'} lost"
+            if lost
+            else ""
+        )
 
     def last(self) -> TickRecord | None:
         """Return the newest record, None if there is none yet."""
@@ -274,7 +278,7 @@ class OutputView:
         if self._file.damage:
             return self._file.damage
         lost = published - there
-        return f"{OUTPUT_FILE} was cut off: its last {lost} bytes are lost" if lost else ""
+        return f"{OUTPUT_FILE} was cut off: its last {counted(lost, 'byte is', 'bytes are')} lost" if lost else ""
 
     def new_rows(self, limit: int | None = None) -> list[OutputRow]:
         """Return the rows since the last call, at most `limit`; the others come with the next call."""

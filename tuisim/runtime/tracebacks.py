@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from tuisim.errors import counted
 from tuisim.runtime import wallclock
 from tuisim.runtime.modules import OWN_FILES, is_own
 from tuisim.runtime.stack import every_frame
@@ -147,4 +148,5 @@ def _text_of(chain: list[Trace]) -> str:
     last_told: Any = chain[MOST_LINKED - 1]
     last_told.__cause__ = last_told.__context__ = None
     oldest, newest = "".join(chain[-MOST_LINKED].format()), "".join(chain[0].format())
-    return f"{oldest}\n[{left_out} more errors, each of which led to the next one]\n\n{newest}"
+    between = counted(left_out, "more error, which", "more errors, each of which")
+    return f"{oldest}\n[{between} led to the next one]\n\n{newest}"

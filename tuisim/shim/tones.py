@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tuisim.core.profile import MS
+from tuisim.errors import counted
 
 BEEP_HZ, BEEP_MS, REPEAT_PAUSE_MS = 440.0, 200.0, 100.0
 """Defaults of `beep`."""
@@ -84,8 +85,7 @@ def song_of(tones: Sequence[Tone]) -> Heard:
     """Return the sound of a whole song; silent tones are rests."""
     count = sum(tone.frequency_hz > 0 for tone in tones)
     length_ns = _total_ns(tones)
-    notes = "1 note" if count == 1 else f"{count} notes"
-    return Heard(f"[♪ song of {notes}, {length_ns / MS / 1000:.1f} s]", length_ns, tuple(tones))
+    return Heard(f"[♪ song of {counted(count, 'note')}, {length_ns / MS / 1000:.1f} s]", length_ns, tuple(tones))
 
 
 def parse_beep(words: Sequence[str]) -> list[Tone]:

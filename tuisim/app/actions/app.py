@@ -1,4 +1,4 @@
-"""Keys of the app: help, suspend, quit."""
+"""Keys of the app: help, redraw, suspend, quit."""
 
 from __future__ import annotations
 
@@ -13,6 +13,11 @@ def show_help(lab: LabApp) -> None:
     from tuisim.app.keys.app_help import HelpScreen
 
     lab.push_screen(HelpScreen())
+
+
+def redraw(lab: LabApp) -> None:
+    """Redraw the whole screen."""
+    lab.action_redraw()
 
 
 def suspend(lab: LabApp) -> None:

@@ -10,6 +10,7 @@ from textual.widget import Widget
 
 from tuisim.app.analyser.panes import PANES, pane_lines
 from tuisim.app.terminal.cell_view import LinesView
+from tuisim.errors import counted
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -68,6 +69,6 @@ class PaneView(Widget):
 def _told(model: Model) -> str:
     """Return a summary of what the table shows."""
     rows, total = model.rows, model.log.rows
-    words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else f"{total:,} rows"
+    words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
     conditions = " and ".join(map(str, rows.conditions))
     return f"{words}: {conditions}".replace("[", "\\[") if conditions else words

@@ -34,7 +34,10 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
     """
 
     # The app's keys do not work below a modal screen.
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+z", "app.suspend_process", "Suspend", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+z", "app.suspend_process", "Suspend", show=False),
+        Binding("ctrl+l", "app.redraw", "Redraw", show=False),
+    ]
 
     class Changed(Message):
         """Posted when a screen is ready for keys, or has closed."""

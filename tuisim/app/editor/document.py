@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tuisim.app.editor.drafts import Draft, drop_draft, find_draft, keep_draft
 from tuisim.app.editor.line_map import LineMap
 from tuisim.app.editor.text_file import Form, is_protected, read_text, write_text
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.errors import ConfigError, TuisimError, counted
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ class Document:
         name = self._name or NEW_NAME
         when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))
         lines = differing_lines(self._text, draft.text)
-        text = f"{name} was edited on {when} and not saved: {lines} line{'s differ' if lines != 1 else ' differs'}."
+        text = f"{name} was edited on {when} and not saved: {counted(lines, 'line differs', 'lines differ')}."
         answers = (("r", "Restore the edited text"), ("d", "Discard it"))
         self._lab.push_screen(Question("Unsaved work", text, answers), lambda answer: self._offered(draft, answer))
 

@@ -14,6 +14,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
+from tuisim.errors import counted
 from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
 
 KEPT_LINES = 2000
@@ -40,7 +41,7 @@ def shown_lines(row: OutputRow, width: int) -> list[str]:
     """Return a row as lines of at most `width` cells, at least one."""
     text = line_of(row)
     if len(text) > MAX_LINE_CHARS:
-        text = f"{text[:MAX_LINE_CHARS]} … ({len(text) - MAX_LINE_CHARS} more characters)"
+        text = f"{text[:MAX_LINE_CHARS]} … ({counted(len(text) - MAX_LINE_CHARS, 'more character')})"
     text = plain(text)
     if not text.isascii():
         return chop_cells(text, max(width, 2)) or [""]
@@ -129,7 +130,8 @@ class Log(Widget, can_focus=True):
         hidden = self._count - len(self._rows)
         if hidden:
             if at == 0:
-                return f"… {hidden:,} earlier lines are in the log"[: self.size.width - 1], NOTE
+                told = f"… {counted(hidden, 'earlier line is', 'earlier lines are')} in the log"
+                return told[: self.size.width - 1], NOTE
             at -= 1
         return self._lines[at] if 0 <= at < len(self._lines) else ("", STDOUT)
 

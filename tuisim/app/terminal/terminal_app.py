@@ -195,9 +195,13 @@ class TerminalApp(App[None]):
 
     @on(Driver.SignalResume)
     def draw_again(self) -> None:
-        """Redraw the whole screen: while the app was stopped, the shell has written over it."""
+        """Redraw the whole screen: something else has written over it, such as the shell while the app was stopped."""
         self.frame_buffer.forget()
         self.refresh(layout=True)
+
+    def action_redraw(self) -> None:
+        """Redraw the whole screen because the user asks for it."""
+        self.draw_again()
 
     def action_suspend_process(self) -> None:
         """Suspend the app as a job of its shell."""

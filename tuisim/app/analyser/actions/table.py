@@ -106,6 +106,8 @@ ACTIONS: Mapping[str, Action] = {
         Action("differences", "D", "D", "Where two runs differ, and go there", LOG, diff.show, of_rows=False),
         Action("beside", "w", "w", "World beside the log, or not", PANE, view.beside, of_rows=False),
         Action("help", "question_mark", "?", "Help", LOG, view.show_help, "help", of_rows=False),
+        Action("redraw", "ctrl+l", "ctrl+l", "Redraw, after something else has written on the screen", LOG, view.redraw,
+               of_rows=False),
         Action("suspend", "ctrl+z", "ctrl+z", "Suspend: fg in the shell comes back", LOG, view.suspend, of_rows=False),
         Action("leave", "q,escape", "q", "Leave the analyser", LOG, view.leave, "leave", of_rows=False),
     )

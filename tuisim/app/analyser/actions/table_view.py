@@ -10,7 +10,7 @@ from tuisim.app.analyser.background import work
 from tuisim.app.analyser.panes import PANES
 from tuisim.app.analyser.prompt import LinePrompt
 from tuisim.app.dialogs.save import typed_path
-from tuisim.errors import LogError
+from tuisim.errors import LogError, counted
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -197,4 +197,4 @@ def copy_pane(screen: Analyser) -> None:
         return
     places = (rows.row(place) for place in range(len(rows)))
     lines = ["\t".join(rows.text(row, column) for column in rows.columns) for row in places]
-    screen.copy("\n".join(["\t".join(rows.columns), *lines]), f"{len(rows):,} rows")
+    screen.copy("\n".join(["\t".join(rows.columns), *lines]), counted(len(rows), "row"))

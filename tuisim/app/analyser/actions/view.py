@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from tuisim.analysis.alignment import TIME
 from tuisim.app.analyser.chart import FACETS_ROWS
@@ -15,6 +15,7 @@ from tuisim.errors import LogError
 
 if TYPE_CHECKING:
     from tuisim.app.analyser.screen import Analyser
+    from tuisim.app.terminal.terminal_app import TerminalApp
 
 _SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
 _WHERE = (("120", "row 120"), ("2.5s", "the sample nearest to 2.5 seconds"), ("50%", "halfway through the table"))
@@ -247,6 +248,11 @@ def show_help(screen: Analyser) -> None:
     from tuisim.app.keys.analyser_help import AnalyserHelp
 
     screen.app.push_screen(AnalyserHelp())
+
+
+def redraw(screen: Analyser) -> None:
+    """Redraw the whole screen."""
+    cast("TerminalApp", screen.app).action_redraw()
 
 
 def suspend(screen: Analyser) -> None:
