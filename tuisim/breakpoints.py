@@ -1,18 +1,18 @@
-"""Breaks: when a run is to hold, in a small language that app, command and child share.
+"""Breakpoints: when a run pauses, in a small language shared by app, command line and child.
 
-| text | holds when |
+| text | pauses when |
 | --- | --- |
 | `12` | line 12 is about to run |
 | `12 if x > 3` | … and the expression is true there |
-| `left.red% < 10`, `ultrasonic <= 200`, `gyro > 90`, `x_mm > 1000` | this becomes true, looked at after each tick |
-| `right.color changes`, `left.color == Blue` | a value becomes another one, a colour is seen |
-| `sample Colour < 50`, `sample Colour changes`, `sample Colour` | of a printed sample |
-| `print matches REGEX` | of a printed line |
-| `time 3.5` | so many simulated seconds have passed |
-| `stall` | a motor that runs is held fast |
+| `left.red% < 10`, `ultrasonic <= 200`, `gyro > 90`, `x_mm > 1000` | this becomes true, checked after each tick |
+| `right.color changes`, `left.color == Blue` | the value changes, or becomes the given colour |
+| `sample Colour < 50`, `sample Colour changes`, `sample Colour` | a printed sample matches |
+| `print matches REGEX` | a printed line matches |
+| `time 3.5` | this simulated time in seconds is reached |
+| `stall` | a running motor is blocked |
 
-A `#` in front switches a break off. A break that compares holds when the comparison
-becomes true, not for as long as it stays so.
+A leading `#` disables a breakpoint. A comparison triggers when it
+becomes true, not while it stays true.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ from tuisim.errors import ConfigError
 OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
     "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
 }  # fmt: skip
-"""By sign, the comparison."""
+"""Comparison functions, by operator."""
 CHANGES, SEEN = "changes", "is seen"
-"""Relations without a number: the value is another one than before; a sample was printed, whatever its value."""
+"""Relations without a number: the value has changed; a sample was printed, with any value."""
 
 POSE_NAMES = ("x_mm", "y_mm", "heading_deg")
 WHEEL_NAMES = ("left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps")
 COLOR_PARTS = ("red", "green", "blue", "red%", "mean%", "color")
-"""What can be asked of a colour sensor, after its name and a dot."""
+"""Quantities of a colour sensor, after its name and a dot."""
 ALLOWED = (
     "12 · 12 if x > 3 · left.red% < 10 · left.color changes · ultrasonic < 200 · x_mm > 1000 · "
     "sample Colour < 50 · print matches REGEX · time 3.5 · stall"
@@ -48,16 +48,16 @@ ALLOWED = (
 
 @dataclass(frozen=True, slots=True)
 class LineBreak:
-    """A line of the program is about to run."""
+    """Pauses when a line of the program is about to run."""
 
     line: int
     condition: str = ""
-    """A Python expression that must be true, empty for none."""
+    """A Python expression that must be true; empty for none."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValueBreak:
-    """A sensor or the robot's place."""
+    """Pauses on a value of a sensor or of the robot's pose."""
 
     quantity: str
     """One of `quantities(robot)`."""
@@ -68,7 +68,7 @@ class ValueBreak:
 
 @dataclass(frozen=True, slots=True)
 class SampleBreak:
-    """A printed sample."""
+    """Pauses on a printed sample."""
 
     name: str
     relation: str
@@ -78,21 +78,21 @@ class SampleBreak:
 
 @dataclass(frozen=True, slots=True)
 class PrintBreak:
-    """A printed line in which a regular expression is found."""
+    """Pauses on a printed line that contains a match of a regular expression."""
 
     pattern: str
 
 
 @dataclass(frozen=True, slots=True)
 class TimeBreak:
-    """So much simulated time has passed."""
+    """Pauses when a simulated time is reached."""
 
     time_s: float
 
 
 @dataclass(frozen=True, slots=True)
 class StallBreak:
-    """A motor that runs is held fast."""
+    """Pauses when a running motor is blocked."""
 
 
 BreakRule = LineBreak | ValueBreak | SampleBreak | PrintBreak | TimeBreak | StallBreak
@@ -100,15 +100,15 @@ BreakRule = LineBreak | ValueBreak | SampleBreak | PrintBreak | TimeBreak | Stal
 
 @dataclass(frozen=True, slots=True)
 class Breakpoint:
-    """One break."""
+    """A breakpoint: its rule, its text, and whether it is enabled."""
 
     rule: BreakRule
     text: str
-    """As it was written, in the common form and without the mark of one that is switched off."""
+    """The normalized text, without the mark of a disabled breakpoint."""
     disabled: bool = False
 
     def written(self) -> str:
-        """Return the text from which `parse_break` makes this break again."""
+        """The text from which `parse_break` creates this breakpoint again."""
         return f"# {self.text}" if self.disabled else self.text
 
 
@@ -119,14 +119,14 @@ _WORDY = re.compile(r"(?:sensor\s+)?(\w+)\s+sensor(?:\s+(\w+)\s*(%)?)?")
 
 
 def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
-    """Return the break that a text describes.
+    """Return the breakpoint that a text describes.
 
     Args:
-        text: In the language above.
-        robot: Checks the names of sensors; None passes any name.
+        text: Text in the language above.
+        robot: Robot for checking sensor names; None accepts any name.
 
     Raises:
-        ConfigError: the text is no break; says what is allowed.
+        ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.
     """
     stripped = text.strip()
     disabled = stripped.startswith("#")
@@ -136,12 +136,12 @@ def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
 
 
 def parse_breakpoints(texts: Iterable[str], robot: RobotSpec | None = None) -> tuple[Breakpoint, ...]:
-    """Return the breaks of several texts, as `parse_break`."""
+    """Return the breakpoints of several texts; see `parse_break`."""
     return tuple(parse_break(text, robot) for text in texts)
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
-    """Return the breaks on lines by line; where there are several, one that is switched on goes first."""
+    """Return the line breakpoints by line; of several on one line, an enabled one takes precedence."""
     found: dict[int, Breakpoint] = {}
     for one in sorted(breaks, key=lambda one: not one.disabled):
         line = break_line_of(one)
@@ -151,12 +151,12 @@ def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
 
 
 def break_line_of(one: Breakpoint) -> int:
-    """Return the line of a break, 0 for one that is on no line."""
+    """Return the line of a breakpoint; 0 if it has none."""
     return one.rule.line if isinstance(one.rule, LineBreak) else 0
 
 
 def moved(one: Breakpoint, line: int) -> Breakpoint:
-    """Return a break on a line as the same break on another line."""
+    """Return a copy of a line breakpoint on another line."""
     if not isinstance(one.rule, LineBreak):
         return one
     rule = LineBreak(line, one.rule.condition)
@@ -164,7 +164,7 @@ def moved(one: Breakpoint, line: int) -> Breakpoint:
 
 
 def quantities(robot: RobotSpec) -> tuple[str, ...]:
-    """Return the names whose values a break can compare, for a robot."""
+    """Return the names of the values that a breakpoint can compare, for a robot."""
     names: list[str] = []
     for kind, sensor in mounted(robot):
         match sensor:
@@ -213,19 +213,19 @@ def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
 
 
 def _why_no_expression(text: str) -> str:
-    """Say why Python cannot read an expression, empty if it can."""
+    """Return why Python cannot parse an expression; empty if it can."""
     try:
         ast.parse(text, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        return f"{text!r} is no expression: {getattr(error, 'msg', None) or error}"
+        return f"{text!r} is not an expression: {getattr(error, 'msg', None) or error}"
     return ""
 
 
 def parse_watch(text: str) -> str:
-    """Return an expression to look at, without blanks around it.
+    """Return a watch expression without surrounding whitespace.
 
     Raises:
-        ConfigError: Python cannot read it.
+        ConfigError: Python cannot parse it.
     """
     text = text.strip()
     if why := _why_no_expression(text):
@@ -240,7 +240,7 @@ def _print_rule(text: str, rest: str) -> PrintBreak:
     try:
         re.compile(pattern.strip())
     except (re.error, OverflowError, RecursionError) as error:
-        raise _refuse(text, f"no regular expression: {error}", "such as: print matches black|white") from error
+        raise _refuse(text, f"not a regular expression: {error}", "such as: print matches black|white") from error
     return PrintBreak(pattern.strip())
 
 
@@ -254,7 +254,7 @@ def _sample_rule(text: str, rest: str) -> SampleBreak:
 def _value_rule(text: str, robot: RobotSpec | None) -> ValueBreak:
     written, relation, value = _relation(text)
     if not relation:
-        raise _refuse(text, "is no break")
+        raise _refuse(text, "is not a breakpoint")
     name = _quantity(written)
     if robot is not None and name not in quantities(robot):
         raise _refuse(text, f"this robot has no {written!r}", f"one of {', '.join(quantities(robot))}")
@@ -266,7 +266,7 @@ def _value_rule(text: str, robot: RobotSpec | None) -> ValueBreak:
 
 
 def _relation(text: str) -> tuple[str, str, str]:
-    """Return what is compared, the sign (or `CHANGES`, or nothing) and the number as written."""
+    """Return the quantity, the operator (or `CHANGES`, or an empty string) and the number as text."""
     words = text.split()
     if len(words) > 1 and words[-1] == CHANGES:
         return text[: -len(CHANGES)].strip(), CHANGES, ""
@@ -275,7 +275,7 @@ def _relation(text: str) -> tuple[str, str, str]:
 
 
 def _quantity(written: str) -> str:
-    """Return the name of a quantity; `left sensor red %` is `left.red%`."""
+    """Return the normalized name of a quantity; `left sensor red %` is `left.red%`."""
     found = _WORDY.fullmatch(written)
     if not found:
         return written.replace(" %", "%")
@@ -286,14 +286,14 @@ def _number(text: str, written: str, least: float = -math.inf) -> float:
     try:
         value = float(written)
     except ValueError:
-        raise _refuse(text, f"{written!r} is no number") from None
+        raise _refuse(text, f"{written!r} is not a number") from None
     if not math.isfinite(value) or value < least:
         raise _refuse(text, f"{written!r} is not possible here")
     return value
 
 
 def _common_text(rule: BreakRule, written: str) -> str:
-    """Return the text of a rule in the form that is shown."""
+    """Return the normalized text of a rule."""
     match rule:
         case LineBreak(line=line, condition=condition):
             return f"{line} if {condition}" if condition else str(line)

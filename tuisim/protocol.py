@@ -1,4 +1,4 @@
-"""Messages between host and child: one JSON object a line, `kind` names the message."""
+"""Messages between host and child: one JSON object per line, `kind` names the message."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from tuisim.errors import ConfigError
 
 @dataclass(frozen=True, slots=True)
 class ThreadState:
-    """One thread of a program that stands still."""
+    """One thread of a paused program."""
 
     name: str
     line: int
-    """Its line of the program, 0 if it is in none."""
+    """Its current line in the program; 0 if it is in none."""
     waiting: str
-    """What it waits for and until when, empty if it could run on."""
+    """What it waits for and until when; empty if it is ready to run."""
     held: bool
-    """Whether it is the one in which the run was held."""
+    """Whether it is the thread that was paused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,20 +32,20 @@ class FrameState:
     function: str
     line: int
     file: str
-    """Empty for the program itself, otherwise the module beside it."""
+    """Empty for the program itself, otherwise the path of the module."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A name and what it stands for."""
+    """A name and its value."""
 
     name: str
     kind: str
-    """Name of its type."""
+    """Name of the type."""
     value: str
-    """Its value as text, cut to a length that can be shown."""
+    """The value as text, truncated for display."""
     changed: bool
-    """Whether the text is another one than at the last look at this function; new names are changed."""
+    """Whether the text differs from the last inspection of this function; new names count as changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Watched:
 
     text: str
     value: str
-    """Empty if there is an error."""
+    """Empty if evaluation failed."""
     error: str
 
 
@@ -67,21 +67,21 @@ class ExecutedLine:
     line: int
     thread: str
     depth: int
-    """How many calls of the program's own code were open, from 1."""
+    """Number of open calls of the program's own code, from 1."""
 
 
 PROTOCOL_VERSION = 3
 
 AFTER_TICK = 0
-"""Ordinal of the moment at which a tick has just been done."""
+"""Ordinal of the instant right after a tick."""
 BEFORE_NEXT_TICK = -1
-"""Ordinal of the moment right before the next tick: where a pause holds."""
+"""Ordinal of the instant right before the next tick, where a pause takes effect."""
 NO_ANSWER = "there is no further answer to input()"
-"""What the error says of a program that asks where nobody answers."""
+"""Message of the EOFError from input() when no answer is available."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 UNKNOWN_ORDINAL = -2
-"""Ordinal of a line that was met in a tick whose lines were not counted from its start."""
+"""Ordinal of a line in a tick whose lines were not counted from its start."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class Message:
     def encode(self) -> bytes:
         """Return the message as one JSON line."""
         text = json.dumps({"kind": self.kind, **asdict(self)}, separators=(",", ":"), ensure_ascii=False)
-        # A lone surrogate, such as of a file name that is no UTF-8, is no text: it is shown as Python would write it.
+        # A lone surrogate, such as in a file name that is not UTF-8, is not valid text: it is written as an escape.
         return _SURROGATE.sub(lambda found: f"\\\\u{ord(found[0]):x}", text).encode() + b"\n"
 
 
@@ -102,28 +102,28 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Stop(Message):
-    """End the program now."""
+    """Stop the program."""
 
     kind = "stop"
 
 
 @dataclass(frozen=True, slots=True)
 class Pause(Message):
-    """Stand still at the next moment that is not inside a device."""
+    """Pause at the next instant outside a device call."""
 
     kind = "pause"
 
 
 @dataclass(frozen=True, slots=True)
 class Resume(Message):
-    """Go on."""
+    """Resume."""
 
     kind = "resume"
 
 
 @dataclass(frozen=True, slots=True)
 class StepTicks(Message):
-    """While paused: let so many ticks pass, then stand still again."""
+    """While paused: run this number of ticks, then pause again."""
 
     kind = "step_ticks"
     ticks: int = 1
@@ -131,7 +131,7 @@ class StepTicks(Message):
 
 @dataclass(frozen=True, slots=True)
 class StepLine(Message):
-    """Go on to the next line of the program, then stand still; a program that runs holds at its next line."""
+    """Run to the next line of the program, then pause; a running program pauses at its next line."""
 
     kind = "step_line"
     how: str = "over"
@@ -144,7 +144,7 @@ class StepLine(Message):
 
 @dataclass(frozen=True, slots=True)
 class RunToLine(Message):
-    """Go on until a line of the program is about to run, in any thread, then stand still."""
+    """Run until a line of the program is about to run, in any thread, then pause."""
 
     kind = "run_to_line"
     line: int
@@ -152,7 +152,7 @@ class RunToLine(Message):
 
 @dataclass(frozen=True, slots=True)
 class RunToInstant(Message):
-    """Go on at full speed to a later instant and stand still there, or at the end if it never comes."""
+    """Run at full speed to a later instant and pause there, or at the end if it is never reached."""
 
     kind = "run_to_instant"
     tick: int
@@ -162,29 +162,29 @@ class RunToInstant(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetBreaks(Message):
-    """From now on these breaks hold the run, and no others."""
+    """Replace all breakpoints of the run."""
 
     kind = "set_breaks"
     breaks: tuple[str, ...]
-    """Texts in the language of `tuisim.breakpoints`; switched-off ones are passed over."""
+    """Breakpoints in the syntax of `tuisim.breakpoints`; disabled ones are ignored."""
 
     def __post_init__(self) -> None:
-        # A pipe brings a list. What cannot be read is refused where it is made, not in the child.
+        # JSON gives a list. Invalid breakpoints are rejected by the sender, not by the child.
         object.__setattr__(self, "breaks", tuple(self.breaks))
         parse_breakpoints(self.breaks)
 
 
 @dataclass(frozen=True, slots=True)
 class Inspect(Message):
-    """Ask a run that stands still for its state; `Inspected` is the answer."""
+    """Request the state of a paused run; `Inspected` is the answer."""
 
     kind = "look"
     watches: tuple[str, ...] = ()
     """Expressions, evaluated in the frame."""
     thread: str = ""
-    """Name of the thread to look at; empty for the one that was held."""
+    """Name of the thread to inspect; empty for the one that was paused."""
     frame: int = 0
-    """Which of its frames: 0 is the innermost of the program's own."""
+    """Index of the frame: 0 is the innermost of the program's own."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "watches", tuple(self.watches))
@@ -192,7 +192,7 @@ class Inspect(Message):
 
 @dataclass(frozen=True, slots=True)
 class RequestHistory(Message):
-    """Ask for the lines that were met last; `LineHistory` is the answer."""
+    """Request the last executed lines; `LineHistory` is the answer."""
 
     kind = "want_history"
     count: int = 100
@@ -200,7 +200,7 @@ class RequestHistory(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetSpeed(Message):
-    """Pace against the wall clock: 1.0 is real time, 0 is as fast as possible."""
+    """Set the pace against the wall clock: 1.0 is real time, 0 is as fast as possible."""
 
     kind = "set_speed"
     speed: float
@@ -208,7 +208,7 @@ class SetSpeed(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetPose(Message):
-    """User action: put the robot somewhere."""
+    """User action: set the robot's pose."""
 
     kind = "set_pose"
     x_mm: float
@@ -218,7 +218,7 @@ class SetPose(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetNoise(Message):
-    """User action: change the noise."""
+    """User action: set the noise."""
 
     kind = "set_noise"
     light: int
@@ -227,7 +227,7 @@ class SetNoise(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetPen(Message):
-    """User action: pen up or down."""
+    """User action: lift or lower the pen."""
 
     kind = "set_pen"
     down: bool
@@ -235,14 +235,14 @@ class SetPen(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetButtons(Message):
-    """User action: these of the brick's buttons are held down from now on, all others are not."""
+    """User action: these buttons of the brick are pressed from now on, all others are released."""
 
     kind = "set_buttons"
     pressed: tuple[str, ...]
-    """Names as in `BUTTONS`; others raise a ConfigError."""
+    """Names from `BUTTONS`; others raise a ConfigError."""
 
     def __post_init__(self) -> None:
-        # A pipe and a file bring a list.
+        # JSON gives a list.
         object.__setattr__(self, "pressed", tuple(self.pressed))
         for name in self.pressed:
             if name not in BUTTONS:
@@ -256,16 +256,16 @@ class Answer(Message):
     kind = "answer"
     text: str | None
     at_once: bool = False
-    """Whether simulated time stood still until it came."""
+    """Whether simulated time was stopped until it arrived."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reply(Message):
-    """User action: what a responder had to say when the program asked for it; simulated time stood still until then."""
+    """User action: the answer of a responder to a request of the program; simulated time was stopped until then."""
 
     kind = "reply"
     messages: tuple[Any, ...]
-    """What JSON can hold, oldest first."""
+    """JSON data, oldest first."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "messages", tuple(self.messages))
@@ -281,10 +281,10 @@ COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CO
 
 @dataclass(frozen=True, slots=True)
 class ScriptedAction:
-    """A user action that is known before the run: one of an earlier run, or one that a test gives."""
+    """A user action that is known before the run starts: from an earlier run, or from a test."""
 
     tick: int
-    """It takes effect when so many ticks are done, right before the next one."""
+    """It takes effect after this number of ticks, right before the next one."""
     action: Message
     """One of `ACTIONS`, or `Stop`."""
 
@@ -293,15 +293,15 @@ class ScriptedAction:
             raise TypeError(f"not a user action: {self.action!r}")
 
     def to_plain(self) -> dict[str, Any]:
-        """Return it as it is written down with a run."""
+        """Return the form that is stored with a run."""
         return {"tick": self.tick, "kind": self.action.kind, **asdict(self.action)}
 
     @classmethod
     def from_plain(cls, row: Mapping[str, Any]) -> ScriptedAction:
-        """Return what `to_plain` has made plain.
+        """Rebuild an action from the output of `to_plain`.
 
         Raises:
-            KeyError, TypeError: it is no user action.
+            KeyError, TypeError: the data is not a user action.
         """
         fields = {name: value for name, value in row.items() if name not in ("tick", "kind")}
         return cls(int(row["tick"]), COMMANDS[row["kind"]](**fields))
@@ -311,7 +311,7 @@ STEPS = ("over", "into", "out")
 """The ways to step from line to line."""
 
 BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
-"""The brick's buttons, as the library names them."""
+"""The brick's buttons, by their names in the library."""
 
 
 # Events: child to host.
@@ -328,35 +328,35 @@ class Started(Message):
 
 @dataclass(frozen=True, slots=True)
 class Paused(Message):
-    """The run stands still: program and world together."""
+    """The run has paused: program and world together."""
 
     kind = "paused"
     tick: int
     time_ns: int
     line: int
-    """Line of the program that is about to run, or that lets the time pass; 0 if there is none."""
+    """Line of the program that is about to run, or that spends the time; 0 if there is none."""
     reason: str = "asked"
     """One of `PAUSES`."""
     detail: str = ""
-    """Text of the break that was met, as it was set."""
+    """Text of the breakpoint that was hit."""
     value: str = ""
-    """What met it: the value, the printed line, or why its condition could not be evaluated."""
+    """The reason for the hit: the value, the printed line, or why the condition could not be evaluated."""
     ordinal: int = BEFORE_NEXT_TICK
-    """With `tick` the exact instant. From 1: so many lines of the program were met since the tick was done,
-    the last of them is about to run; otherwise `AFTER_TICK`, `BEFORE_NEXT_TICK` or `UNKNOWN_ORDINAL`."""
+    """With `tick` the exact instant. From 1: the number of program lines since the tick, of which the last is about
+    to run; otherwise `AFTER_TICK`, `BEFORE_NEXT_TICK` or `UNKNOWN_ORDINAL`."""
     thread: str = ""
-    """Name of the thread that was held."""
+    """Name of the thread that was paused."""
     file: str = ""
-    """File of the line, if that is not the program itself but a module beside it."""
+    """File of the line, if it is a module and not the program itself."""
 
 
 PAUSES = ("asked", "ticks", "step", "line", "break", "instant", "end")
-"""Why a run stands still: asked to, ticks done, step done, line reached, break met, instant reached, program over."""
+"""Why a run pauses: requested, ticks done, step done, line reached, breakpoint hit, instant reached, program over."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resumed(Message):
-    """The run goes on."""
+    """The run has resumed."""
 
     kind = "resumed"
 
@@ -367,15 +367,15 @@ class Spoke(Message):
 
     kind = "spoke"
     text: str
-    """What was said; in brackets, what was heard otherwise."""
+    """The spoken text; in brackets for other sounds."""
     time_ns: int
     tones: str = ""
-    """Tones one after the other, as JSON: a list of [Hz, ms, pause in ms after it]; 0 Hz is silence.
+    """Successive tones, as JSON: a list of [Hz, ms, pause in ms after it]; 0 Hz is silence.
 
-    Empty for speech; the length of a sound file as silence.
+    Empty for speech; for a sound file its duration as silence.
     """
     file: str = ""
-    """The whole path of the sound file that is played; empty for anything else."""
+    """Absolute path of the sound file; empty for other sounds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -388,7 +388,7 @@ class InputWanted(Message):
 
 @dataclass(frozen=True, slots=True)
 class ReplyWanted(Message):
-    """The program has called `pyState()`: simulated time stands still until a `Reply` comes."""
+    """The program has called `pyState()`: simulated time is stopped until a `Reply` arrives."""
 
     kind = "reply_wanted"
 
@@ -398,8 +398,8 @@ class Ended(Message):
     """The last event of a run.
 
     `end` is one of finished, raised, stopped, time_limit, stalled, deadlock, output_limit, disk_full.
-    `error` is the program's own traceback text, `error_line` its last line in the program,
-    `summary` the one line that says what happened.
+    `error` is the program's traceback, `error_line` its last line in the program,
+    `summary` a description of what happened, in one line.
     """
 
     kind = "ended"
@@ -415,7 +415,7 @@ class Ended(Message):
 
 @dataclass(frozen=True, slots=True)
 class Inspected(Message):
-    """The state of a run that stands still."""
+    """The state of a paused run."""
 
     kind = "looked"
     tick: int
@@ -423,22 +423,22 @@ class Inspected(Message):
     thread: str
     frame: int
     waiting: str
-    """What the thread waits for and until when, such as `sleeps until 1.23 s`; empty if it could run on."""
+    """What the thread waits for and until when, such as `sleeps until 1.23 s`; empty if it is ready to run."""
     threads: tuple[ThreadState, ...]
     stack: tuple[FrameState, ...]
     """Frames of the thread in the program's own files, innermost first."""
     variables: tuple[Variable, ...]
-    """Local names of the frame; of the module's own frame, its global ones."""
+    """Locals of the frame; for the module's frame its globals."""
     globals: tuple[Variable, ...]
-    """Global names of the program, where the frame is not the module's own; modules and functions left out."""
+    """Globals of the program, if the frame is not the module's own; without modules and functions."""
     watches: tuple[Watched, ...]
     note: str = ""
-    """Why something is missing, such as values that took too long."""
+    """Why data is missing, such as values that took too long."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineHistory(Message):
-    """The lines that were met last, oldest first; the last one is about to run."""
+    """The last executed lines, oldest first; the last one is about to run."""
 
     kind = "line_history"
     lines: tuple[ExecutedLine, ...]
@@ -449,10 +449,10 @@ EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
 
 
 def parse_command(line: bytes) -> Message:
-    """Return the command in one line that the host wrote.
+    """Return the command in one line from the host.
 
     Raises:
-        ValueError, KeyError, TypeError, ConfigError: the line is not a command.
+        ValueError, KeyError, TypeError, ConfigError: the line is not a valid command.
     """
     fields: dict[str, Any] = json.loads(line)
     return COMMANDS[fields.pop("kind")](**fields)

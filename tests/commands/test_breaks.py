@@ -59,7 +59,7 @@ def test_a_break_for_another_robot_is_refused(program: str, capsys: pytest.Captu
     ("words", "said"),
     [
         (["--watch", "total"], "watch: needs a breakpoint (add one with --break"),
-        (["--break", "6", "--watch", "total["], "watch: 'total[' is no expression: '[' was never closed"),
+        (["--break", "6", "--watch", "total["], "watch: 'total[' is not an expression: '[' was never closed"),
     ],
     ids=["no break", "no expression"],
 )

@@ -138,11 +138,11 @@ def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
     run_command(["run", "log_greys", "--seed", "4", "-M", "50"])
     capsys.readouterr()
     assert run_command(["runs", "rerun", "last"]) == 0
-    assert "equal to the last bit" in capsys.readouterr().out
+    assert "bit-identical" in capsys.readouterr().out
     one, two = (str(info.number) for info in RunStore().runs()[-2:])
     assert run_command(["log", "diff", one, two]) == 1
     said = capsys.readouterr().out
-    assert "set-up, seed: 0 | 4" in said and "first differing tick: tick 1," in said and "over 1 mm: from" in said
+    assert "settings, seed: 0 | 4" in said and "first differing tick: tick 1," in said and "over 1 mm: from" in said
     assert run_command(["log", "diff", one]) == 2
 
 

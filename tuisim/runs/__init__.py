@@ -1,1 +1,1 @@
-"""A run from outside: process, recording, store, frames. Without Textual."""
+"""Runs: process, recording, store, frames. Does not import Textual."""

@@ -1,4 +1,4 @@
-"""The array types of logs."""
+"""The array types for logs."""
 
 from __future__ import annotations
 
@@ -9,4 +9,4 @@ FloatArray = NDArray[np.float64]
 """Real numbers, shape (n,)."""
 
 IntArray = NDArray[np.int64]
-"""Numbers of rows, shape (n,)."""
+"""Row numbers, shape (n,)."""

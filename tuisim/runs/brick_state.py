@@ -1,8 +1,8 @@
-"""What is seen of the brick, as rows of the output: lights, picture, text screen, sounds, further motors.
+"""The visible state of the brick, as rows of the output: LEDs, display, text screen, sounds, extra motors.
 
-Pure Python: the child writes it.
+Pure Python: the child imports it.
 
-Each row carries the whole of what it is about, so that the newest row of a stream is all that a viewer needs.
+Each row holds the complete state of its kind, so that a viewer needs only the newest row of each stream.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from dataclasses import dataclass, field, replace
 from tuisim.runs.records import CONSOLE, DISPLAY, LED, MOTORS, SPEECH, OutputRow
 
 DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128
-"""Pixels of the display."""
+"""Size of the display in pixels."""
 ROW_BYTES = -(-DISPLAY_WIDTH // 8)
-"""Bytes of a row of the picture; the bits after the last pixel are 0."""
+"""Bytes per row of the picture; the bits after the last pixel are 0."""
 
 LED_NAMES = ("left red", "left green", "right red", "right green")
 
@@ -27,50 +27,50 @@ BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
 
 @dataclass(frozen=True, slots=True)
 class TextScreen:
-    """The text screen."""
+    """Contents of the text screen."""
 
     columns: int
     rows: int
     lines: tuple[str, ...]
-    """One text a row, at most `columns` characters."""
+    """One text per row, at most `columns` characters."""
     inverse: tuple[tuple[int, int, int], ...] = ()
-    """Spans in reverse video: row, first column and the column after the last, all from 0."""
+    """Spans in reverse video: row, first column and end column (exclusive), all from 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class BrickState:
-    """What the brick shows at one moment."""
+    """What the brick shows at one time."""
 
     leds: Mapping[str, int] = field(default_factory=dict)
-    """By name, as in `LED_NAMES`: brightness, 0 to 255. Empty until the program touches them: the brick's own green."""
+    """Brightness by name, as in `LED_NAMES`, 0 to 255. Empty until the program sets an LED: then they are green."""
     picture: bytes = BLANK
-    """The display, one bit a pixel, 1 is dark, from the top left, rows of `ROW_BYTES` bytes, the highest bit first."""
+    """The display, one bit per pixel, 1 is dark, from the top left; rows of `ROW_BYTES` bytes, highest bit first."""
     text: TextScreen | None = None
     """The text screen; None until the program writes to it."""
     shows_text: bool = False
-    """Whether the text screen was changed later than the picture."""
+    """Whether the text screen was changed after the picture."""
     turns: tuple[tuple[float, float], ...] = ()
     """Position in degrees and speed in degrees per second of each motor in `RobotSpec.extra_motors`.
 
-    As they were at `turns_tick`; they turn evenly on. Empty until one of them has turned.
+    Valid at `turns_tick`; from then on each motor turns at its speed. Empty until one of them has turned.
     """
     turns_tick: int = 0
     sound: str = ""
-    """What it said or played last; in brackets, what was heard otherwise than as speech."""
+    """What the brick said or played last; in brackets unless it is speech."""
 
     def turns_at(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
-        """Return `turns` as they are at a later time."""
+        """Return `turns` extrapolated to a later time."""
         since_s = time_s - self.turns_tick / tick_hz
         return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
 
 
 def led_row(brightness: Mapping[str, int]) -> str:
-    """Return the row for the lights: brightness 0 to 255 by name, as in `LED_NAMES`."""
+    """Return the row for the LEDs: brightness 0 to 255 by name, as in `LED_NAMES`."""
     return json.dumps(dict(brightness))
 
 
 def display_row(picture: bytes) -> str:
-    """Return the row for a picture as in `BrickState.picture`."""
+    """Return the row for a picture in the format of `BrickState.picture`."""
     return base64.b85encode(zlib.compress(picture, 6)).decode()
 
 
@@ -80,12 +80,12 @@ def console_row(screen: TextScreen) -> str:
 
 
 def motors_row(turns: Iterable[tuple[float, float]]) -> str:
-    """Return the row for the motors: `BrickState.turns` as they are from the row's tick on."""
+    """Return the row for the motors: `BrickState.turns`, valid from the row's tick on."""
     return json.dumps(list(turns))
 
 
 def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
-    """Return what the brick shows after some more output; rows of other streams change nothing."""
+    """Return the state after more output; rows of other streams are ignored."""
     for row in rows:
         match row.stream:
             case stream if stream == LED:

@@ -1,7 +1,7 @@
 """The catalogue of runs: one SQLite file beside the run folders.
 
-It holds nothing that the folders do not hold, so that a missing, damaged or foreign file
-is made again from them. Each operation opens it anew: two apps may use it at once.
+It holds only data that the folders hold, too, so that a missing, damaged or foreign file
+is rebuilt from them. Each operation opens it again: several processes may use it at once.
 """
 
 from __future__ import annotations
@@ -49,28 +49,28 @@ CREATE TABLE runs (
 
 @dataclass(frozen=True, slots=True)
 class RunInfo:
-    """One line of the catalogue."""
+    """One row of the catalogue."""
 
     number: int
-    """Counts all runs that there ever were, from 1; 0 asks for the next number."""
+    """Sequential number of the run, from 1; 0 requests the next number."""
     id: str
     created: str
     """ISO 8601, UTC."""
     program: str
-    """Name of the program."""
+    """Program name."""
     background: str
     profile: str
     seed: int
     end: str = ""
-    """How it ended, `running` or `interrupted`; empty in the file while there is no end."""
+    """How the run ended, `running` or `interrupted`; empty in the file while it has no end."""
     ticks: int | None = None
     time_s: float | None = None
-    """Simulated seconds."""
+    """Simulated time in seconds."""
     samples: int | None = None
-    """None in the file while nobody has counted them."""
+    """None in the file until they are counted."""
     summary: str = ""
     tags: str = ""
-    """Words with a blank between."""
+    """Tags, separated by spaces."""
 
 
 _NAMES = tuple(field.name for field in fields(RunInfo))
@@ -80,18 +80,18 @@ _SELECT = f"SELECT {_COLUMNS} FROM runs ORDER BY number"
 
 
 class _ForeignFile(sqlite3.DatabaseError):
-    """A database of another make or version."""
+    """A database of another application or version."""
 
 
 class Catalogue:
     """The catalogue in one home folder.
 
     Args:
-        home: The folder; it need not exist yet.
-        scan: Reads all run folders, for a catalogue that must be made again.
+        home: The folder; it need not exist.
+        scan: Reads all run folders, to rebuild the catalogue.
 
     Raises:
-        LogError: by every method but `rows`, if the file cannot be read or written.
+        LogError: by every method except `rows`, if the file cannot be read or written.
     """
 
     def __init__(self, home: Path, scan: Callable[[], Iterable[RunInfo]]) -> None:
@@ -100,9 +100,9 @@ class Catalogue:
         self._scan = scan
 
     def add(self, info: RunInfo) -> int:
-        """Add a run and return its number; a number that is taken is replaced by the next free one.
+        """Add a run and return its number; a number in use is replaced by the next free one.
 
-        A run that is listed already keeps its line and number.
+        A run that is already listed keeps its row and number.
         """
 
         def insert(connection: sqlite3.Connection) -> int:
@@ -112,16 +112,16 @@ class Catalogue:
         return self._do(insert)
 
     def update(self, run_id: str, **values: str | int | float | None) -> None:
-        """Change columns of a run, by name; a run that is not listed is left out.
+        """Change columns of a run, by name; a run that is not listed is ignored.
 
         Raises:
-            ValueError: there is no such column.
+            ValueError: a column does not exist.
             LogError: the catalogue cannot be written.
         """
         self.update_all([(run_id, values)])
 
     def update_all(self, changes: Sequence[tuple[str, Mapping[str, str | int | float | None]]]) -> None:
-        """Change columns of many runs at once, as `update` does for one; all of them or none."""
+        """Change columns of many runs as `update` does, in one transaction."""
         unknown = {name for _, values in changes for name in values} - set(_NAMES)
         if unknown:
             raise ValueError(f"no such column: {', '.join(sorted(unknown))}")
@@ -135,7 +135,7 @@ class Catalogue:
         self._do(change)
 
     def remove(self, run_ids: Iterable[str]) -> None:
-        """Take runs off the list."""
+        """Remove runs from the catalogue."""
         ids = [(run_id,) for run_id in run_ids]
 
         def delete(connection: sqlite3.Connection) -> None:
@@ -145,11 +145,11 @@ class Catalogue:
         self._do(delete)
 
     def rows(self) -> list[RunInfo]:
-        """Return every line, the oldest first."""
+        """Return all rows, oldest first."""
         try:
             return self._do(_all_rows)
         except LogError:
-            # SQLite must write even to read. Where nothing can be written, or nothing more, the folders tell the same.
+            # SQLite must write even to read. If that is impossible, the folders provide the same data.
             with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
                 self._fill(connection)
                 return _all_rows(connection)
@@ -169,19 +169,19 @@ class Catalogue:
             raise LogError(f"the list of runs cannot be used: {error}", HOME_HINT, file=str(self._path)) from error
 
     def _make_again(self) -> None:
-        """Put a new catalogue, filled from the run folders, in the place of one that is no good."""
+        """Replace an invalid catalogue by a new one, filled from the run folders."""
         with locked(self._home):
-            # Another process may have done it while this one waited.
+            # Another process may have done it in the meantime.
             if _is_sound(self._path):
                 return
             fresh = self._path.with_name(f".{CATALOGUE_FILE}.{secrets.token_hex(4)}.tmp")
             try:
-                # SQLite gives the files beside it the same rights.
+                # SQLite creates the files beside it with the same permissions.
                 os.close(private(str(fresh), os.O_CREAT | os.O_EXCL | os.O_RDWR))
                 with closing(sqlite3.connect(fresh, isolation_level=None)) as connection:
                     connection.execute("PRAGMA journal_mode = WAL")
                     self._fill(connection)
-                # A journal of the old file would be played into the new one.
+                # A journal of the old file would be applied to the new one.
                 for suffix in ("-wal", "-shm"):
                     self._path.with_name(CATALOGUE_FILE + suffix).unlink(missing_ok=True)
                 os.replace(fresh, self._path)
@@ -191,7 +191,7 @@ class Catalogue:
     def _fill(self, connection: sqlite3.Connection) -> None:
         with _transaction(connection):
             connection.execute(_CREATE)
-            # Runs that know their number come first, so that none of the others takes it.
+            # Runs with a stored number come first, so that none of the others takes it.
             for info in sorted(self._scan(), key=lambda info: (not info.number, info.number, info.created)):
                 _insert(connection, info)
             connection.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
@@ -199,7 +199,7 @@ class Catalogue:
 
 @contextmanager
 def locked(home: Path) -> Iterator[None]:
-    """Keep other processes from changing what stands in more than one place of a home folder."""
+    """Hold the lock of a home folder, for changes to several files. Blocks while another process holds it."""
     make_private_folder(home)
     descriptor = private(str(home / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
     try:
@@ -211,17 +211,17 @@ def locked(home: Path) -> Iterator[None]:
 
 @contextmanager
 def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
-    # Immediate: a lock that is taken only at the first write fails at once where this one waits.
+    # Immediate: a lock requested only at the first write would fail at once instead of waiting.
     connection.execute("BEGIN IMMEDIATE")
     with connection:
         yield
 
 
 def _open(path: Path) -> sqlite3.Connection:
-    # Read-write without create: a missing file is made under the lock, filled from the folders.
+    # Read-write without create: a missing file is created under the lock and filled from the folders.
     connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, timeout=_BUSY_S, isolation_level=None)
     try:
-        # Waiting for the disk would delay the end of every run; what a power cut could damage is made again.
+        # Waiting for the disk would delay the end of every run; damage by a power failure is repaired.
         connection.execute("PRAGMA synchronous = OFF")
         version = connection.execute("PRAGMA user_version").fetchone()[0]
         if version != _SCHEMA_VERSION:
@@ -233,11 +233,11 @@ def _open(path: Path) -> sqlite3.Connection:
 
 
 def _must_be_made_again(error: sqlite3.DatabaseError) -> bool:
-    """Whether the file is missing, damaged or not ours."""
+    """Return whether the file is missing, damaged or foreign."""
     if isinstance(error, _ForeignFile):
         return True
     code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF
-    # A plain error is what a missing table or column gives; with SQL that is always the same it can be nothing else.
+    # A plain error comes from a missing table or column: the SQL is constant, so there is no other reason.
     return code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
 
 
@@ -253,20 +253,20 @@ def _is_sound(path: Path) -> bool:
 
 
 def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
-    """Insert a run, with its number if that is free, and return the number it has got."""
+    """Insert a run, with its number if that is free; return its actual number."""
     listed = connection.execute("SELECT number FROM runs WHERE id = ?", (info.id,)).fetchone()
     if listed is not None:
         return int(listed[0])
     free = not connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
     number = info.number if info.number > 0 and free else None
-    # A seed may be larger than the integers of SQLite.
+    # A seed may exceed the integers of SQLite.
     changed = {"number": number, "seed": str(info.seed)}
     row = [changed.get(name, getattr(info, name)) for name in _NAMES]
     return int(connection.execute(_INSERT, row).lastrowid or 0)
 
 
 def _all_rows(connection: sqlite3.Connection) -> list[RunInfo]:
-    # What is no text in UTF-8 is damaged like any other cell of a wrong type.
+    # Text that is not valid UTF-8 counts as damage, like a cell of a wrong type.
     connection.text_factory = bytes
     try:
         return [_info(row) for row in connection.execute(_SELECT)]

@@ -1,4 +1,4 @@
-"""Where two runs differ: first in what they are made of, then tick by tick, row by row, and in the pose over time."""
+"""Differences between two runs: their setup, then tick by tick, row by row, and the distance of the poses over time."""
 
 from __future__ import annotations
 
@@ -19,75 +19,75 @@ if TYPE_CHECKING:
     import numpy as np
 
 _SEEN = {LED: "[lights]", DISPLAY: "[display]", CONSOLE: "[text screen]", MOTORS: "[motors]"}
-"""What stands for rows that are no lines for people, by stream."""
+"""Text for rows without readable text, by stream."""
 
 DIFF_LINES = 20
-"""Lines of a unified diff of two programs that are kept."""
+"""Maximum number of lines of the unified diff of two programs."""
 EXCEEDED_MM = (1.0, 10.0, 100.0)
 TABLE_ROWS = 10
 
 
 @dataclass(frozen=True, slots=True)
 class TickDifference:
-    """The first tick at which two recordings are not the same to the last bit."""
+    """The first tick at which two recordings are not identical bit by bit."""
 
     tick: int
     time_s: float
     fields: tuple[str, ...]
-    """Fields of the record that differ; empty if one recording ends before this tick."""
+    """Fields that differ; empty if one recording ends before this tick."""
 
 
 @dataclass(frozen=True, slots=True)
 class RowDifference:
-    """The first place at which two runs' rows differ; None stands for a run that has no more."""
+    """The first position at which two runs' rows differ; None for a run that has no more rows."""
 
     row: int
-    """Counted from 1, of those that people see: a row of a motor has the number of the line that comes next."""
+    """Number from 1 among the readable rows; a row of a motor gets the number of the next readable one."""
     first: str | None
     second: str | None
     times_s: tuple[float | None, float | None]
-    """Simulated time in each run."""
+    """Simulated time in each run, in seconds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """How far apart the robots were, over the time that both runs have."""
+    """Distance between the robots over the time that both runs cover."""
 
     max_mm: float
     max_at_s: float
     end_mm: float
     end_s: float
     exceeded: tuple[tuple[float, float | None], ...]
-    """Distances in mm, and when each was exceeded first, in s; None for never."""
+    """Distances in mm, and the time in s at which each was first exceeded; None for never."""
     table: tuple[tuple[float, float, float], ...]
-    """Time in s, distance in mm, difference of heading in degrees, evenly over the time."""
+    """Time in s, distance in mm, difference of heading in degrees, at regular intervals."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunDiff:
-    """All that tells two runs apart."""
+    """All differences between two runs."""
 
     setup: tuple[tuple[str, str, str], ...]
-    """What differs in the set-up: its name, and its values in the first and the second run."""
+    """Differences in the setup: name, and values in the first and the second run."""
     program: tuple[str, ...]
-    """The start of a unified diff of the programs; empty if they are the same."""
+    """First lines of a unified diff of the programs; empty if they are equal."""
     by_time: bool
-    """Whether the tick rates differ, so that only times can be compared, and no record is the same."""
+    """Whether the tick rates differ: then times are compared, and no record is equal."""
     tick: TickDifference | None
     line: TickDifference | None
-    """The first tick that another line of the program let pass."""
+    """The first tick with a different source line."""
     output: RowDifference | None
     sample: RowDifference | None
     divergence: Divergence | None
-    """None if one of the runs has no recording."""
+    """None if one of the runs has no telemetry."""
 
     @property
     def same(self) -> bool:
-        """Whether recording and output are the same to the last bit."""
+        """Whether recording and output are identical bit by bit."""
         return not self.by_time and self.tick is None and self.output is None
 
     def to_plain(self) -> dict[str, Any]:
-        """Return it as data for JSON."""
+        """Return the differences as JSON-compatible data."""
         return {"same": self.same, **asdict(self)}
 
 
@@ -97,8 +97,8 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, unti
     Args:
         first: One run.
         second: The other.
-        prefix: The first run was cut off: what the second did after its last record does not count.
-        until: Last tick that counts, None for all.
+        prefix: Whether the first run was cut off: anything in the second after its last record is ignored.
+        until: Last tick to compare; None for all.
 
     Raises:
         LogError: a recording is damaged.
@@ -125,17 +125,17 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, unti
 
 
 def first_tick(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int) -> TickDifference | None:
-    """Return the first tick at which two recordings of the same tick rate differ, None if they are the same.
+    """Return the first tick at which two recordings of the same tick rate differ; None if they are equal.
 
     Args:
-        one: Records of a run, as `TelemetryView.array` returns them.
-        two: Records of the other.
-        tick_hz: Ticks a second.
+        one: Records of the first run, as `TelemetryView.array` returns them.
+        two: Records of the second.
+        tick_hz: Ticks per second.
     """
     import numpy as np
 
     count = min(len(one), len(two))
-    # Bytes, not numbers: NaN equals itself, and 0.0 is not -0.0.
+    # Compare bytes, not numbers: NaN equals itself, and 0.0 differs from -0.0.
     size = one.dtype.itemsize
     raw = [np.ascontiguousarray(records[:count]).view(np.uint8).reshape(count, size) for records in (one, two)]
     differ = np.flatnonzero((raw[0] != raw[1]).any(axis=1))
@@ -148,12 +148,12 @@ def first_tick(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: in
 
 
 def divergence(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]) -> Divergence:
-    """Return how far apart two robots were at the ticks of the first run that both runs cover.
+    """Return the distance between two robots at the ticks of the first run that both runs cover.
 
     Args:
-        one: Records of a run, at least one.
-        two: Records of the other, at least one; where the tick rates differ, its poses are interpolated.
-        tick_hz: Ticks a second of each.
+        one: Records of the first run, at least one.
+        two: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks per second of each.
     """
     import numpy as np
 
@@ -185,11 +185,11 @@ def _first_line(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: i
 
 
 _Row = tuple[Any, str, float]
-"""What is compared, how it is shown, when it came in s."""
+"""Value to compare, its text, its time in s."""
 
 
 def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
-    # What came at the last tick itself may have come after what ended there.
+    # Rows of the last tick itself may have been written after the end.
     return takewhile(lambda row: until is None or row.tick < until, run.output.rows())
 
 
@@ -216,7 +216,7 @@ def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDif
             _, was, was_s = left or (None, None, None)
             _, now, now_s = right or (None, None, None)
             return RowDifference(number, was, now, (was_s, now_s))
-        # Rows of motors, lights and pictures are compared too, but nobody has seen them to count.
+        # Rows of motors, LEDs and pictures are compared, too, but not counted, because users do not see them as rows.
         number += not isinstance(left[0], OutputRow) or left[0].stream in TEXT_STREAMS
     return None
 
@@ -240,7 +240,7 @@ def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]
 
 
 def _flat(plain: Any, name: str = "") -> dict[str, Any]:
-    """Nested data as one table, with names such as `world.noise.light`."""
+    """Return nested data as one flat table, with names such as `world.noise.light`."""
     if isinstance(plain, dict) and plain:
         pairs = [(f"{name}.{key}" if name else str(key), value) for key, value in plain.items()]
     elif isinstance(plain, list | tuple) and plain:

@@ -1,4 +1,4 @@
-"""Recordings as pandas frames: the samples that programs print, and the telemetry of every tick."""
+"""Recordings as pandas frames: printed samples, and the telemetry of every tick."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ MOTION_COLUMNS = (
     "left_speed_dps",
     "right_speed_dps",
 )
-"""Columns of the telemetry frame that are recorded as they are."""
+"""Columns of the telemetry frame that are copied from the recording."""
 
 _MOST = 1e15
-"""No motion brings a robot so far, in mm or degrees."""
+"""Larger values, in mm or degrees, count as damage: no motion gets this far."""
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
 
@@ -43,8 +43,8 @@ def samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
 
     Columns, as SAMPLE_COLUMNS: `index` timedelta64[ns] since the first sample of its run was
     printed; `variable` the name; `value`; `time` in s, simulated, of the print or as printed;
-    `run` counts the runs of this frame from 1; `x_mm`, `y_mm`, `heading_deg` where the robot
-    was at the tick of the print, not a number if that tick was lost; `line` in the program.
+    `run` numbers the runs of this frame from 1; `x_mm`, `y_mm`, `heading_deg` the pose of the robot
+    at the tick of the print, NaN if that tick was lost; `line` in the program.
 
     Raises:
         LogError: a recording is damaged.
@@ -86,18 +86,18 @@ def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
 
 
 def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
-    """Return one row a tick, tick 0 (the start) included; records that are damaged are left out, see `damage_note`.
+    """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
     `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; `line`, the source line
-    that let the time pass, 0 for none.
+    that spent the time, 0 for none.
 
     Args:
         run: The run.
-        field: The mat, by default the one that the run was made on.
+        field: The mat; by default that of the run.
 
     Raises:
-        LogError: a recording is damaged, or the mat cannot be found any more.
+        LogError: a recording is damaged, or the mat no longer exists.
     """
     import pandas as pd
 
@@ -111,7 +111,7 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
 
 
 def damage_note(run: StoredRun) -> str:
-    """Return how many records of a run hold something that no motion makes, empty if none does.
+    """Return a message with the number of damaged records; empty if there are none.
 
     Raises:
         LogError: a recording is damaged.
@@ -126,18 +126,18 @@ def damage_note(run: StoredRun) -> str:
 
 
 def _sound(records: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Return the records whose numbers are numbers."""
+    """Return the records that contain only plausible numbers."""
     import numpy as np
 
     whole = np.ones(len(records), np.bool_)
     for name in (*MOTION_COLUMNS, "gyro_zero_deg"):
-        # Also false for what is no number.
+        # Also false for NaN.
         whole &= np.abs(records[name]) < _MOST
     return records if whole.all() else records[whole]
 
 
 def tick_times_s(records: np.ndarray[Any, Any], spec: RunSpec) -> np.ndarray[Any, Any]:
-    """Return when each tick fell due, in simulated seconds, shape (n,)."""
+    """Return the time at which each tick is due, in simulated seconds, shape (n,)."""
     ticks = records["tick"].astype("i8")
     times: np.ndarray[Any, Any] = -(-ticks * NS_PER_S // spec.profile.tick_hz) / NS_PER_S
     return times

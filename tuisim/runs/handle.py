@@ -1,7 +1,7 @@
 """Parent side of a run: starts the child, reads its events, sends commands, stops it.
 
-Nothing here blocks unless it is called `wait`, and nothing waits on the display: the
-child writes its recording by itself, and whoever wants to see it reads the run folder.
+Only methods named `wait…` block, and nothing depends on the display: the
+child writes its recording by itself, and viewers read the run folder.
 """
 
 from __future__ import annotations
@@ -52,75 +52,75 @@ from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView, TelemetryView
 
 STUCK_AFTER_S = 0.4
-"""A child that has not ended so long after a stop is killed."""
+"""A child that has not ended this long after a stop is killed."""
 ASK_AGAIN_S = 0.05
 ENDED_CHILD_S = 0.2
-"""How long a child may take to go after its last event."""
+"""Time for a child to exit after its last event."""
 STALL_FACTOR = 2.0
-"""A headless child without progress for so many stall limits of real time is stuck in C code."""
+"""A headless child without progress for this many stall limits of real time is stuck in C code."""
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """What is run."""
+    """A program to run."""
 
     name: str
-    """File name as shown to the user."""
+    """File name as displayed to the user."""
     text: str
     prelude: str = "none"
     """none, imports or preloaded."""
     path: str = ""
-    """Where it came from; empty if it is in no file."""
+    """Path of its file; empty if it is in no file."""
     arguments: tuple[str, ...] = ()
-    """What it finds in `sys.argv`, after its path."""
+    """Contents of `sys.argv` after the path."""
     python_path: tuple[str, ...] = ()
-    """Folders besides its own in which it finds modules."""
+    """Folders besides its own in which it searches modules."""
     working_directory: str = ""
-    """Where it starts, and where relative paths of it begin; empty is here, with the PYTHONPATH of this process."""
+    """Initial working directory; empty means the current one, with the PYTHONPATH of this process."""
     module_folder: str = ""
-    """Folder in which a program without a file has its modules, such as that of the notebook whose cell it is."""
+    """Module folder of a program without a file, such as the folder of the notebook whose cell it is."""
     modules_from: Path | None = None
-    """Folder of a run from which it takes the modules of its own that were imported there; None takes all as they are
+    """now.
     now."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """How a run is carried out; nothing here changes what it logs, limits and answers apart."""
+    """How a run is executed; apart from limits and answers, nothing here changes what it records."""
 
     live: bool = False
-    """Paced against the wall clock, can be paused and takes user actions; otherwise as fast as possible."""
+    """Whether it is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""
     speed: float = 1.0
     """1.0 is real time, 0 as fast as possible."""
     start_paused: bool = False
     time_limit_s: float = 600.0
-    """Simulated time after which the run is ended; 0 is no limit."""
+    """Simulated time after which the run is stopped; 0 is no limit."""
     stall_limit_s: float = 60.0
-    """CPU seconds in one instant of simulated time after which the run is ended; 0 is no limit."""
+    """CPU seconds in one instant of simulated time after which the run is stopped; 0 is no limit."""
     answers: tuple[str, ...] = ()
     """Scripted answers to input()."""
     asks_user: bool = False
-    """Whether input() asks the user when there are no scripted answers left; otherwise that is the end of the input."""
+    """Whether input() asks the user after the scripted answers; otherwise it raises EOFError."""
     time_waits: bool = False
-    """Whether simulated time stands still while input() waits for the user; otherwise the world goes on."""
+    """Whether simulated time stops while input() waits for the user."""
     replies: bool = False
-    """Whether the host replies to `pyState()`, while simulated time stands still; otherwise there are no messages."""
+    """Whether the host answers `pyState()`, while simulated time stops; otherwise there are no messages."""
     actions: tuple[ScriptedAction, ...] = ()
-    """User actions that are known already, in the order of their ticks."""
+    """Known user actions, in the order of their ticks."""
     breaks: tuple[str, ...] = ()
-    """Where the run is to hold from the start, in the language of `tuisim.breakpoints`."""
+    """Initial breakpoints, in the syntax of `tuisim.breakpoints`."""
     trace_from_tick: int | None = None
-    """Count lines from here on, so that `LineHistory` knows them; until the run first stands still."""
+    """Count lines from this tick on, so that `LineHistory` includes them; until the run first pauses."""
     hold_at: tuple[int, int] | None = None
-    """Run at full speed to this instant and hold: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
+    """Run at full speed to this instant and pause: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the options as they are stored with a run."""
+        """Return the options in the form that is stored with a run."""
         return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
 
 def program_again(run: StoredRun | RunHandle) -> Program:
-    """Return the program of a run as it was, to be run again: with its arguments, its folder and its own modules."""
+    """Return the program of a run with its arguments, working directory and own modules, to be run again."""
     was = run.program
     return Program(
         was.name, was.text, was.prelude, was.path, was.arguments, was.python_path, was.working_directory,
@@ -129,7 +129,7 @@ def program_again(run: StoredRun | RunHandle) -> Program:
 
 
 class RunHandle:
-    """One run: its child process, pipes and recording. Made by `start_run`."""
+    """One run: its child process, pipes and recording. Create it with `start_run`."""
 
     def __init__(
         self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunStore
@@ -142,14 +142,14 @@ class RunHandle:
             copy_modules(program.modules_from, run.folder)
         self.ended: Ended | None = None
         self.started = False
-        """Whether the child has come to the program's first line."""
+        """Whether the child has reached the program's first line."""
         self.paused = False
         self.waiting_for_input: str | None = None
         self.waiting_for_reply = False
         self.telemetry, self.output = TelemetryView(self.folder), OutputView(self.folder)
         self._rest = b""
-        self._held: list[Message] = []
-        """Commands given before the child listens: the signal that announces one would kill it."""
+        self._unsent: list[Message] = []
+        """Commands sent before the child listens: the signal that announces one would kill it."""
         self._end_of_events = False
         self._stop_at: float | None = None
         self._asked_at = 0.0
@@ -158,7 +158,7 @@ class RunHandle:
         self._announced: Ended | None = None
         self._announced_at = 0.0
         self.unstored = ""
-        """Why the end of the run is not on record, empty if it is."""
+        """Why the end of the run is not stored; empty if it is."""
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
                 run.folder, program.working_directory
@@ -172,20 +172,20 @@ class RunHandle:
     # Events
 
     def fileno(self) -> int:
-        """Return the event pipe, for `select` or an event loop's reader."""
+        """Return the event pipe's descriptor, for `select` or an event loop."""
         return self._event_fd
 
     def pump(self) -> list[Message]:
-        """Return the events that have come in, without waiting; `Ended` comes once, as the last.
+        """Return the events that have arrived, without blocking; `Ended` comes once, as the last.
 
-        Must be called now and then while the run is on: it also kills a child that does not stop.
+        Must be called regularly while the run is active: it also kills a child that does not stop.
 
         Raises:
-            HostError: the child sent rubbish; it has been killed.
+            HostError: the child sent invalid data; it has been killed.
         """
         if self.ended is not None:
             return []
-        # Asked before reading: whatever a child that is gone had to say is in the pipe then.
+        # Checked before reading: all output of a child that has exited is in the pipe then.
         gone = self._process.poll() is not None
         events = self._read_events()
         for event in events:
@@ -195,8 +195,8 @@ class RunHandle:
                     raise HostError(f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}")
                 case Started():
                     self.started = True
-                    held, self._held = self._held, []
-                    for command in held:
+                    unsent, self._unsent = self._unsent, []
+                    for command in unsent:
                         self.send(command)
                 case Paused():
                     self.paused = True
@@ -208,7 +208,7 @@ class RunHandle:
                     self.waiting_for_reply = True
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
-        self._press_on()
+        self._enforce_stop()
         final = self._final_event(gone)
         kept = [event for event in events if not isinstance(event, Ended)]
         if final is None:
@@ -261,7 +261,7 @@ class RunHandle:
         end_left_over(self._process.pid, self._mark)
         for name in ("child.log", "stack.txt"):
             path = self.folder / name
-            # Somebody may be deleting the folder.
+            # The folder may be about to be deleted.
             with suppress(OSError):
                 if not path.stat().st_size:
                     path.unlink()
@@ -273,10 +273,10 @@ class RunHandle:
             self.ended = replace(final, summary=f"{summary} cannot be stored: {self.unstored}")
 
     def stored(self) -> StoredRun:
-        """Return the run as it is in the store; with its end, also where that could not be written.
+        """Return the stored run, including its end even if that could not be written.
 
         Raises:
-            LogError: it is not there any more, or damaged.
+            LogError: it no longer exists, or is damaged.
         """
         run = self._store.load_run(self.folder)
         if run.end is None and self.ended is not None:
@@ -284,10 +284,10 @@ class RunHandle:
         return run
 
     def wait(self, timeout_s: float | None = None) -> Ended | None:
-        """Wait until the run is over.
+        """Block until the run is over.
 
         Returns:
-            How it ended, None if it is still going on after `timeout_s`.
+            How it ended; None if it is still running after `timeout_s`.
         """
         until = None if timeout_s is None else time.monotonic() + timeout_s
         while self.ended is None:
@@ -296,14 +296,14 @@ class RunHandle:
             if rest <= 0:
                 break
             if self._stop_at is not None and now < self._stop_at + STUCK_AFTER_S:
-                # A child that is stuck is killed on the dot.
+                # A stuck child is killed on time.
                 rest = min(rest, self._stop_at + STUCK_AFTER_S - now)
             self.wait_for_event(rest)
             self.pump()
         return self.ended
 
     def wait_for_event(self, timeout_s: float) -> None:
-        """Wait until the child has said something or is gone, at most so long."""
+        """Block until the child sends an event, exits, or the timeout is over."""
         if self._end_of_events:
             try:
                 self._process.wait(timeout_s)
@@ -315,49 +315,49 @@ class RunHandle:
     # Commands
 
     def send(self, command: Message) -> None:
-        """Send a command; after the end of the run there is nobody to hear it."""
+        """Send a command; after the end of the run it is ignored."""
         if self.ended is not None or self._announced is not None:
             return
         if not self.started:
-            self._held.append(command)
+            self._unsent.append(command)
             return
         match command:
             case Answer():
                 self.waiting_for_input = None
             case Reply():
                 self.waiting_for_reply = False
-        # If not all of it can be written, the child is gone or stuck: pump() finds out.
+        # If it cannot be written completely, the child is gone or stuck: pump() handles that.
         if write_command(self._command_fd, command.encode()):
             self._signal(signal.SIGUSR1)
 
     def stop(self) -> None:
-        """Ask the program to stop; `pump` or `wait` kill it if it does not."""
+        """Ask the program to stop; `pump` or `wait` kill the child if it does not."""
         if self._stop_at is None:
             self._stop_at = time.monotonic()
         self._asked_at = time.monotonic()
         self.send(Stop())
 
     def kill(self) -> None:
-        """End the child at once; what it has written stays."""
+        """Kill the child immediately; what it has written is kept."""
         if self._stop_at is None:
             self._stop_at = time.monotonic()
         end_group(self._process.pid)
 
     def close(self) -> None:
-        """Make sure that the child is gone and the run is recorded as ended."""
+        """Make sure that the child is gone and the end of the run is recorded."""
         if self.ended is None:
             self.kill()
             self._process.wait()
             while self.ended is None:
                 self.pump()
 
-    def _press_on(self) -> None:
-        """Repeat a stop that has not been heard, and kill what is stuck."""
+    def _enforce_stop(self) -> None:
+        """Repeat a stop that has had no effect, and kill what is stuck."""
         now = time.monotonic()
         if self._announced is not None:
             return
         if self._stop_at is None and not self.folder.is_dir():
-            # Deleted while it runs: whatever it does now nobody will ever see.
+            # Deleted while it runs: nobody can see its results.
             self.stop()
         if self._stop_at is not None:
             if now - self._stop_at > STUCK_AFTER_S:
@@ -386,10 +386,10 @@ class RunHandle:
 
 
 def field_files(spec: RunSpec) -> FieldFiles:
-    """Prepare the mat of a run for its robot's sensors, or find it prepared.
+    """Prepare the mat of a run for its robot's sensors, unless it is cached.
 
     Raises:
-        BackgroundError: there is no such mat, or its image cannot be read.
+        BackgroundError: the mat does not exist, or its image cannot be read.
     """
     image = assets.background(spec.world.background).image
     return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
@@ -399,27 +399,27 @@ def _here() -> str:
     try:
         return os.getcwd()
     except FileNotFoundError:
-        # Somebody has removed it.
+        # It has been deleted.
         return ""
 
 
 def _python_path() -> tuple[str, ...]:
-    """The folders of the user's PYTHONPATH; an empty one is here, as for Python."""
+    """Return the folders of the user's PYTHONPATH; an empty one is the current folder, as in Python."""
     said = os.environ.get("PYTHONPATH")
     return tuple(os.path.abspath(folder) for folder in said.split(os.pathsep)) if said else ()
 
 
 def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:
-    """Start a program.
+    """Start a program. Does not block.
 
     Args:
-        program: What to run.
+        program: The program.
         spec: Robot, world, profile and seed.
         options: Live or headless, limits, answers.
-        store: Where the run is kept, by default the user's own.
+        store: Where the run is stored; by default the user's store.
 
     Raises:
-        BackgroundError: there is no such mat.
+        BackgroundError: the mat does not exist.
         LogError: the run cannot be stored.
     """
     parse_breakpoints(options.breaks, spec.robot)

@@ -1,7 +1,7 @@
-"""The lock of a run folder: held by the process that runs the program, for as long as it lives.
+"""The lock of a run folder: held by the process that runs the program, as long as it lives.
 
-The kernel drops the lock when the process ends in any way, so that a run without an end
-can be told from one that is still going on. Pure Python: the child imports it.
+The kernel releases the lock when the process ends in any way, which distinguishes a run
+without an end from one that is still running. Pure Python: the child imports it.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ LOCK_FILE = "lock"
 
 
 def hold(folder: Path) -> int:
-    """Take the lock of a run folder and return its file descriptor; the lock lasts until it is closed.
+    """Acquire the lock of a run folder and return its file descriptor; closing it releases the lock.
 
-    Waits rather than fails: a reader that looks whether the lock is held has it for an instant.
+    Blocks instead of failing: `is_held` acquires the lock for a moment.
     """
     descriptor = private(str(folder / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
@@ -26,7 +26,7 @@ def hold(folder: Path) -> int:
 
 
 def is_held(folder: Path) -> bool | None:
-    """Return whether a living process holds the lock; None if nobody has ever taken it."""
+    """Return whether a living process holds the lock; None if it was never acquired."""
     try:
         descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_CLOEXEC)
     except OSError:

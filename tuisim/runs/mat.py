@@ -1,4 +1,4 @@
-"""The mat that a stored run was made on, found again."""
+"""Access to the mat of a stored run."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from tuisim.runs.run_folder import StoredRun
 
 
 def open_mat(run: StoredRun) -> Field:
-    """Return the mat of a run, prepared again if the cache has dropped it.
+    """Return the mat of a run; prepares it again if it is no longer cached.
 
     Raises:
-        LogError: there is no such mat any more, or its picture is another one now.
+        LogError: the mat no longer exists, or its image has changed.
     """
     files = mat_files(run)
     try:
@@ -23,7 +23,7 @@ def open_mat(run: StoredRun) -> Field:
 
 
 def mat_files(run: StoredRun) -> FieldFiles:
-    """Return the files of what `open_mat` opens; they are there now, and are prepared again if need be.
+    """Return the files of the mat that `open_mat` opens; prepares them again if necessary.
 
     Raises:
         LogError: as `open_mat`.
@@ -36,7 +36,7 @@ def mat_files(run: StoredRun) -> FieldFiles:
         image = background(name).image
         diameters = {sensor.diameter_mm for sensor in run.spec.robot.color_sensors}
         found = prepare(image, diameters, fit=run.spec.world.background_fit)
-        # The files are called after the content of the picture.
+        # The file names are derived from the contents of the image.
         if made_on is not None and found.pixels.name != made_on.pixels.name:
             raise LogError(f"the mat {name} is not the one of the run any more", file=str(image))
     except ConfigError as error:

@@ -1,6 +1,6 @@
-"""Copies of the modules of its own that a program has imported, in the folder of the run: one JSON object a line.
+"""Copies of the program's own modules that it has imported, stored with the run: one JSON object per line.
 
-They let the run be repeated after the modules have changed or are gone. Pure Python: the child imports it.
+They allow repeating the run after the modules have changed or are gone. Pure Python: the child imports it.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ MODULES_FILE = "modules.jsonl"
 
 @dataclass(frozen=True, slots=True)
 class OwnModule:
-    """What one import of a name gave."""
+    """Result of one import of a name."""
 
     name: str
-    """With the packages that it is in, such as `tools.drive`."""
+    """Full name with packages, such as `tools.drive`."""
     file: str = ""
-    """Where it was; empty for a folder without a file, and for a name that there was not."""
+    """Its file; empty for a folder without a file, and for a name that was not found."""
     folders: tuple[str, ...] | None = None
-    """Of a package: where its modules are."""
+    """Of a package: the folders of its modules."""
     text: str = ""
-    """The source; bytes that are no UTF-8 as lone surrogates."""
+    """The source; bytes that are not valid UTF-8 as lone surrogates."""
 
     @property
     def missing(self) -> bool:
-        """Whether there was no module of that name."""
+        """Whether no module of that name was found."""
         return not self.file and self.folders is None
 
 
@@ -50,7 +50,7 @@ def note_module(run_folder: Path, module: OwnModule) -> None:
 
 
 def read_modules(run_folder: Path) -> list[OwnModule]:
-    """Return the modules of a run in the order of their import; a torn last one is left out.
+    """Return the modules of a run in the order of their import; an incomplete last one is ignored.
 
     Raises:
         LogError: the file is damaged.
@@ -70,7 +70,7 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
 
 
 def copy_modules(source: Path, target: Path) -> None:
-    """Give a run the modules of another one, if that has any.
+    """Copy the modules of another run, if it has any.
 
     Raises:
         LogError: they cannot be copied.

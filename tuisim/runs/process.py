@@ -1,4 +1,4 @@
-"""The child process of a run: how it is started and written to, and how its events are decoded and checked."""
+"""The child process of a run: starting it, writing commands, decoding and validating events."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ from tuisim.protocol import EVENTS, Message
 from tuisim.source import source_lines
 
 PATIENCE_S = 0.2
-"""How long a full command pipe is waited for: a child that listens empties it at once."""
+"""Longest wait for a full command pipe: a child that listens empties it at once."""
 
 BOOT = (
     "import runpy, sys; sys.path.append(sys.argv.pop(1)); "
     "runpy.run_module('tuisim.runtime', run_name='__main__', alter_sys=True)"
 )
-"""What the child begins with: the package is found last, so that nothing beside it takes the place of Python's own."""
+"""Startup code of the child: the package comes last in the path, so that nothing beside it shadows Python's modules."""
 
 FILE_LOCKS = 10
-"""The number of a limit that Linux hands down to every process, and has not looked at since 2.4.25."""
+"""Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
 
 STACK_WRITTEN_WITHIN_S, LOOK_AGAIN_S = 0.1, 0.003
-"""How long a stuck child may take to write its stack on a busy machine, and how often it is looked for."""
+"""Time for a stuck child to write its stack on a busy machine, and the interval of checks."""
 
 MOST_SHOWN = 500
-"""Of a longer file name no more is in a written stack."""
+"""Stacks contain at most this many characters of a file name."""
 
 
 def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[bytes], int, int, int]:
-    """Start the process that carries out the run of a folder.
+    """Start the process that executes the run of a folder.
 
     Args:
-        folder: Of the run.
-        working_directory: Where it starts, if that is still there: then it finds what it opens there.
+        folder: The run folder.
+        working_directory: Initial working directory, if it still exists.
 
     Returns:
-        The process; write end of its commands, read end of its events, both without blocking; and its lifeline, at
+        The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
         whose end it dies.
     """
     command_read, command_fd = os.pipe()
@@ -76,22 +76,22 @@ def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[
 
 
 def mark(pid: int) -> int:
-    """Mark a child, and with it whatever it will start: no new session, program or environment takes the mark off.
+    """Mark a child and all its future descendants; no new session, program or environment removes the mark.
 
     Returns:
-        The mark, 0 where there is no such thing.
+        The mark; 0 if that is not supported.
     """
     wanted = 1 << 62 | secrets.randbits(56)
     try:
         resource.prlimit(pid, FILE_LOCKS, (wanted, wanted))
-    # Not Linux, gone already, or a limit is set.
+    # Not Linux, exited already, or a limit is set.
     except (AttributeError, OSError, ValueError):
         return 0
     return wanted
 
 
 def end_group(pid: int) -> None:
-    """End a child and what it has started, except what has gone into a session of its own."""
+    """Kill a child and its process group."""
     try:
         os.killpg(pid, signal.SIGKILL)
     except (ProcessLookupError, PermissionError):
@@ -99,11 +99,11 @@ def end_group(pid: int) -> None:
 
 
 def end_left_over(pid: int, marked: int) -> None:
-    """End whatever a child that is gone has started and left.
+    """Kill all processes that an exited child has left behind.
 
     Args:
-        pid: Of the child.
-        marked: Its mark; without one, what it has put into sessions of their own stays.
+        pid: Process id of the child.
+        marked: Its mark; without one, processes in sessions of their own survive.
     """
     ended = {pid}
     try:
@@ -113,17 +113,17 @@ def end_left_over(pid: int, marked: int) -> None:
                 with suppress(ProcessLookupError, PermissionError):
                     os.kill(one, signal.SIGKILL)
     except OSError:
-        # No such file system, or no file to read it by.
+        # No such file system, or no permission to read it.
         marked = 0
     if not marked:
         end_group(pid)
 
 
 def _younger_than(pid: int) -> set[int]:
-    """Return the processes that may have been started since one was."""
+    """Return the processes that may have been started after a process."""
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
     there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
-    # Numbers rise, and begin anew when they are used up.
+    # Process ids increase, and wrap around when they are used up.
     return {one for one in there if one > pid} if last >= pid else there
 
 
@@ -135,13 +135,13 @@ def _has_mark(pid: int, marked: int) -> bool:
 
 
 def _environment() -> dict[str, str]:
-    """The child's environment: no surprises from the user's, the same hashes every time."""
+    """Return the child's environment: isolated from the user's, with reproducible hashes."""
     kept = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR") if name in os.environ}
     return {
         **kept,
         "PYTHONHASHSEED": "0",
         "PYTHONUTF8": "1",
-        # One thread runs at a time: a further heap would only take address space.
+        # One thread runs at a time: a further heap would only use address space.
         "MALLOC_ARENA_MAX": "1",
         "OPENBLAS_NUM_THREADS": "1",
         "OMP_NUM_THREADS": "1",
@@ -151,7 +151,7 @@ def _environment() -> dict[str, str]:
 
 
 def write_command(fd: int, data: bytes) -> bool:
-    """Write a command, which may be larger than the pipe; return whether all of it could be written."""
+    """Write a command, which may exceed the pipe's capacity; return whether it was written completely."""
     while data:
         try:
             data = data[os.write(fd, data) :]
@@ -164,7 +164,7 @@ def write_command(fd: int, data: bytes) -> bool:
 
 
 def await_stack(folder: Path) -> None:
-    """Wait until a stuck child has written its stack; not long, for one that is beyond that never will."""
+    """Block for a short time until a stuck child has written its stack."""
     give_up, size, path = time.monotonic() + STACK_WRITTEN_WITHIN_S, 0, folder / "stack.txt"
     while time.monotonic() < give_up:
         time.sleep(LOOK_AGAIN_S)
@@ -174,12 +174,12 @@ def await_stack(folder: Path) -> None:
 
 
 def stuck_line(folder: Path, program_file: str) -> int:
-    """Return the line of the program in the stack that a stuck child wrote, 0 if it wrote none."""
+    """Return the program's line in the stack that a stuck child wrote; 0 if there is none."""
     try:
         stack = (folder / "stack.txt").read_text("utf-8", "replace")
     except OSError:
         return 0
-    # As it is written there: in ASCII, and not more than so much of it.
+    # In the format of that file: ASCII, truncated.
     shown = program_file.encode("ascii", "backslashreplace").decode()
     for line in source_lines(stack):
         if f'"{shown}"' in line or (len(program_file) > MOST_SHOWN and f'"{shown[:MOST_SHOWN]}' in line):
@@ -188,7 +188,7 @@ def stuck_line(folder: Path, program_file: str) -> int:
 
 
 def what_ended(exit_status: int, folder: Path, line: int) -> str:
-    """Return what ended a child that went without a word: a signal and in which line, or exit status and complaint."""
+    """Return the reason why a child ended without an event: a signal and a line, or exit status and error text."""
     if exit_status < 0:
         where = f" in line {line}" if line else ""
         return f"the program's process was ended by {signal.Signals(-exit_status).name}{where}"

@@ -1,4 +1,4 @@
-"""A run that can be shown: running, ended or stored. One interface for all of them, and its output by tick."""
+"""A run to display: running, finished or stored, with one interface for all, and its output by tick."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ if TYPE_CHECKING:
     from tuisim.runs.views import OutputView, TelemetryView, TickRecord
 
 STALL_S = 0.1
-"""A running motor that has not turned for longer is stalled (EV3 motor driver)."""
+"""A running motor that has not turned for longer than this is stalled (EV3 motor driver)."""
 _STILL_DEG = 0.05
-"""Less in that time is no turning, but pushing."""
+"""Less rotation than this in that time counts as none."""
 
 
 class Recording:
-    """What a run has written so far.
+    """Everything a run has written up to now.
 
     Args:
-        source: The run at work, or one from the store.
-        answers: What a run at work was given to answer `input()` with; one from the store knows it.
+        source: A running run, or a stored one.
+        answers: Scripted answers of a running run; for a stored run they are read from its options.
     """
 
     def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = ()) -> None:
         self.run_id: str
         self.number: int = source.number
-        """Number in the catalogue, 0 if it is in none."""
+        """Number in the catalogue; 0 if it is not listed."""
         self.spec: RunSpec = source.spec
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
@@ -63,22 +63,22 @@ class Recording:
 
     @property
     def name(self) -> str:
-        """What the run is called: its number, or its id if it has none."""
+        """Display name: the number, or the id if it has none."""
         return f"run {self.number}" if self.number else self.run_id
 
     @property
     def newest(self) -> int:
-        """Tick of the newest record, -1 before the first."""
+        """Tick of the newest record; -1 before the first."""
         return self.telemetry.count - 1
 
     def actions(self) -> tuple[UserAction, ...]:
-        """Return the user's actions so far.
+        """Return the user's actions.
 
         Raises:
             LogError: their file is damaged.
         """
         last = self.telemetry.last()
-        # The record counts the actions modulo 65536, and may be a little ahead of their file.
+        # The record counts the actions modulo 65536, and may be slightly ahead of their file.
         if last is not None and 0 < (last.actions - len(self._actions)) & 0xFFFF < 0x8000:
             self._actions = read_actions(self.folder)[0]
         return self._actions
@@ -88,14 +88,14 @@ class Recording:
         return noise_at(self.spec, self.actions(), record)
 
     def pressed_at(self, tick: int) -> frozenset[str]:
-        """Return the brick's buttons that were held down when a tick was done."""
+        """Return the brick's buttons that were pressed when a tick was complete."""
         for action in reversed(self.actions()):
             if action.kind == "set_buttons" and action.tick < tick:
                 return frozenset(action.fields["pressed"])
         return frozenset()
 
     def field_at(self, tick: int, mat: Field) -> Field:
-        """Return the mat as the sensors saw it at a tick: with what the pen had drawn, if they see that."""
+        """Return the mat as the sensors saw it at a tick: with pen marks if they are visible to sensors."""
         if not self.spec.world.pen_marks:
             return mat
         if self._marks is None:
@@ -103,7 +103,7 @@ class Recording:
         return self._marks.at(tick)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
-        """Return whether the left and the right motor were told to run but did not turn."""
+        """Return whether the left and the right motor were running but did not turn."""
         ticks = int(STALL_S * self.spec.profile.tick_hz) + 1
         if record.tick < ticks:
             return False, False
@@ -120,15 +120,15 @@ class Recording:
 
 
 class _TimedMarks:
-    """The marks of the pen at any tick: they only grow, and are kept in the order in which they were drawn."""
+    """The pen's marks at any tick: they only grow, and are stored in drawing order."""
 
     def __init__(self, mat: Field, run: Recording) -> None:
         self._run = run
         self._drawn = PenMarks(mat, run.spec)
         self._counts = array("Q")
-        """How many marks there were after each record."""
+        """Number of marks after each record."""
         self._cut: tuple[int, MarkedField] | None = None
-        """The last field that was asked for, with its number of marks."""
+        """The last requested field, with its number of marks."""
 
     def at(self, tick: int) -> Field:
         marks = self._drawn.field.marks
@@ -145,24 +145,24 @@ class _TimedMarks:
 
 
 SAMPLE, ERROR = "sample", "error"
-"""What is marked of the output: a sample that reached another level, an error text."""
+"""Kinds of marks for output: a sample that has reached another level, an error text."""
 
 _FACE_STREAMS = (LED, DISPLAY, CONSOLE, MOTORS, SPEECH)
 _LEVEL_SHARE = 0.15
-"""A sample that has gone so much of its variable's range is on another level."""
+"""A change by this fraction of its variable's range puts a sample on another level."""
 
 _FINEST = 500
-"""Changes closer than this share of the time so far are one mark, so that marks stay few."""
+"""Changes closer than the elapsed time divided by this are one mark, so that marks stay few."""
 
 
 class _Level:
-    """The level of one variable, to tell when it reaches another."""
+    """Tracks the level of one variable."""
 
     def __init__(self, value: float) -> None:
         self._low = self._high = self._level = value
 
     def changes(self, value: float) -> bool:
-        """Take in a value; whether it is on another level than the last one that was."""
+        """Process a value; return whether it has reached another level."""
         self._low, self._high = min(self._low, value), max(self._high, value)
         if abs(value - self._level) <= _LEVEL_SHARE * (self._high - self._low):
             return False
@@ -171,10 +171,10 @@ class _Level:
 
 
 class RowIndex:
-    """Tick and place of each row that has been read.
+    """Tick and position of each row that has been read.
 
     Args:
-        output: Where the rows are; it may still grow.
+        output: The rows; it may still grow.
     """
 
     def __init__(self, output: OutputView) -> None:
@@ -182,7 +182,7 @@ class RowIndex:
         self._end = 0
         self._ticks, self._lines, self._starts = array("I"), array("I"), array("Q")
         self._texts: array[int] = array("I")
-        """Numbers of the rows that are lines for people."""
+        """Indices of the readable rows."""
         self._faces: dict[int, array[int]] = {stream: array("I") for stream in _FACE_STREAMS}
         self._levels: dict[str, _Level] = {}
         self._last_change = -1
@@ -194,7 +194,7 @@ class RowIndex:
         return len(self._ticks)
 
     def take(self, limit: int) -> list[OutputRow]:
-        """Read on, at most `limit` rows, and return them.
+        """Read and return at most `limit` further rows.
 
         Raises:
             LogError: the recording is damaged.
@@ -227,26 +227,26 @@ class RowIndex:
                 self.marks.append((row.tick, SAMPLE))
 
     def until(self, tick: int) -> int:
-        """Return how many rows there were when a tick was done."""
+        """Return the number of rows when a tick was complete."""
         return bisect_right(self._ticks, tick)
 
     def texts_until(self, tick: int, most: int) -> tuple[list[OutputRow], int]:
-        """Return the last lines for people that there were when a tick was done, and how many there were before."""
+        """Return the last readable rows at the end of a tick, and the number of readable rows before them."""
         end = bisect_right(self._texts, self.until(tick) - 1)
         first = max(0, end - most)
         return [self.row(number) for number in self._texts[first:end]], first
 
     def face_numbers(self, tick: int) -> list[int]:
-        """Return the numbers of the rows that say all of what the brick showed when a tick was done, in order."""
+        """Return the indices of the rows that define the brick's state at the end of a tick, in order."""
         count = self.until(tick)
         return sorted(numbers[at - 1] for numbers in self._faces.values() if (at := bisect_right(numbers, count - 1)))
 
     def row(self, number: int) -> OutputRow:
-        """Return one row by its number, from 0."""
+        """Return one row by its index, from 0."""
         return next(self._output.rows_from(self._starts[number]))[0]
 
     def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
-        """Yield the rows from a number on, or those up to it, backwards, with a step of -1."""
+        """Yield the rows from an index on; with a step of -1 backwards."""
         if step < 0:
             yield from (self.row(number) for number in range(first, -1, -1))
         elif first < len(self):

@@ -1,10 +1,10 @@
 """The two binary files of a run folder, and their writers. Pure Python: the child imports it.
 
 Both files are shared memory maps that begin with a 64-byte header and grow while the
-run goes on. A writer stores a record first and then publishes the new length in the
-header, so that a reader, also after a `kill -9`, never sees half a record.
+program runs. A writer stores a record first and then publishes the new length in the
+header, so that a reader, even after a `kill -9`, never sees half a record.
 
-`telemetry.bin`: one 64-byte record a tick (`TICK_RECORD`); length = number of records.
+`telemetry.bin`: one 64-byte record per tick (`TICK_RECORD`); length = number of records.
 `output.bin`: rows of any size (`OUTPUT_ROW` and the text in UTF-8); length = bytes.
 """
 
@@ -23,10 +23,10 @@ from tuisim.core.state import TICK_RECORD
 from tuisim.errors import LogError
 
 ACTIONS_FILE = "actions.jsonl"
-"""What the user did during the run, a JSON object a line."""
+"""The user's actions, one JSON object per line."""
 
 STOP_FILE = "stop.json"
-"""Right before which tick the user's stop reached the program; missing if it came elsewhere."""
+"""The tick before which the user's stop reached the program; missing if it was stopped elsewhere."""
 
 HEADER_BYTES = 64
 _HEADER = Struct("<8sIIQ")
@@ -54,29 +54,29 @@ TICK_FIELDS = (
 """Name and numpy type of each field of `core.state.TICK_RECORD`."""
 
 OUTPUT_ROW = Struct("<IIqIB3x")
-"""Bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
+"""Number of bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
 
 STDOUT, STDERR, SPEECH, INPUT = 1, 2, 3, 4
 """Streams of an output row: printed, error text, spoken, the echo of an answer to input()."""
 
 TEXT_STREAMS = (STDOUT, STDERR, SPEECH, INPUT)
-"""Streams whose rows are lines for people."""
+"""Streams with readable text."""
 
 LED, DISPLAY, CONSOLE = 5, 6, 7
-"""Streams of what the brick shows besides: its lights, its picture, its text screen."""
+"""Streams for the state of the brick: its LEDs, its display, its text screen."""
 
 MOTORS = 8
-"""Stream of how motors turn that do not drive the robot."""
+"""Stream for the rotation of motors that do not drive a wheel."""
 
 TELEMETRY_FILE = "telemetry.bin"
 OUTPUT_FILE = "output.bin"
 TELEMETRY_CHUNK = 64 * 16384
 OUTPUT_CHUNK = 1 << 16
-"""Bytes after the header that a recording has at least while it is written; then it is cut to its true size."""
+"""Initial size of an output file after the header; it is truncated to its true size at the end."""
 
 _ZEROS = 1 << 16
 _LEAST_STEP = 4096
-"""A file asks for at least so many bytes less where it did not get what it asked for."""
+"""If the disk lacks space, a file requests less in steps of at least this size."""
 
 MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
@@ -88,12 +88,12 @@ def header(magic: bytes, record_bytes: int, length: int) -> bytes:
 
 
 def is_full(error: OSError) -> bool:
-    """Return whether an error says that no more can be written: a full disk, a quota, a limit of file sizes."""
+    """Return whether an error means that nothing can be written: full disk, quota, or limit of file sizes."""
     return error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def _reserve(fd: int, start: int, size: int) -> None:
-    """Let a file have room on its disk: a map of what has none ends its process when the disk is full."""
+    """Allocate disk space for a file: writing to a map without space would kill the process."""
     try:
         os.posix_fallocate(fd, start, size)
     # macOS has no such call, and some file systems refuse it.
@@ -106,10 +106,10 @@ def _reserve(fd: int, start: int, size: int) -> None:
 
 
 class _GrowingMap:
-    """A file mapped into memory that grows in ever larger steps, as far as the disk has room.
+    """A memory-mapped file that grows in ever larger steps while the disk has space.
 
     Raises:
-        OSError: by the constructor and `grow`: it has none; what has been written stays.
+        OSError: by the constructor and `grow`, without space; data written before is kept.
     """
 
     def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
@@ -128,7 +128,7 @@ class _GrowingMap:
                 _reserve(self._fd, self.capacity, wanted - self.capacity)
                 break
             except OSError as error:
-                # Some file systems keep the part that they had room for.
+                # Some file systems keep the part for which there was space.
                 os.ftruncate(self._fd, self.capacity)
                 if not is_full(error) or wanted == need:
                     raise
@@ -139,7 +139,7 @@ class _GrowingMap:
 
     def _map_file(self) -> None:
         self.map = mmap.mmap(self._fd, self.capacity)
-        # Set in one aligned store, which no reader can see half done: pack_into would clear the bytes first.
+        # Set in one aligned store, which readers see atomically: pack_into would clear the bytes first.
         self.length = memoryview(self.map)[_LENGTH_AT : _LENGTH_AT + 8].cast("Q")
 
     def _unmap(self) -> None:
@@ -160,17 +160,17 @@ def _raised(error: OSError) -> BaseException:
 
 
 class TelemetryWriter:
-    """Appends tick records. The hot loop packs into `map` itself, then calls `publish`."""
+    """Appends tick records. The hot loop packs into `map` directly, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
         self.full: Callable[[OSError], BaseException] = _raised
-        """Says what to raise where the disk has no more room."""
+        """Returns the exception to raise when the disk is full."""
         self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
         self._length = self._file.length
         self.count = 0
 
     def room(self, records: int) -> mmap.mmap:
-        """Return the map, with room for `records` more records after `count`."""
+        """Return the map, with space for `records` more records after `count`."""
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
         if need > self._file.capacity:
             try:
@@ -183,20 +183,20 @@ class TelemetryWriter:
     def publish(self, count: int) -> None:
         """Make the first `count` records visible to readers."""
         self.count = count
-        # As `_GrowingMap.publish` does it, without another call: this happens every tick.
+        # Inlined `_GrowingMap.publish`: this happens every tick.
         self._length[0] = count
 
     def close(self) -> None:
-        """Cut the file to its true size."""
+        """Truncate the file to its true size."""
         self._file.close(HEADER_BYTES + self.count * TICK_RECORD.size)
 
 
 class OutputWriter:
-    """Appends printed lines, each published at once."""
+    """Appends printed lines and publishes each at once."""
 
     def __init__(self, folder: Path) -> None:
         self.full: Callable[[OSError], BaseException] = _raised
-        """Says what to raise where the disk has no more room: once, what is printed after that is lost."""
+        """Returns the exception to raise when the disk is full; it is raised once, later output is lost."""
         self._is_full = False
         self._file = _GrowingMap(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
         self.length = 0
@@ -206,10 +206,10 @@ class OutputWriter:
 
         Args:
             text: The line without its newline, UTF-8.
-            tick: Ticks done.
+            tick: Number of completed ticks.
             time_ns: Simulated time.
-            line: Source line that printed it, 0 for none.
-            stream: One of the streams above.
+            line: Source line that printed it; 0 for none.
+            stream: One of the stream constants.
 
         Raises:
             LogError: the output has reached MAX_OUTPUT_BYTES.
@@ -231,13 +231,13 @@ class OutputWriter:
         self._file.publish(self.length)
 
     def close(self) -> None:
-        """Cut the file to its true size."""
+        """Truncate the file to its true size."""
         self._file.close(HEADER_BYTES + self.length)
 
 
 @dataclass(frozen=True, slots=True)
 class OutputRow:
-    """One line that the program printed, spoke or was answered."""
+    """One line of output: printed, spoken, or an answer to input()."""
 
     text: str
     tick: int
@@ -247,18 +247,18 @@ class OutputRow:
 
 
 def line_of(row: OutputRow) -> str:
-    """Return a row of text as a line for people, with what tells speech and answers from prints."""
+    """Return the display text of a row; speech and answers are marked."""
     if row.stream == SPEECH and not row.text.startswith("["):
-        # What is played stands in brackets already.
+        # Sounds are in brackets already.
         return f"says: {row.text}"
     return f"> {row.text}" if row.stream == INPUT else row.text
 
 
 def published_length(data: bytes, magic: bytes, file: str) -> int:
-    """Return the length in a header: records of a telemetry file, bytes of an output file.
+    """Return the length in a header: number of telemetry records, or bytes of output.
 
     Raises:
-        LogError: this is not such a file, or of another version.
+        LogError: the file is not such a recording, or of another version.
     """
     if len(data) < HEADER_BYTES:
         raise LogError("too short to be a recording", file=file)
@@ -271,7 +271,7 @@ def published_length(data: bytes, magic: bytes, file: str) -> int:
 
 
 def raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
-    """Yield stream and text of each whole row, as `output_rows` does for all that a row holds."""
+    """Yield stream and text of each complete row, a cheaper variant of `output_rows`."""
     start, head, after_head = HEADER_BYTES, OUTPUT_ROW.unpack_from, OUTPUT_ROW.size
     end += HEADER_BYTES
     while start + after_head <= end:
@@ -283,11 +283,11 @@ def raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
 
 
 def output_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tuple[OutputRow, int]]:
-    """Yield each whole row between two byte positions, with the position after it.
+    """Yield each complete row between two byte positions, with the position after it.
 
     Args:
-        data: A whole output file.
-        start: Byte position after the header, 0 or one that was yielded before.
+        data: The contents of an output file.
+        start: Byte position after the header: 0, or one that was yielded before.
         end: Published length in bytes.
     """
     while start + OUTPUT_ROW.size <= end:

@@ -1,4 +1,4 @@
-"""Former instants with their variables: a re-run of the recording that is held there, in a process of its own."""
+"""Variables at past instants: a re-run of the recording is paused there, in a process of its own."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ if TYPE_CHECKING:
     from tuisim.runs.store import RunStore
 
 FIRST_WINDOW_TICKS = 200
-"""The lines before an instant are looked for in so many ticks before it, then in ever more."""
+"""Number of ticks before an instant in which previous lines are searched first; the search window grows."""
 
 HISTORY = 400
-"""Lines that are asked for."""
+"""Number of lines to request."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Position:
-    """An instant of a run, to the line."""
+    """An instant of a run, with the position among the lines of its tick."""
 
     tick: int
     ordinal: int = BEFORE_NEXT_TICK
     """As in `protocol.Paused`."""
 
     @property
-    def _place(self) -> tuple[int, float]:
-        """Comparable: before the next tick is after every line of this one."""
+    def _sort_key(self) -> tuple[int, float]:
+        """Sort key: before the next tick comes after every line of this one."""
         return self.tick, float("inf") if self.ordinal == BEFORE_NEXT_TICK else self.ordinal
 
     def is_before(self, other: Position) -> bool:
-        """Whether this instant comes before another one."""
-        return self._place < other._place
+        """Return whether this instant comes before another one."""
+        return self._sort_key < other._sort_key
 
 
 Arrived = Callable[[Paused, Inspected], None]
@@ -49,12 +49,12 @@ Passed = Callable[[], None]
 
 
 class ReplayDebugger:
-    """A re-run that stands where somebody looks; it goes forward by itself, and is started anew to go back.
+    """A re-run that is paused at the requested instant; it can step forward, and is restarted to go back.
 
     Args:
-        arrived: Told where it stands and what the program looks like there.
-        failed: Told why it cannot stand there.
-        passed: Told that it went on and met the end of the program.
+        arrived: Called with the position and the program's state there.
+        failed: Called with the reason why it cannot pause there.
+        passed: Called when it was resumed and reached the end of the program.
     """
 
     def __init__(self, arrived: Arrived, failed: Failed, passed: Passed) -> None:
@@ -63,50 +63,50 @@ class ReplayDebugger:
         self._folder: Path | None = None
         self._of: Recording | None = None
         self._actions = 0
-        """How many user actions the re-run knows."""
+        """Number of user actions that the re-run includes."""
         self._traced_from = -1
         self._paused: Paused | None = None
-        self._look = protocol.Inspect()
+        self._request = protocol.Inspect()
         self._back = 0
-        """So many lines back from where it stands is where somebody wants to look."""
-        self._then: protocol.Message | None = None
-        """How to go on once it stands."""
+        """Number of lines before the paused position that is wanted."""
+        self._next_command: protocol.Message | None = None
+        """Command for resuming once it is paused."""
         self._aim: Position | None = None
-        self._goes_on = False
+        self._resumes = False
         self.busy = False
-        """Whether an answer is still to come."""
+        """Whether an answer is pending."""
 
-    # What is asked
+    # Requests
 
     def go(self, recording: Recording, at: Position, look: protocol.Inspect) -> None:
-        """Stand at an instant of a recording and look."""
-        self._look, self._back, self._then, self._goes_on = look, 0, None, False
+        """Pause at an instant of a recording and inspect."""
+        self._request, self._back, self._next_command, self._resumes = look, 0, None, False
         self._go(recording, at, -1)
 
     def look(self, look: protocol.Inspect) -> None:
-        """Look again, at something else."""
-        self._look = look
+        """Inspect again, with another request."""
+        self._request = look
         if self._run is not None and self._paused is not None:
             self.busy = True
             self._run.send(look)
 
     def go_on(self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect) -> None:
-        """Stand at an instant, go on from there as a command says, and look where that ends."""
-        self._look, self._back, self._goes_on = look, 0, True
+        """Pause at an instant, resume with a command, and inspect where that ends."""
+        self._request, self._back, self._resumes = look, 0, True
         stands = self._paused and Position(self._paused.tick, self._paused.ordinal)
         if self._run is not None and self._of is recording and stands == at:
             self.busy, self._paused = True, None
             self._run.send(command)
         else:
-            self._then = command
+            self._next_command = command
             self._go(recording, at, -1)
 
     def lines_back(self, recording: Recording, at: Position, count: int, look: protocol.Inspect) -> None:
-        """Stand so many lines before an instant."""
-        self._look, self._back, self._then, self._goes_on = look, count, None, False
+        """Pause `count` lines before an instant."""
+        self._request, self._back, self._next_command, self._resumes = look, count, None, False
         self._go(recording, at, max(0, at.tick - FIRST_WINDOW_TICKS))
 
-    # How it gets there
+    # Replay
 
     def _go(self, recording: Recording, at: Position, traced_from: int) -> None:
         from tuisim.runs.handle import RunOptions, start_run
@@ -137,14 +137,14 @@ class ReplayDebugger:
             self._failed(str(error))
 
     def beat(self) -> None:
-        """Take what has come; never waits."""
+        """Process events; never blocks."""
         run = self._run
         if run is None:
             return
         for event in run.pump():
             match event:
                 case Paused():
-                    self._stands(event)
+                    self._on_paused(event)
                 case LineHistory():
                     self._choose_line(event)
                 case Inspected() if self._paused is not None:
@@ -152,23 +152,23 @@ class ReplayDebugger:
                     self._arrived(self._paused, event)
                 case Ended():
                     self.close()
-                    if self._goes_on:
+                    if self._resumes:
                         self._passed()
                     else:
                         self._failed("The program has ended before that")
                     return
 
-    def _stands(self, paused: Paused) -> None:
+    def _on_paused(self, paused: Paused) -> None:
         assert self._run is not None
-        if self._then is not None:
-            command, self._then = self._then, None
+        if self._next_command is not None:
+            command, self._next_command = self._next_command, None
             self._run.send(command)
             return
         self._paused = paused
-        self._run.send(protocol.RequestHistory(HISTORY) if self._back else self._look)
+        self._run.send(protocol.RequestHistory(HISTORY) if self._back else self._request)
 
     def _choose_line(self, history: LineHistory) -> None:
-        """Of the lines before, the one that is wanted is where to stand; if it is farther back, look farther."""
+        """Go to the wanted line of the history; if it is farther back, search a larger window."""
         assert self._of is not None and self._aim is not None
         aim = self._aim
         lines = [Position(met.tick, met.ordinal) for met in history.lines]
@@ -184,14 +184,14 @@ class ReplayDebugger:
         else:
             self._back = 0
             assert self._run is not None
-            self._run.send(self._look)
+            self._run.send(self._request)
             return
         self._back = 0
-        # Traced from the same tick on, the same lines have the same numbers.
+        # Traced from the same tick on, the same lines have the same ordinals.
         self._go(self._of, found, found.tick)
 
     def close(self) -> None:
-        """Let go of the process and of what it has written."""
+        """Close the process and delete its files."""
         if self._run is not None:
             self._run.kill()
             self._run.close()

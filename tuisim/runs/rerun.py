@@ -1,7 +1,7 @@
-"""A stored run once more: the same program, world, seed and user actions, headless, with the same bits.
+"""Repeats a stored run: same program, world, seed and user actions, headless, bit by bit.
 
-What a run folder does not hold is taken from where it was: the image of the mat, files that the program opens, and
-modules that are installed or compiled.
+What a run folder does not hold is read from its original place: the image of the mat, files that the program opens,
+and modules that are installed or compiled.
 """
 
 from __future__ import annotations
@@ -21,41 +21,41 @@ if TYPE_CHECKING:
     from tuisim.runs.store import RunStore
 
 CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled", "disk_full"})
-"""Ends that did not come out of the program and its limits: such a run is a piece of the one that is run again."""
+"""Ends that do not result from the program and its limits: such a run is a prefix of its re-run."""
 
 
 def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
-    """Start a stored run again, as fast as possible.
+    """Start a stored run again, at full speed.
 
     Args:
         run: The run.
-        store: Where the new run is kept; not the user's own, who did not ask for another run.
-        options: Fields of `RunOptions` that are to be otherwise, such as where to hold.
+        store: Where the new run is stored; not the user's store, who did not request another run.
+        options: Fields of `RunOptions` to change, such as `hold_at`.
 
     Raises:
-        BackgroundError: the mat is no longer there.
-        LogError: the run has no recording, or options that cannot be read.
+        BackgroundError: the mat no longer exists.
+        LogError: the run has no recording, or its options are invalid.
     """
     return start_run(program_again(run), run.spec, replace(_options(run), **options), store)
 
 
 def same(run: StoredRun, again: StoredRun) -> RunDiff:
-    """Compare a run with its re-run; `same` of the result tells whether all bits are equal.
+    """Compare a run with its re-run; `same` of the result is true if all bits are equal.
 
     Args:
-        run: The run; one that was cut off is compared up to its last record, unless it is known where.
+        run: The run; one that was cut off is compared up to its last record, unless the position of its stop is known.
         again: Its re-run.
     """
     if not _stopped_by_itself(run):
         return diff_runs(run, again, prefix=run.state in CUT_OFF)
     whole = diff_runs(run, again)
-    # How far threads get in the time that they have for cleaning up is a matter of the real clock.
+    # How far threads get during cleanup depends on the real clock.
     return whole if whole.same else diff_runs(run, again, prefix=True, until=_stop_tick(run))
 
 
 def _stopped_by_itself(run: StoredRun) -> bool:
-    """Whether the program followed a stop that can be given again at the same place."""
-    # One that had to be killed says more than that.
+    """Return whether the program obeyed a stop that can be repeated at the same position."""
+    # The summary of a run that had to be killed says more than that.
     return run.end is not None and run.end.summary == "stopped" and _stop_tick(run) is not None
 
 

@@ -1,4 +1,4 @@
-"""A run folder as data: what `run.json` and `actions.jsonl` say, and the run that they describe."""
+"""A run folder as data: contents of `run.json` and `actions.jsonl`, and the run that they describe."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ RUN_FORMAT = 1
 _SET_NOISE = "set_noise"
 
 RUNNING, INTERRUPTED = "running", "interrupted"
-"""States of a run without an end: its process lives, or is gone without a word."""
+"""States of a run without an end: its process lives, or has disappeared."""
 
 _START_GRACE_S = 10.0
-"""How long after its folder was made a run may be without a process."""
+"""Time after the creation of its folder during which a run may have no process."""
 
 _ACTION_COUNTS = 1 << 16
 """The telemetry counts user actions in 16 bits."""
@@ -39,7 +39,7 @@ _Kind = TypeVar("_Kind")
 
 
 class ProgramLike(Protocol):
-    """A program as `RunStore.new_run` takes it."""
+    """A program for `RunStore.new_run`."""
 
     @property
     def name(self) -> str: ...
@@ -60,7 +60,7 @@ class ProgramLike(Protocol):
 
 
 class EndLike(Protocol):
-    """How a run ended, as `RunStore.finish` takes it."""
+    """The end of a run for `RunStore.finish`."""
 
     @property
     def end(self) -> str: ...
@@ -86,17 +86,17 @@ class StoredProgram:
 
     name: str
     path: str
-    """Where it came from, empty if from nowhere."""
+    """Path of its file; empty if it has none."""
     text: str
     prelude: str
     arguments: tuple[str, ...] = ()
-    """What it was given in `sys.argv`, after its path."""
+    """Contents of `sys.argv` after the path."""
     python_path: tuple[str, ...] = ()
-    """Folders besides its own in which it found modules: the user's PYTHONPATH."""
+    """Folders besides its own in which it searched modules: the user's PYTHONPATH."""
     working_directory: str = ""
-    """Where the user was; empty if that is not known."""
+    """The user's working directory; empty if unknown."""
     module_folder: str = ""
-    """Folder of the notebook that it is a cell of, in which its modules are; empty for a program of its own."""
+    """Folder of the notebook whose cell it is, for its modules; empty for a program with a file."""
 
     @property
     def sha256(self) -> str:
@@ -114,9 +114,9 @@ class RunEnd:
     time_ns: int
     exit_code: int = 0
     summary: str = ""
-    """The one line that says what happened."""
+    """Description of what happened, one line."""
     error: str = ""
-    """The program's own traceback."""
+    """The program's traceback."""
     error_line: int = 0
     deterministic: bool = True
 
@@ -126,23 +126,23 @@ _ANY_END = RunEnd("", 0, 0)
 
 @dataclass(frozen=True, slots=True)
 class UserAction:
-    """Something the user did during a run."""
+    """An action of the user during a run."""
 
     tick: int
     """It was applied before this tick."""
     kind: str
-    """As the command is called in the protocol, such as `set_noise`."""
+    """Name of its command in the protocol, such as `set_noise`."""
     fields: Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run as it is in the store; the views also follow a run that is still going on."""
+    """A run in the store; its views also follow a run that is still running."""
 
     folder: Path
     id: str
     number: int
-    """Number in the catalogue, 0 if the run was read from a folder that is in none."""
+    """Number in the catalogue; 0 if the folder is not listed."""
     created: str
     """ISO 8601, UTC."""
     live: bool
@@ -156,20 +156,20 @@ class StoredRun:
     """None while it runs, and if it was interrupted."""
     actions: tuple[UserAction, ...]
     notes: tuple[str, ...]
-    """What was found torn and dropped, one sentence each."""
+    """Incomplete parts that were ignored, one sentence each."""
     telemetry: TelemetryView
     output: OutputView
 
     @property
     def state(self) -> str:
-        """How it ended, or `running`, or `interrupted`."""
+        """How it ended, or `running` or `interrupted`."""
         if self.end is not None:
             return self.end.end
         return state_without_end(self.folder)
 
     @property
     def time_s(self) -> float:
-        """Simulated seconds: to its end, or while there is none to the newest tick."""
+        """Simulated seconds: up to its end or, without an end, its newest tick."""
         if self.end is not None:
             return self.end.time_ns / NS_PER_S
         last = self.telemetry.last()
@@ -181,26 +181,26 @@ class StoredRun:
 
 
 def state_without_end(folder: Path) -> str:
-    """Return RUNNING or INTERRUPTED for the folder of a run that has no end on record."""
-    held = is_held(folder)
-    if held is None:
-        # Nobody has taken the lock: the process is just starting, or never came that far.
+    """Return RUNNING or INTERRUPTED for the folder of a run without a stored end."""
+    alive = is_held(folder)
+    if alive is None:
+        # The lock was never acquired: the process is starting, or never got that far.
         try:
-            held = time.time() - folder.stat().st_mtime < _START_GRACE_S
+            alive = time.time() - folder.stat().st_mtime < _START_GRACE_S
         except FileNotFoundError:
-            held = False
-    return RUNNING if held else INTERRUPTED
+            alive = False
+    return RUNNING if alive else INTERRUPTED
 
 
 def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
-    """Return the noise at a tick: that of the spec, changed by the user's actions until then.
+    """Return the noise at a tick: that of the spec, changed by the user's actions.
 
     Args:
-        spec: What the run was made of.
+        spec: The specification of the run.
         actions: The user's actions, in order.
         record: The telemetry record of the tick.
     """
-    # The record counts the actions modulo 65536; their ticks tell how often that went round.
+    # The record counts the actions modulo 65536; their ticks resolve the ambiguity.
     due = bisect_right(actions, record.tick, key=lambda action: action.tick)
     offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2
     for action in reversed(actions[: max(0, due + offset)]):
@@ -214,7 +214,7 @@ def _noise_of(action: UserAction) -> NoiseSpec:
 
 
 def run_document(data: Mapping[str, Any]) -> bytes:
-    """Return the bytes of a `run.json`."""
+    """Return the contents of a `run.json`."""
     return json.dumps(data, indent=1, ensure_ascii=True).encode() + b"\n"
 
 
@@ -232,10 +232,10 @@ def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
 
 
 def read_run_file(folder: Path) -> dict[str, Any]:
-    """Return the content of `run.json`.
+    """Return the contents of `run.json`.
 
     Raises:
-        LogError: there is none, or it is damaged or of another version.
+        LogError: it is missing, damaged or of another version.
     """
     path = folder / RUN_FILE
     try:
@@ -252,7 +252,7 @@ def read_run_file(folder: Path) -> dict[str, Any]:
 
 
 def end_document(end: EndLike) -> dict[str, Any]:
-    """Return an end as it stands in `run.json`."""
+    """Return an end in the format of `run.json`."""
     return asdict(
         RunEnd(
             end.end,
@@ -268,10 +268,10 @@ def end_document(end: EndLike) -> dict[str, Any]:
 
 
 def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
-    """Return the user's actions, and a note if the last one was torn, else an empty text.
+    """Return the user's actions, and a note if the last one is incomplete, otherwise an empty string.
 
     Raises:
-        LogError: a line that is not the last is no action.
+        LogError: a line other than the last is invalid.
     """
     path = folder / ACTIONS_FILE
     try:
@@ -309,17 +309,17 @@ def read_run(folder: Path) -> StoredRun:
     """Return the run in a folder.
 
     Raises:
-        LogError: the folder holds no run, or one that is damaged.
+        LogError: the folder holds no run, or a damaged one.
     """
     data = read_run_file(folder)
-    # What is left of a damaged run is readable: its program, its world, and the other recording.
+    # The intact parts of a damaged run are readable: its program, its world, and the other recording.
     telemetry, output = TelemetryView(folder, may_be_damaged=True), OutputView(folder, may_be_damaged=True)
     actions, torn = read_actions(folder)
     try:
         program: dict[str, Any] = {
             key: _typed(data["program"][key], str, key) for key in ("name", "path", "text", "prelude")
         }
-        # Runs that were stored before say nothing of these.
+        # Older runs do not have these keys.
         program |= {key: tuple(data["program"].get(key, ())) for key in ("arguments", "python_path")}
         program |= {key: data["program"].get(key, "") for key in ("working_directory", "module_folder")}
         spec = from_plain(data["spec"])
@@ -350,7 +350,7 @@ def read_run(folder: Path) -> StoredRun:
 
 
 def _model_note(profile: Mapping[str, Any]) -> str:
-    """What to know of a run whose motors moved otherwise than they do now; empty for any other."""
+    """Return a note for runs recorded with another motor model; empty for any other run."""
     if "motor_law" in profile or law_of_earlier(profile) != MotorLaw.NBEV3DEVSIM:
         return ""
     return (

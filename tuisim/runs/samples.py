@@ -1,7 +1,7 @@
 """Samples: printed lines of the form `NAME: number [time]`. Pure Python, no numpy.
 
-NAME is any identifier. A time in seconds may follow the number, and `^log ` may stand in
-front. Any other line is text and no sample.
+NAME is any identifier. A time in seconds may follow the number, and `^log ` may precede
+the name. Any other line is text, not a sample.
 """
 
 from __future__ import annotations
@@ -20,33 +20,33 @@ if TYPE_CHECKING:
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({_NUMBER})(?:[ \t]+({_NUMBER}))?\s*")
 _PLAIN_SAMPLE = re.compile(rb"(?:\^log[ \t]+)?[A-Za-z_]\w*:[ \t]*[+-]?[0-9]{1,18}(?:\.[0-9]{0,18})?[ \t]*")
-"""Matches most samples as they stand in the recording; what it does not match may be one all the same."""
+"""Matches most samples in the bytes of the recording; a line that it does not match may still be a sample."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One logged value and where it came from."""
+    """One logged value and its origin."""
 
     name: str
     value: float
     time_s: float
-    """Simulated time of the print, or the time that the line carries."""
+    """Simulated time of the print, or the time in the line."""
     time_ns: int
     """Simulated time of the print."""
     tick: int
     line: int
-    """Source line that printed it, 0 for none."""
+    """Source line that printed it; 0 for none."""
 
 
 def parse_sample(text: str) -> tuple[str, float, float | None] | None:
-    """Return name, value and printed time (None if there is none) of a line, or None if it is no sample."""
+    """Return name, value and printed time (None without one) of a line; None if it is not a sample."""
     if ":" not in text:
         return None
     found = _SAMPLE.fullmatch(text)
     if found is None:
         return None
     name, value, time = found[1], float(found[2]), None if found[3] is None else float(found[3])
-    # Digits without end read as infinity, which no program prints as digits.
+    # Extremely long numbers are parsed as infinity; such lines are not samples.
     if not name.isidentifier() or not math.isfinite(value) or (time is not None and not math.isfinite(time)):
         return None
     return name, value, time
@@ -54,14 +54,14 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How much a program printed."""
+    """Counts of a program's output."""
 
     lines: int
     samples: int
 
 
 def counts_of(output: OutputView) -> Counts:
-    """Count printed lines and samples, without making rows of them: there may be a million."""
+    """Count printed lines and samples without creating row objects: there may be a million."""
     lines = samples = 0
     for stream, text in output.raw_rows():
         if stream == STDOUT:

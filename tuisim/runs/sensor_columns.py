@@ -1,7 +1,7 @@
-"""What every sensor would have shown at every tick, worked out again from the telemetry.
+"""Readings of every sensor at every tick, computed from the telemetry.
 
-The values are those of `core.sensors`, to the last bit: the colour sums are looked up for
-all ticks at once, everything else is measured tick by tick by the same functions.
+The values equal those of `core.sensors` bit by bit: the colour sums are looked up for
+all ticks at once, everything else is measured tick by tick with the same functions.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[UserAction],
 
     Args:
         records: Telemetry, structured as `records.TICK_FIELDS`, shape (n,).
-        spec: What the run was made of.
+        spec: The specification of the run.
         actions: The user's actions, which may have changed the noise.
         field: The mat.
 
     Returns:
-        By column name, float64 arrays of shape (n,).
+        Arrays of float64 with shape (n,), by column name.
     """
     noises = _noises(records, spec, actions)
     lit = any(noise.light for noise in noises)
@@ -62,13 +62,13 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -
     """
     import numpy as np
 
-    # The cosine of numpy may differ from that of the core in the last bit, and a pixel with it.
+    # The cosine of numpy may differ from that of `math` in the last bit, and thereby a pixel.
     turns = [math.radians(heading - 90.0) for heading in records["heading_deg"].tolist()]
     cos, sin = np.array([math.cos(turn) for turn in turns]), np.array([math.sin(turn) for turn in turns])
     diameter = sensor.diameter_mm
     x_mm = records["x_mm"] + cos * sensor.x_mm - sin * sensor.y_mm
     y_mm = records["y_mm"] + sin * sensor.x_mm + cos * sensor.y_mm
-    with np.errstate(invalid="ignore"):  # a place far beyond all integers is off the mat either way
+    with np.errstate(invalid="ignore"):  # a position beyond all integers is off the mat either way
         col = (x_mm - diameter / 2).astype(np.int64) + diameter
         row = (FIELD_HEIGHT_MM - y_mm - diameter / 2).astype(np.int64) + diameter
     height, width = field.height_px + diameter, field.width_px + diameter

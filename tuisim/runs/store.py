@@ -1,4 +1,4 @@
-"""The run store: one folder a run, and the catalogue that lists them."""
+"""The run store: one folder for each run, and the catalogue that lists them."""
 
 from __future__ import annotations
 
@@ -42,22 +42,22 @@ from tuisim.runs.views import OutputView, TelemetryView
 RUNS_FOLDER = "runs"
 LAST = "last"
 _COUNT_AT_ONCE_BYTES = 1 << 20
-"""Longer outputs are counted later, so that the end of a run is not held up."""
+"""Longer outputs are counted later, so that the end of a run is not delayed."""
 
 _COUNT_A_LISTING_BYTES = 8 << 20
-"""Samples are counted in so many bytes of output each time the runs are listed: the others can wait for the next."""
+"""Bytes of output in which samples are counted on each listing; the rest waits for the next listing."""
 
 DAMAGED = "damaged"
-"""Stands for the end of a run whose `run.json` cannot be read."""
+"""Pseudo end of a run whose `run.json` cannot be read."""
 
 COMPACT_TICKS = 6000
-"""A run of so many ticks or more is compacted as soon as it is over, by a process of its own; of shorter ones that
-gains little."""
+"""A run of at least this many ticks is packed in a separate process as soon as it is over; shorter runs gain
+little."""
 
 
 @dataclass(frozen=True, slots=True)
 class NewRun:
-    """A run that has been given its place."""
+    """A run whose folder has just been created."""
 
     id: str
     number: int
@@ -68,8 +68,8 @@ class RunStore:
     """All runs in one home folder; any number of processes may use it at once.
 
     Args:
-        home: The folder, by default `home_folder()`. It is made when the first run is.
-            Runs that are kept elsewhere are for a while only, and stay as they were written.
+        home: The folder, by default `home_folder()`. It is created with the first run.
+            Runs in another folder are temporary, and are not packed.
     """
 
     def __init__(self, home: Path | None = None) -> None:
@@ -92,14 +92,14 @@ class RunStore:
         options: Mapping[str, Any] | None = None,
         live: bool = False,
     ) -> NewRun:
-        """Make the folder of a run that is about to start, with its `run.json`, and list it.
+        """Create the folder of a run that is about to start, with its `run.json`, and list it.
 
         Args:
-            program: What is run.
-            spec: What the run is made of.
-            field: The files of the prepared mat as plain data, None if there are none.
-            options: How it is run, as plain data.
-            live: Whether it is paced against the wall clock.
+            program: The program.
+            spec: The specification of the run.
+            field: The files of the prepared mat as JSON data; None if there are none.
+            options: The run options as JSON data.
+            live: Whether it is paced by the wall clock.
 
         Raises:
             LogError: the home folder cannot be written.
@@ -155,12 +155,12 @@ class RunStore:
         """Record how a run ended.
 
         Raises:
-            LogError: there is no such run, or it cannot be written.
+            LogError: the run does not exist, or cannot be written.
         """
         self._edit(run_id, end=end_document(end))
         output = OutputView(self.folder(run_id))
         samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
-        # Where the list cannot be written now, it will notice by itself.
+        # If the catalogue cannot be written now, it will be updated later.
         with suppress(LogError):
             self._catalogue.update(
                 run_id,
@@ -174,7 +174,7 @@ class RunStore:
             pack_later(self.folder(run_id))
 
     def count_samples(self, run_id: str) -> None:
-        """Count the samples of a run that is over, and remember how many there are.
+        """Count the samples of a finished run and store their number.
 
         Raises:
             LogError: the run is damaged, or the catalogue cannot be written.
@@ -182,7 +182,7 @@ class RunStore:
         self._catalogue.update(run_id, samples=counts_of(OutputView(self.folder(run_id))).samples)
 
     def forget(self, run_id: str) -> None:
-        """Take back a run that could not be started."""
+        """Delete a run that could not be started."""
         shutil.rmtree(self.folder(run_id), ignore_errors=True)
         with suppress(LogError):
             self._catalogue.remove([run_id])
@@ -191,7 +191,7 @@ class RunStore:
         """Replace the tags of a run.
 
         Raises:
-            LogError: there is no such run, a tag is no single word, or the run cannot be written.
+            LogError: the run does not exist, a tag is not a single word, or the run cannot be written.
         """
         words = list(tags)
         for word in words:
@@ -201,10 +201,10 @@ class RunStore:
         self._catalogue.update(run_id, tags=" ".join(words))
 
     def remove(self, run_id: str) -> None:
-        """Delete a run with everything that it recorded.
+        """Delete a run with all its data.
 
         Raises:
-            LogError: there is no such run, it is still going on, or it cannot be deleted.
+            LogError: the run does not exist, is still running, or cannot be deleted.
         """
         folder = self.folder(run_id)
         if not folder.is_dir():
@@ -215,14 +215,14 @@ class RunStore:
             _delete(folder)
         except OSError as error:
             raise LogError(f"cannot be removed: {error.strerror or error}", file=str(folder)) from error
-        # The run is gone. Where the list cannot be written now, it will notice by itself.
+        # The run is gone. If the catalogue cannot be written now, it will be updated later.
         with suppress(LogError):
             self._catalogue.remove([run_id])
 
     # Reading
 
     def runs(self) -> list[RunInfo]:
-        """Return every run, the oldest first; `end` is never empty.
+        """Return all runs, oldest first; `end` is never empty.
 
         Raises:
             LogError: the home folder cannot be used.
@@ -236,13 +236,13 @@ class RunStore:
             if change:
                 changes.append((row.id, change))
         if changes:
-            # Where it cannot be remembered, it is looked at again the next time.
+            # If it cannot be stored, it is computed again the next time.
             with suppress(LogError):
                 self._catalogue.update_all(changes)
         return rows
 
     def _rows(self) -> list[RunInfo]:
-        """Return every run as far as the catalogue knows it."""
+        """Return all runs with the data in the catalogue."""
         try:
             there = {entry.name for entry in os.scandir(self._runs) if entry.is_dir()}
         except FileNotFoundError:
@@ -261,26 +261,26 @@ class RunStore:
                     self._catalogue.add(info)
                 rows = self._catalogue.rows()
             except LogError:
-                # Where nothing can be written, the folders are right all the same.
+                # If nothing can be written, the folders are right nevertheless.
                 rows = [row for row in rows if row.id not in gone] + found
         return rows
 
     def find(self, text: str) -> RunInfo:
-        """Return the run that a user means: by full id, number, the start of an id, or `last`.
+        """Return the run that matches a full id, a number, the start of an id, or `last`.
 
         Raises:
-            LogError: there is none, or more than one.
+            LogError: no run matches, or more than one.
         """
         rows = self._rows()
         if not rows:
             raise LogError(f"no run {text!r}: there are none yet", file=str(self.home))
-        return self._completed(_meant(text, rows), _COUNT_A_LISTING_BYTES)[0]
+        return self._completed(_match(text, rows), _COUNT_A_LISTING_BYTES)[0]
 
     def load_run(self, run: str | Path) -> StoredRun:
-        """Return a run by its folder (a path, or a text with a slash in it) or by anything that `find` knows.
+        """Return a run by its folder (a path, or a string with a slash) or by anything that `find` accepts.
 
         Raises:
-            LogError: there is no such run, or it is damaged.
+            LogError: the run does not exist, or is damaged.
         """
         if isinstance(run, Path) or os.sep in run:
             return read_run(Path(run))
@@ -289,7 +289,7 @@ class RunStore:
         info = self.find(run)
         return replace(read_run(self.folder(info.id)), number=info.number)
 
-    # Inside
+    # Internals
 
     def _new_folder(self, now: datetime) -> tuple[str, Path]:
         while True:
@@ -319,8 +319,8 @@ class RunStore:
                 yield info
 
     def _info_in(self, folder: Path) -> RunInfo | None:
-        """Return the catalogue line of a folder; None if it holds no run (yet)."""
-        # The folder's name counts: a copied run is another run.
+        """Return the catalogue row of a folder; None if it holds no run (yet)."""
+        # The folder's name is the id: a copied run is another run.
         run_id = folder.name
         if not (folder / RUN_FILE).exists():
             return None
@@ -333,21 +333,21 @@ class RunStore:
             return RunInfo(0, run_id, "", "", "", "", 0, DAMAGED, summary=f"{RUN_FILE} is damaged: {error!r}")
 
     def _completed(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
-        """Fill in what the catalogue does not know yet.
+        """Add the data that is missing in the catalogue.
 
         Args:
-            info: What it knows.
-            most_bytes: Of output that may be read for it.
+            info: The catalogue row.
+            most_bytes: Maximum number of bytes of output to read.
 
         Returns:
-            The run, what of it is to be remembered because it can no longer change, and how many bytes were read.
+            The run, the columns that are final and can be stored, and the number of bytes read.
         """
         if info.end not in ("", INTERRUPTED) and info.samples is not None:
             return info, {}, 0
         folder = self.folder(info.id)
         known = info
         if info.end in ("", INTERRUPTED):
-            # The run file is written first: it knows of an end that did not get as far as the catalogue.
+            # The run file is written first: it may have an end that the catalogue does not.
             stored = self._info_in(folder)
             state = state_without_end(folder)
             if stored is not None and stored.end == DAMAGED:
@@ -367,7 +367,7 @@ class RunStore:
                 known = _with_last_record(known, folder)
         except LogError as error:
             return replace(known, summary=known.summary or str(error)), {}, counted
-        # Without a lock the process may still be on its way.
+        # Without a lock the process may be starting.
         if known.end in (RUNNING, DAMAGED) or (known.end == INTERRUPTED and is_held(folder) is not False):
             return known, {}, counted
         names = ("end", "ticks", "time_s", "samples", "summary")
@@ -378,19 +378,19 @@ def load_run(run: str | Path) -> StoredRun:
     """Return a stored run by its folder (a path), its number, its id or the start of it, or `last`.
 
     Raises:
-        LogError: there is no such run, or it is damaged.
+        LogError: the run does not exist, or is damaged.
     """
     return RunStore().load_run(run)
 
 
 def compact_run(run: StoredRun) -> tuple[int, int]:
-    """Give a run's recordings their packed form, if they have it not yet.
+    """Pack a run's recordings, unless they are packed.
 
     Returns:
-        Bytes of all files of the run before and after.
+        Total size of the run's files in bytes, before and after.
 
     Raises:
-        LogError: the run is still going on, damaged, or cannot be written; nothing is lost.
+        LogError: the run is still running, damaged, or cannot be written; nothing is lost.
     """
     if run.end is None and state_without_end(run.folder) == RUNNING:
         raise LogError(f"run {run.id} is still running", "stop it first")
@@ -400,7 +400,7 @@ def compact_run(run: StoredRun) -> tuple[int, int]:
 
 
 def bytes_in(folder: Path) -> int:
-    """Return the bytes of all files of a run; of one that is being deleted, of those that are still there."""
+    """Return the total size of a run's files in bytes; files deleted meanwhile do not count."""
     found = 0
     with suppress(FileNotFoundError), os.scandir(folder) as entries:
         for entry in entries:
@@ -409,8 +409,8 @@ def bytes_in(folder: Path) -> int:
     return found
 
 
-def _meant(text: str, rows: Sequence[RunInfo]) -> RunInfo:
-    """Return the run among some that a text means; see `RunStore.find`."""
+def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
+    """Return the run among `rows` that a text matches; see `RunStore.find`."""
     if text == LAST:
         return rows[-1]
     tests = (lambda row: row.id == text, lambda row: str(row.number) == text, lambda row: row.id.startswith(text))
@@ -429,7 +429,7 @@ def _info_of(run_id: str, created: str, program: StoredProgram, spec: RunSpec) -
 
 
 def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
-    """Return the catalogue line of a run file; a shape that no run file has is a KeyError, TypeError or ValueError."""
+    """Return the catalogue row of a run file; raises KeyError, TypeError or ValueError for invalid contents."""
     spec, end = data["spec"], data["end"]
     info = RunInfo(
         int(data.get("number", 0)),
@@ -448,14 +448,14 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
 
 
 def _delete(folder: Path) -> None:
-    """Delete a run folder; of a link only the link."""
-    # Renamed first: a run that is half deleted must not look like a run.
-    grave = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}.removed")
-    os.replace(folder, grave)
-    if grave.is_symlink():
-        grave.unlink()
+    """Delete a run folder; of a symbolic link only the link."""
+    # Renamed first: a partly deleted run must not look like a run.
+    removed = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}.removed")
+    os.replace(folder, removed)
+    if removed.is_symlink():
+        removed.unlink()
     else:
-        shutil.rmtree(grave)
+        shutil.rmtree(removed)
 
 
 def _has_end(folder: Path) -> bool:

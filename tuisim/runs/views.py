@@ -1,8 +1,8 @@
-"""Readers of a run folder's two binary files, also while the run goes on.
+"""Readers of a run folder's two binary files, also while the program runs.
 
-A view never changes what it reads and never waits. A file that is not there yet reads as
-empty; of one that has grown the rest is read; one that has been packed is unpacked in
-memory, once, when its content is wanted. What has been read stays, whatever becomes of the file.
+A view never changes the file and never blocks. A missing file reads as empty; of a file
+that has grown the rest is read; a packed file is unpacked in memory, once, when its
+contents are needed. Data that has been read stays valid, whatever happens to the file.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class TickRecord:
-    """What the telemetry says of one tick; see `core.state.TICK_RECORD`."""
+    """Telemetry of one tick; see `core.state.TICK_RECORD`."""
 
     tick: int
     line: int
@@ -55,17 +55,17 @@ class TickRecord:
 
     @property
     def pose(self) -> Pose:
-        """Where the robot was."""
+        """The robot's pose."""
         return Pose(self.x_mm, self.y_mm, self.heading_deg)
 
 
 def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-    """Return the moment of a record, ready for the functions of `core.sensors`.
+    """Return the instant of a record, for the functions of `core.sensors`.
 
     Args:
-        record: What was recorded.
-        spec: What the run was made of.
-        noise: The noise at that tick; `runfile.noise_at` knows it.
+        record: The telemetry record.
+        spec: The specification of the run.
+        noise: The noise at that tick, from `run_folder.noise_at`.
     """
     return Instant(
         tick=record.tick,
@@ -82,45 +82,45 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
 
 
 class _Recording:
-    """A recording as far as it has been written, copied piece by piece; or unpacked.
+    """A recording as far as it has been written, copied incrementally; or unpacked.
 
-    It is not mapped: a map of a file that is cut off under it kills its reader.
+    It is not mapped: truncating a mapped file would kill its reader.
 
     Args:
         path: The file.
-        magic: What it begins with.
-        record_bytes: Of one record; 1 if they differ.
+        magic: First bytes of the file.
+        record_bytes: Size of a record; 1 if it varies.
     """
 
     def __init__(self, path: Path, magic: bytes, record_bytes: int, may_be_damaged: bool) -> None:
         self._path = path
         self._may_be_damaged = may_be_damaged
         self.damage = ""
-        """Why nothing of the file can be read, empty if it can."""
+        """Why nothing of the file can be read; empty if it can."""
         self._magic = magic
         self._record_bytes = record_bytes
         self._copy = bytearray()
-        """Begins like the file, and has room for more."""
+        """Starts like the file, with spare capacity."""
         self._published = self._there = 0
         self._unpacked = False
         self.packed: Packed | None = None
-        """The packed form, while nothing but its header has been read."""
+        """The packed form, while only its header has been read."""
 
     def look(self) -> tuple[memoryview, int, int]:
-        """Return the recording, its published length, and how much of it is there."""
+        """Return the recording, its published length, and the length that exists."""
         published, there = self.extent()
         if self.packed is not None:
             self._copy, self.packed, self._unpacked = bytearray(self.packed.recording()), None, True
         return memoryview(self._copy).toreadonly(), published, there
 
     def extent(self) -> tuple[int, int]:
-        """Return the published length, and how much of it is there."""
+        """Return the published length, and the length that exists."""
         if self.packed is None and not self._unpacked:
             self._read_on()
         return self._published, self._there
 
     def known(self, count: int) -> memoryview | None:
-        """Return the recording if so many records have been read that will not change any more, else None."""
+        """Return the recording if `count` records that can no longer change have been read, else None."""
         if self.packed is not None or (count >= self._there and not self._unpacked):
             return None
         return memoryview(self._copy).toreadonly() if count <= self._there else None
@@ -130,7 +130,7 @@ class _Recording:
             with open(self._path, "rb", buffering=0) as handle:
                 self._read_from(handle.fileno())
         except FileNotFoundError:
-            # Looked for in this order, a recording that is being packed is always found.
+            # Searched in this order, a recording that is being packed is always found.
             self.packed = find_packed(self._path)
             if self.packed is not None:
                 self._published = self._there = self.packed.length
@@ -139,7 +139,7 @@ class _Recording:
 
     def _read_from(self, fd: int) -> None:
         head = _whole_header(fd)
-        # The writer sizes a new file before it writes the header. One that has been emptied since has nothing to add.
+        # The writer sizes a new file before it writes the header. A file that has been emptied since is ignored.
         if not head.strip(b"\0") or (self._there and len(head) < HEADER_BYTES):
             return
         try:
@@ -150,7 +150,7 @@ class _Recording:
             self.damage = f"{error.message}: nothing of it can be read"
             return
         room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
-        # The last record may have been written anew.
+        # The last record may have been rewritten.
         kept = max(0, self._there - 1) if self._record_bytes > 1 else self._there
         self._published = max(published, self._published)
         wanted = min(published, room)
@@ -158,7 +158,7 @@ class _Recording:
             return
         begin, end = (HEADER_BYTES + self._record_bytes * count for count in (kept, wanted))
         if end > len(self._copy):
-            # Another one, not a longer one: arrays may still look at what there is, and it goes with the last of them.
+            # A new buffer instead of a resized one: arrays may still refer to the old one.
             larger = bytearray(end if not self._there else 2 * end)
             larger[:HEADER_BYTES] = head
             larger[HEADER_BYTES:begin] = self._copy[HEADER_BYTES:begin]
@@ -168,7 +168,7 @@ class _Recording:
 
 
 def _whole_header(fd: int) -> bytes:
-    """Return the header, read until it comes the same twice: a number in it could be just being written."""
+    """Return the header, read until two reads are equal: a number in it may be half written."""
     head = b""
     while (again := os.pread(fd, HEADER_BYTES, 0)) != head:
         head = again
@@ -176,7 +176,7 @@ def _whole_header(fd: int) -> bytes:
 
 
 def _read_into(fd: int, place: memoryview, at: int) -> int:
-    """Fill a place with what stands in a file at a position; return how many bytes there were."""
+    """Fill a buffer from a file position; return the number of bytes read."""
     done = 0
     while done < len(place) and (got := os.preadv(fd, [place[done:]], at + done)):
         done += got
@@ -188,10 +188,10 @@ class TelemetryView:
 
     Args:
         folder: The run folder.
-        may_be_damaged: Whether a file that is no recording is taken for an empty one, which `note` tells.
+        may_be_damaged: Whether an invalid file is treated as empty, as `note` reports.
 
     Raises:
-        LogError: by every method, if the file is no recording or of another version and may not be damaged.
+        LogError: by every method, if the file is invalid or of another version and `may_be_damaged` is false.
     """
 
     def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
@@ -199,12 +199,12 @@ class TelemetryView:
 
     @property
     def count(self) -> int:
-        """How many whole records there are; record k is that of tick k."""
+        """Number of complete records; record k is that of tick k."""
         return self._file.extent()[1]
 
     @property
     def note(self) -> str:
-        """What is missing from a file that was cut off, or empty."""
+        """A description of what is missing in a truncated file, or empty."""
         published, there = self._file.extent()
         if self._file.damage:
             return self._file.damage
@@ -216,19 +216,19 @@ class TelemetryView:
         )
 
     def last(self) -> TickRecord | None:
-        """Return the newest record, None if there is none yet."""
+        """Return the newest record; None if there is none."""
         count = self.count
         if not count:
             return None
         packed = self._file.packed
-        # The packed form tells its last record without being unpacked.
+        # The packed form provides its last record without being unpacked.
         return self.record(count - 1) if packed is None else TickRecord(*TICK_RECORD.unpack(packed.last_record))
 
     def record(self, index: int) -> TickRecord:
         """Return one record.
 
         Raises:
-            IndexError: there is no such record (yet).
+            IndexError: the record does not exist (yet).
         """
         data = self._file.known(index + 1) if index >= 0 else None
         if data is None:
@@ -240,7 +240,7 @@ class TelemetryView:
     def array(self) -> np.ndarray[Any, Any]:
         """Return all records as a structured array of `records.TICK_FIELDS`, shape (count,), read-only.
 
-        It is a view, not a copy; records written later need another call.
+        It is a view, not a copy; later records require another call.
         """
         import numpy as np
 
@@ -252,14 +252,14 @@ class TelemetryView:
 
 
 class OutputView:
-    """The rows that a run printed, spoke or was answered.
+    """The rows of a run: printed, spoken, answers to input(), brick state.
 
     Args:
         folder: The run folder.
-        may_be_damaged: Whether a file that is no recording is taken for an empty one, which `note` tells.
+        may_be_damaged: Whether an invalid file is treated as empty, as `note` reports.
 
     Raises:
-        LogError: by every method, if the file is no recording or of another version and may not be damaged.
+        LogError: by every method, if the file is invalid or of another version and `may_be_damaged` is false.
     """
 
     def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
@@ -268,12 +268,12 @@ class OutputView:
 
     @property
     def length(self) -> int:
-        """How many bytes of rows there are."""
+        """Number of bytes of rows."""
         return self._file.extent()[1]
 
     @property
     def note(self) -> str:
-        """What is missing from a file that was cut off, or empty."""
+        """A description of what is missing in a truncated file, or empty."""
         published, there = self._file.extent()
         if self._file.damage:
             return self._file.damage
@@ -281,7 +281,7 @@ class OutputView:
         return f"{OUTPUT_FILE} was cut off: its last {counted(lost, 'byte is', 'bytes are')} lost" if lost else ""
 
     def new_rows(self, limit: int | None = None) -> list[OutputRow]:
-        """Return the rows since the last call, at most `limit`; the others come with the next call."""
+        """Return the rows since the last call, at most `limit`; the others follow with the next call."""
         rows: list[OutputRow] = []
         data, _, end = self._file.look()
         if limit == 0:
@@ -294,7 +294,7 @@ class OutputView:
         return rows
 
     def all_rows(self) -> list[OutputRow]:
-        """Return every row so far; what `new_rows` returns next does not change."""
+        """Return all rows up to now; does not affect `new_rows`."""
         return list(self.rows())
 
     def rows_from(self, position: int) -> Iterator[tuple[OutputRow, int]]:
@@ -307,12 +307,12 @@ class OutputView:
         yield from output_rows(data, position, end)
 
     def raw_rows(self) -> Iterator[tuple[int, bytes]]:
-        """Yield stream and text of each row, the text as it stands in the file."""
+        """Yield stream and text of each row, the text as bytes of the file."""
         data, _, end = self._file.look()
         return raw_rows(data, end)
 
     def rows(self) -> Iterator[OutputRow]:
-        """Yield what `all_rows` returns, one by one: a run may print a million lines."""
+        """Yield the rows of `all_rows` one by one: a run may print a million lines."""
         data, _, end = self._file.look()
         for row, _ in output_rows(data, 0, end):
             yield row

@@ -1,1 +1,1 @@
-"""Runs that are over, packed: lossless, in a few bytes a tick."""
+"""Lossless compression of finished runs, to a few bytes per tick."""

@@ -1,4 +1,4 @@
-"""Columns of numbers as bytes that pack well: their changes, and all first bytes before all second ones."""
+"""Number columns as compressible bytes: delta encoding, and all first bytes before all second bytes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def changes(values: Column) -> Column:
-    """Return the difference of each number's bits from those of the one before, wrapped; the first stays."""
+    """Return the difference of the bits of each number and its predecessor, modulo their range; the first is kept."""
     import numpy as np
 
     bits = np.ascontiguousarray(values).view(f"<u{values.dtype.itemsize}")
@@ -19,46 +19,46 @@ def changes(values: Column) -> Column:
 
 
 def summed(differences: Column) -> Column:
-    """Undo `changes`, as far as the bits."""
+    """Undo `changes`, exactly for the bits."""
     import numpy as np
 
     return np.add.accumulate(differences, dtype=differences.dtype)
 
 
 def planes(values: Column) -> bytes:
-    """Return the bytes of a column: the lowest of each number first, then the next of each, and so on."""
+    """Return the bytes of a column: the lowest byte of every number, then the next byte of every number, and so on."""
     import numpy as np
 
     return np.ascontiguousarray(values).view(np.uint8).reshape(len(values), values.dtype.itemsize).T.tobytes()
 
 
 class Source:
-    """Bytes that are read from their start on.
+    """A reader for bytes, from the beginning on.
 
     Args:
-        data: All of them.
+        data: The bytes.
     """
 
     def __init__(self, data: bytes) -> None:
         self._data, self._at = data, 0
 
     def number(self) -> int:
-        """Return a number of four bytes.
+        """Read an integer of four bytes.
 
         Raises:
-            ValueError: there are no such bytes any more, here as below.
+            ValueError: too few bytes are left; also raised by the other methods.
         """
         return int.from_bytes(self._bytes(4), "little")
 
     def values(self, count: int, kind: str) -> Column:
-        """Return numbers that stand one after the other, shape (count,)."""
+        """Read consecutive numbers, shape (count,)."""
         import numpy as np
 
         found = np.dtype(kind)
         return np.frombuffer(self._bytes(count * found.itemsize), found)
 
     def planes(self, count: int, kind: str) -> Column:
-        """Return a column that `planes` has written, shape (count,)."""
+        """Read a column written by the function `planes`, shape (count,)."""
         import numpy as np
 
         found = np.dtype(kind)
@@ -66,7 +66,7 @@ class Source:
         return np.ascontiguousarray(raw.T).reshape(-1).view(found)
 
     def rest(self) -> bytes:
-        """Return what is left."""
+        """Read the remaining bytes."""
         return self._bytes(len(self._data) - self._at)
 
     def _bytes(self, size: int) -> bytes:

@@ -1,7 +1,7 @@
-"""A finished run's two recordings in packed form, which the views read like the form that was written.
+"""Packed form of a finished run's two recordings; the views read it like the original form.
 
-A packed file takes the place of the growing one: it is whole before that one goes, so that
-a run can be read at any moment, whoever dies. Its header says what the recording was: its
+A packed file replaces the growing one: it is complete before that one is deleted, so that
+a run can be read at any time, whichever process dies. Its header describes the recording: its
 length, its last record, and a checksum of its bytes.
 """
 
@@ -32,12 +32,12 @@ from tuisim.runs.records import (
 
 PACKED_SUFFIX = ".packed"
 PACKED_MAGIC = {TELEMETRY_FILE: b"TUISIMTP", OUTPUT_FILE: b"TUISIMOP"}
-"""By the name of the file that was written first."""
+"""By the original file name."""
 PACKED_VERSION = 1
 _HEADER = Struct("<8sIIQQ4d64s")
-"""Magic, version, checksum of the recording, its length as its own header told it, packed bytes, gear, last record."""
+"""Magic, version, checksum of the recording, length from its own header, packed bytes, geometry, last record."""
 _CHECK = Struct("<I")
-"""Checksum of the header, right after it."""
+"""Checksum of the header, directly after it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,14 +47,14 @@ class Packed:
     path: Path
     checksum: int
     length: int
-    """Records of telemetry, bytes of output."""
+    """Number of records of telemetry, number of bytes of output."""
     packed_bytes: int
     gear: RobotGeometry
     last_record: bytes
-    """The last record of telemetry; zeros for output, and where there is none."""
+    """The last telemetry record; zeros for output, and if there is none."""
 
     def recording(self) -> bytes:
-        """Return the recording as it was written, with its header.
+        """Return the original recording, including its header.
 
         Raises:
             LogError: the file is damaged.
@@ -81,13 +81,13 @@ class Packed:
 
 
 def find_packed(path: Path) -> Packed | None:
-    """Return the packed form of a recording, None if there is none.
+    """Return the packed form of a recording; None if there is none.
 
     Args:
-        path: The recording's first place; that of the packed form follows from it.
+        path: Original path of the recording.
 
     Raises:
-        LogError: it is damaged, of another version, or something else.
+        LogError: the file is damaged, of another version, or not a packed recording.
     """
     packed = path.with_name(path.name + PACKED_SUFFIX)
     try:
@@ -112,11 +112,11 @@ def find_packed(path: Path) -> Packed | None:
 
 
 def compact(folder: Path, spec: RunSpec) -> None:
-    """Give the recordings of a finished run their packed form; those that have it stay.
+    """Pack the recordings of a finished run; packed ones are left unchanged.
 
     Args:
-        folder: The run folder; nobody writes its recordings any more.
-        spec: What the run was made of.
+        folder: The run folder; no process writes its recordings any more.
+        spec: The specification of the run.
 
     Raises:
         LogError: a recording is damaged, or the folder cannot be written; nothing is lost.
@@ -140,12 +140,12 @@ def _compact_file(path: Path, gear: RobotGeometry) -> None:
         return
     with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True) as handle:
         handle.write(packed)
-    # Another process may have done the same work meanwhile.
+    # Another process may have packed it in the meantime.
     path.unlink(missing_ok=True)
 
 
 def _packed(path: Path, data: bytes, gear: RobotGeometry) -> bytes | None:
-    """Return the bytes of the packed file; None for a recording that has to stay because its end is missing."""
+    """Return the bytes of the packed file; None for a recording that cannot be packed because its end is missing."""
     import numpy as np
 
     magic, record_bytes = _form(path.name)

@@ -1,4 +1,4 @@
-"""Output rows folded small: their heads column by column, then all their texts."""
+"""Compression of output rows: their heads column by column, then all their texts."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ HEAD_FIELDS = (("size", "<u4"), ("tick", "<u4"), ("time_ns", "<u8"), ("line", "<
 COLUMNS = tuple(name for name, kind in HEAD_FIELDS if not kind.startswith("V"))
 ROWS_AT_ONCE = 1 << 16
 LEVEL = 6
-"""Of zlib."""
+"""Compression level of zlib."""
 
 
 def fold(data: bytes) -> bytes:
-    """Return whole rows in few bytes.
+    """Compress complete rows.
 
     Args:
-        data: Rows as they stand in an output file, without its header.
+        data: Rows as in an output file, without its header.
 
     Raises:
-        ValueError: they do not end with a whole row.
+        ValueError: the last row is incomplete.
     """
     import numpy as np
 
@@ -44,7 +44,7 @@ def fold(data: bytes) -> bytes:
 
 
 def unfold(data: bytes) -> bytes:
-    """Return the rows that were folded.
+    """Return the original rows.
 
     Raises:
         ValueError: the bytes are damaged.
@@ -72,7 +72,7 @@ def unfold(data: bytes) -> bytes:
 
 
 def _rows(heads: np.ndarray[Any, Any], text: bytes) -> bytes:
-    """Return rows: each head before its part of the text."""
+    """Return rows: each head followed by its part of the text."""
     import numpy as np
 
     whole = OUTPUT_ROW.size + heads["size"].astype(np.int64)

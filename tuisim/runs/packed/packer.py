@@ -1,6 +1,6 @@
-"""Packs recordings of ended runs, each in its own process: `python -m tuisim.runs.packed.packer FOLDER`.
+"""Packs recordings of finished runs in separate processes: `python -m tuisim.runs.packed.packer FOLDER`.
 
-Nobody waits for it: neither who has just run a program, nor the app, whose threads it would hold up.
+Nothing waits for it: neither a finished run, nor the app, whose threads it would slow down.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ LOCK_FILE = "packer.lock"
 AT_WORK: list[threading.Thread] = []
 """Each waits for the end of a packer that this process has started."""
 
-_POLITE = 10
-"""By how much the priority of a packer is lower."""
+_NICENESS = 10
+"""Increment of a packer's niceness."""
 
 
 def pack_later(folder: Path) -> None:
-    """Let the recordings of a run be packed, and its samples be counted, soon; what goes wrong changes nothing."""
+    """Pack the recordings of a run and count its samples in the background; errors are ignored."""
     AT_WORK[:] = [waiting for waiting in AT_WORK if waiting.is_alive()]
     with suppress(OSError):
         packer = subprocess.Popen(
@@ -42,13 +42,13 @@ def pack_later(folder: Path) -> None:
 
 
 def main(folder: Path) -> None:
-    """Pack the recordings of one run, after those that others are at."""
+    """Pack the recordings of one run, after other packers have finished."""
     from tuisim.runs.run_folder import read_run
     from tuisim.runs.store import RunStore, compact_run
 
-    os.nice(_POLITE)
+    os.nice(_NICENESS)
     home = folder.parent.parent
-    # It stays as it was written where that is not possible; `tuisim runs compact` would tell why.
+    # On failure it stays unpacked; `tuisim runs compact` shows the error.
     with suppress(LogError, OSError), open(home / LOCK_FILE, "ab", opener=private) as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         RunStore(home).count_samples(folder.name)

@@ -1,9 +1,9 @@
-"""Tick records folded small, to the last bit: what the motion does not foretell is kept, the rest is done again.
+"""Lossless compression of tick records: only what the motion does not predict is stored.
 
-Each record is foretold from the one before by the steps of `core.motion`, in the same
-order. Unfolding does only sums, products and quotients of IEEE numbers, each rounded as
-the standard says: the same bytes come out on every machine. That is why sine and cosine
-are done here by hand; where they miss the bits of the recorded run, what is missing is kept.
+Each record is predicted from the previous one by the steps of `core.motion`, in the same
+order. Decompression does only sums, products and quotients of IEEE numbers, each rounded as
+the standard requires: the result is the same on every machine. That is why sine and cosine
+are implemented here; where they miss the bits of the recorded run, the difference is stored.
 """
 
 from __future__ import annotations
@@ -22,32 +22,32 @@ if TYPE_CHECKING:
     Numbers = np.ndarray[Any, np.dtype[np.float64]]
 
 SUMS = ("left_position_deg", "right_position_deg", "heading_deg", "x_mm", "y_mm")
-"""Fields that grow by something in each tick, in the order in which they are foretold."""
+"""Fields that grow by some amount in each tick, in the order of their prediction."""
 SPEEDS = ("left_speed_dps", "right_speed_dps")
 PLAIN = ("tick", "line", "gyro_zero_deg", "flags", "actions")
-"""Fields of which only the changes are kept."""
+"""Fields of which only the changes are stored."""
 
 LEVEL = 6
-"""Of zlib; more takes twice as long and gains a hundredth."""
+"""Compression level of zlib; higher ones take twice as long and gain 1 %."""
 
 OFTEN = 3
-"""A speed that comes so often is worth a better number than the record's 32 bits hold."""
+"""Number of occurrences from which a speed is stored with more than the record's 32 bits."""
 
 _DEG_TO_RAD = 0.017453292519943295
 _RAD_TO_DEG = 57.29577951308232
 _QUARTERS = (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21)
-"""A quarter of a turn in three numbers, the first two short enough that their multiples are exact."""
+"""A quarter of a turn in three parts, the first two short enough that their multiples are exact."""
 
 
 @dataclass(frozen=True, slots=True)
 class RobotGeometry:
-    """What the motion of a run depends on besides the speeds."""
+    """The robot's parameters that determine its motion, besides the speeds."""
 
     tick_s: float
     mm_per_deg: float
     spacing_mm: float
     early: float
-    """Which part of a tick's turn counts already for the way of that tick."""
+    """Fraction of a tick's turn that already applies to the motion of that tick."""
 
     @classmethod
     def of(cls, spec: RunSpec) -> RobotGeometry:
@@ -61,15 +61,15 @@ class RobotGeometry:
 
 
 def fold(records: np.ndarray[Any, Any], gear: RobotGeometry) -> bytes:
-    """Return records in few bytes.
+    """Compress records.
 
     Args:
         records: Structured array of `records.TICK_FIELDS`, shape (count,).
-        gear: That of the run; any other gives more bytes, never other records.
+        gear: Geometry of the run; any other gives more bytes, but the same records.
     """
     import numpy as np
 
-    # A record that no motion made may hold any numbers.
+    # A damaged record may hold any numbers.
     with np.errstate(all="ignore"):
         return zlib.compress(b"".join(_folded(records, gear)), LEVEL)
 
@@ -99,12 +99,12 @@ def _folded(records: np.ndarray[Any, Any], gear: RobotGeometry) -> list[bytes]:
 
 
 def unfold(data: bytes, count: int, gear: RobotGeometry, kind: np.dtype[Any]) -> np.ndarray[Any, Any]:
-    """Return the records that were folded.
+    """Return the original records.
 
     Args:
         data: What `fold` returned.
-        count: How many records they were.
-        gear: With which they were folded.
+        count: Number of records.
+        gear: Geometry with which they were compressed.
         kind: Type of a record.
 
     Raises:
@@ -152,7 +152,7 @@ def _number(value: int) -> bytes:
 
 
 def _plain_steps(bits: np.ndarray[Any, Any], gear: RobotGeometry) -> Numbers:
-    """Return the degrees that a wheel turns in a tick at recorded speeds, as far as 32 bits tell."""
+    """Return the degrees that a wheel turns in a tick at recorded speeds, with the precision of 32 bits."""
     import numpy as np
 
     speeds = bits.view(np.float32).astype(np.float64)
@@ -160,10 +160,10 @@ def _plain_steps(bits: np.ndarray[Any, Any], gear: RobotGeometry) -> Numbers:
 
 
 def _steps(bits: np.ndarray[Any, Any], codes: np.ndarray[Any, Any], positions: Numbers, gear: RobotGeometry) -> Numbers:
-    """Return the degrees a tick at each speed: those that fit the positions best, where a speed comes often.
+    """Return the degrees per tick at each speed: for frequent speeds those that fit the positions best.
 
-    A position before and after a tick leaves a narrow range for the step between them; that of many ticks with
-    the same speed is narrower still.
+    The positions before and after a tick bound the step between them to a narrow range; many ticks with
+    the same speed narrow it further.
     """
     import numpy as np
 
@@ -173,7 +173,7 @@ def _steps(bits: np.ndarray[Any, Any], codes: np.ndarray[Any, Any], positions: N
     moved = positions[1:] - positions[:-1]
     half = np.spacing(np.abs(positions[1:])) / 2
     at = codes[1:]
-    # Ticks in which something else happened, such as a move that came to its end, tell nothing.
+    # Ticks with other events, such as the end of a move, provide no information.
     telling = np.abs(moved - steps[at]) <= 2e-7 * np.abs(steps[at]) + half
     at, moved, half = at[telling], moved[telling], half[telling]
     low, high = np.full(len(bits), -np.inf), np.full(len(bits), np.inf)
@@ -185,16 +185,16 @@ def _steps(bits: np.ndarray[Any, Any], codes: np.ndarray[Any, Any], positions: N
 
 
 def _true_steps(growth: Numbers, rest: Numbers) -> Numbers:
-    """Return what the wheel turned in each tick: the step, set right by what the position tells."""
+    """Return the rotation of the wheel in each tick: the step, corrected by the position."""
     import numpy as np
 
-    # A jump of the position, or a count without a turn, is none of the wheel's turn.
+    # A jump of the position, or a count without rotation, is not part of the wheel's rotation.
     small = np.abs(rest) <= 1e-6 * np.abs(growth) + 1e-9
     return np.asarray(np.where(small, growth + rest, growth))
 
 
 def _growth(name: str, turned: list[Numbers], done: dict[str, Numbers], gear: RobotGeometry) -> Numbers:
-    """Return by how much a field is expected to grow in each tick, from the fields before it in `SUMS`."""
+    """Return the predicted growth of a field in each tick, from the fields before it in `SUMS`."""
     import numpy as np
 
     if name in SUMS[:2]:
@@ -213,7 +213,7 @@ def _growth(name: str, turned: list[Numbers], done: dict[str, Numbers], gear: Ro
 
 
 def _cosine_and_sine(angle: Numbers) -> tuple[Numbers, Numbers]:
-    """Return both of angles in radians, good to about the last bit."""
+    """Return both for angles in radians, accurate to about the last bit."""
     import numpy as np
 
     quarter = np.rint(angle * 0.6366197723675814)
@@ -236,9 +236,9 @@ def _cosine_and_sine(angle: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def _rests(values: Numbers, growth: Numbers) -> tuple[Numbers, np.ndarray[Any, Any]]:
-    """Return what a sum of growths misses in each record, and the records at which it must start anew.
+    """Return the residuals of a sum of growths, and the records at which it must restart.
 
-    With `rest` one has `values[k] == (values[k - 1] + growth[k]) + rest[k]`, to the last bit.
+    `values[k] == (values[k - 1] + growth[k]) + rest[k]` holds bit by bit.
     """
     import numpy as np
 
@@ -246,7 +246,7 @@ def _rests(values: Numbers, growth: Numbers) -> tuple[Numbers, np.ndarray[Any, A
     near = values[:-1] + growth[1:]
     rest[1:] = values[1:] - near
     exact = (near + rest[1:]).view(np.int64) == np.ascontiguousarray(values[1:]).view(np.int64)
-    # What becomes of the bits of something that is no number depends on the machine.
+    # The bits of results with NaN depend on the machine.
     exact &= np.isfinite(near) & np.isfinite(rest[1:])
     jumps = np.concatenate((np.zeros(min(1, len(values)), np.int64), np.flatnonzero(~exact) + 1))
     rest[jumps] = 0.0
@@ -254,7 +254,7 @@ def _rests(values: Numbers, growth: Numbers) -> tuple[Numbers, np.ndarray[Any, A
 
 
 def _grown(growth: Numbers, rest: Numbers, jumps: np.ndarray[Any, Any], starts: np.ndarray[Any, Any]) -> Numbers:
-    """Undo `_rests`: each value is the one before, plus the growth, plus the rest, rounded after each sum."""
+    """Undo `_rests`: each value is the previous one plus the growth plus the residual, rounded after each sum."""
     import numpy as np
 
     values = np.empty(len(growth))
