@@ -52,15 +52,15 @@ class AppDebugger:
         self._position: Position | None = None
         """The past instant that is viewed, exact to the line."""
         self._frame, self._thread = 0, ""
-        self._stand_in = ReplayDebugger(self._arrived, self._not_there, self._came_to_now)
+        self._replay_debugger = ReplayDebugger(self._arrived, self._not_there, self._reached_now)
         self._wanted: Position | None = None
         """The instant that the replay debugger was last sent to."""
         self._first: Message | None = None
         """Called when a run that was started for it pauses at its first line."""
         self._more_back = 0
         """Number of further lines back that were requested while the first ones were being computed."""
-        self._panels_came = False
-        self._untold = False
+        self._panels_opened = False
+        self._breakpoints_unsent = False
         """Whether the live run has not yet received the breakpoints, because a branch is still on the way to its
         instant."""
 
@@ -91,11 +91,11 @@ class AppDebugger:
     def set_breaks(self, breaks: tuple[Breakpoint, ...]) -> None:
         """Set the breakpoints, in the run as well, and store them."""
         self.breaks = breaks
-        self._tell_breaks()
+        self._send_breakpoints()
         self._keep()
         self.mark()
 
-    def _tell_breaks(self) -> None:
+    def _send_breakpoints(self) -> None:
         """Send the breakpoints to the live run, each on its line of the text that runs."""
         lines, texts = self._lab.work.lines(), []
         for one in self.breaks:
@@ -109,7 +109,7 @@ class AppDebugger:
         """Set the watched expressions and store them."""
         self.watches = watches
         self._keep()
-        self._look_again()
+        self._inspect_again()
 
     def _keep(self) -> None:
         if self._program:
@@ -140,9 +140,9 @@ class AppDebugger:
         """Reset the state for another run, or none."""
         self._paused = self._position = self.standing = self._lab.bridge.held_line = None
         self._frame, self._thread, self._wanted = 0, "", None
-        self._panels_came, self._untold = False, bool(self.breaks)
+        self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._first, self._more_back = None, 0
-        self._stand_in.close()
+        self._replay_debugger.close()
         self.show()
 
     def ended(self) -> None:
@@ -154,21 +154,21 @@ class AppDebugger:
 
     def take(self, event: Message) -> None:
         """Handle a report that the run has paused, has resumed, or sends its frames and variables."""
-        if self._untold:
-            self._untold = False
-            self._tell_breaks()
+        if self._breakpoints_unsent:
+            self._breakpoints_unsent = False
+            self._send_breakpoints()
         match event:
             case Paused():
-                self._stands(event)
+                self._handle_pause(event)
             case protocol.Resumed():
                 self._paused = None
                 if not self._lab.bridge.in_past:
                     self._position = self.standing = None
                     self.show()
             case Inspected() if self._paused is not None and not self.looks_back:
-                self._set_standing(DebugView(self._paused, event, False))
+                self._set_paused(DebugView(self._paused, event, False))
 
-    def _stands(self, paused: Paused) -> None:
+    def _handle_pause(self, paused: Paused) -> None:
         self._paused, self._position = paused, None
         self._frame, self._thread = 0, ""
         if self._first is not None and paused.reason != "break":
@@ -176,17 +176,17 @@ class AppDebugger:
             self._lab.bridge.debug(first)
             return
         if paused.reason in SHOWS_PANELS:
-            self._come()
+            self._open_panels()
         if paused.reason == "break":
             met = f": {paused.value}" if paused.value else ""
             self._lab.say(f"Break {paused.detail}{met} at {paused.time_ns / 1e9:.2f} s")
-        self._look_again()
+        self._inspect_again()
 
-    def _come(self) -> None:
+    def _open_panels(self) -> None:
         """Open the debug panels, once per run."""
-        if self._panels_came:
+        if self._panels_opened:
             return
-        self._panels_came = True
+        self._panels_opened = True
         for panel in ("code", "debug"):
             if not self._lab.desk.shown(panel):
                 self._lab.desk.toggle(panel)
@@ -201,7 +201,7 @@ class AppDebugger:
     @property
     def busy(self) -> bool:
         """Whether a past instant is still being computed."""
-        return self._stand_in.busy
+        return self._replay_debugger.busy
 
     @property
     def is_away(self) -> bool:
@@ -217,7 +217,7 @@ class AppDebugger:
         """Select the caller of the current frame, or the function that it called."""
         if self.standing:
             self._frame = min(max(0, self._frame + by), max(0, len(self.standing.looked.stack) - 1))
-            self._look_again()
+            self._inspect_again()
 
     def choose_thread(self) -> None:
         """Select the next thread."""
@@ -225,17 +225,17 @@ class AppDebugger:
             names = [thread.name for thread in threads]
             at = names.index(self.standing.looked.thread) if self.standing.looked.thread in names else -1
             self._thread, self._frame = names[(at + 1) % len(names)], 0
-            self._look_again()
+            self._inspect_again()
 
-    def _look_again(self) -> None:
+    def _inspect_again(self) -> None:
         if self.looks_back:
-            self._stand_in.look(self.look)
+            self._replay_debugger.look(self.look)
         elif self._paused is not None:
             self._lab.bridge.debug(self.look)
 
     def beat(self) -> None:
         """Follow the instant in view and process what has been computed."""
-        self._stand_in.beat()
+        self._replay_debugger.beat()
         timeline = self._lab.bridge.timeline
         if self._position is not None and timeline.at not in (None, self._position.tick):
             self._position = None
@@ -249,30 +249,30 @@ class AppDebugger:
     def to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
         self._position, self._more_back = None, 0
-        if self._stand_in.busy:
+        if self._replay_debugger.busy:
             # The result still being computed is no longer wanted.
-            self._stand_in.close()
+            self._replay_debugger.close()
             self._wanted = None
             self.show()
 
     def _back_to_now(self) -> None:
         self.standing, self._wanted = None, None
         self.show()
-        self._look_again()
+        self._inspect_again()
 
     def _follow(self, position: Position) -> None:
         timeline = self._lab.bridge.timeline
-        if timeline.recording is None or timeline.playing or self._stand_in.busy or position == self._wanted:
+        if timeline.recording is None or timeline.playing or self._replay_debugger.busy or position == self._wanted:
             return
         self._wanted = position
-        self._stand_in.go(timeline.recording, position, self.look)
+        self._replay_debugger.go(timeline.recording, position, self.look)
         self.show()
 
     def _arrived(self, paused: Paused, looked: Inspected) -> None:
         timeline, here = self._lab.bridge.timeline, Position(paused.tick, paused.ordinal)
         if self._wanted is None:
             if not self._is_past(here):
-                self._came_to_now()
+                self._reached_now()
                 return
             self._position = here
             timeline.go(paused.tick)
@@ -280,7 +280,7 @@ class AppDebugger:
             # The user has gone elsewhere meanwhile.
             self._wanted = None
             return
-        self._set_standing(DebugView(paused, looked, True))
+        self._set_paused(DebugView(paused, looked, True))
         self._lab.situation_changed()
         if self._more_back:
             self.lines_back(0)
@@ -292,7 +292,7 @@ class AppDebugger:
             return at.tick <= (self._lab.bridge.timeline.newest if now is None else now.tick)
         return at.is_before(Position(now.tick, now.ordinal))
 
-    def _came_to_now(self) -> None:
+    def _reached_now(self) -> None:
         time_travel.to_now(self._lab)
         self._back_to_now()
 
@@ -301,7 +301,7 @@ class AppDebugger:
         self._lab.say(why)
         self.show()
 
-    def _set_standing(self, standing: DebugView) -> None:
+    def _set_paused(self, standing: DebugView) -> None:
         self.standing = standing
         line = standing.paused.line if not standing.paused.file else 0
         self._lab.bridge.held_line = (standing.paused.tick, line)
@@ -351,17 +351,17 @@ class AppDebugger:
             first = None if isinstance(command, protocol.StepLine) else command
             if lab.start_run(held=True):
                 self._first = first
-                self._come()
+                self._open_panels()
 
     def _in_past(self, command: Message) -> None:
         timeline = self._lab.bridge.timeline
-        if timeline.recording is None or self._stand_in.busy:
+        if timeline.recording is None or self._replay_debugger.busy:
             return
-        self._come()
+        self._open_panels()
         here = self._here()
         assert here is not None
         self._position, self._wanted = None, None
-        self._stand_in.go_on(timeline.recording, here, command, self.look)
+        self._replay_debugger.go_on(timeline.recording, here, command, self.look)
         self.show()
 
     def lines_back(self, count: int) -> None:
@@ -370,20 +370,20 @@ class AppDebugger:
         here, recording = self._here(), lab.bridge.timeline.recording
         if here is None or recording is None:
             lab.say("No run yet to look back on: R runs the program")
-        elif self._stand_in.busy:
+        elif self._replay_debugger.busy:
             self._more_back += count
         else:
             if lab.bridge.in_run and lab.bridge.state != PAUSED:
                 lab.bridge.pause()
-            self._come()
+            self._open_panels()
             self._position, self._wanted = None, None
             count, self._more_back = count + self._more_back, 0
-            self._stand_in.lines_back(recording, here, count, self.look)
+            self._replay_debugger.lines_back(recording, here, count, self.look)
             self.show()
 
     def close(self) -> None:
         """Stop the debugger's processes."""
-        self._stand_in.close()
+        self._replay_debugger.close()
 
 
 def _mark(one: Breakpoint) -> str:

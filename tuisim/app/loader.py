@@ -39,11 +39,11 @@ class Loader:
         """The last mat that was prepared, with its plan."""
         self.world_file: Path | None = lab.settings.world_file
         """The world file that was last opened or saved."""
-        self._world_said: Mapping[str, Any] = {}
+        self._world_settings: Mapping[str, Any] = {}
         self._world_refers: tuple[Path, ...] = ()
-        self._magic_said: Mapping[str, Any] = {}
+        self._magic_settings: Mapping[str, Any] = {}
         """Settings of the world file and the magic line when last read, to detect what changes in them."""
-        self._prelude_said = ""
+        self._file_prelude = ""
         """The prelude that the program's file asks for; the command line may have chosen another one."""
         self._later: list[Path] = []
         """Files that changed during the run."""
@@ -81,11 +81,11 @@ class Loader:
         try:
             mat = prepare_mat(spec)
         except TuisimError as error:
-            self._lab.call_from_thread(self._unprepared, spec, error)
+            self._lab.call_from_thread(self._mat_failed, spec, error)
             return
         self._lab.call_from_thread(self._prepared, mat)
 
-    def _unprepared(self, spec: RunSpec, error: TuisimError) -> None:
+    def _mat_failed(self, spec: RunSpec, error: TuisimError) -> None:
         """Report the error in a mat, and restore the previous mat."""
         self._lab.complain(error)
         bridge = self._lab.bridge
@@ -105,7 +105,7 @@ class Loader:
         """Set a plan and a program together with their mat, which must have been prepared already."""
         self._lab.bridge.mat = mat
         self._good = plan, mat
-        self._note_program(program, _said_in(program))
+        self._note_program(program, _settings_in(program))
         self._load(plan, program)
         self._lab.mat_ready(mat.pixels)
 
@@ -168,23 +168,23 @@ class Loader:
             plan = plans.with_arguments(plan, ())
         self._note_program(program, said)
         self._load(plan, program)
-        self._show_as_said({}, said)
+        self._apply_app_settings({}, said)
         self._lab.say(f"{program.name} is open: R runs it")
 
     def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
-        self._magic_said, self._prelude_said = said, program.prelude if program else ""
+        self._magic_settings, self._file_prelude = said, program.prelude if program else ""
 
     def _open_world(self, path: str) -> None:
         lab = self._lab
-        before = self.world_file, self._world_said, self._world_refers
+        before = self.world_file, self._world_settings, self._world_refers
         try:
             named = self._read_world(Path(path))
             program, magic = _read_program(named) if named else (lab.bridge.program, {})
             # A world file replaces everything: earlier choices do not show through.
             fresh = plans.with_choices(plans.plan_of(Settings()), magic)
-            plan = plans.with_choices(fresh, self._world_said)
+            plan = plans.with_choices(fresh, self._world_settings)
         except TuisimError:
-            self.world_file, self._world_said, self._world_refers = before
+            self.world_file, self._world_settings, self._world_refers = before
             raise
         self._note_program(program, magic)
         self._load(plan, program)
@@ -195,7 +195,7 @@ class Loader:
         from tuisim.config.worlds import load_world
 
         world = load_world(path, self._lab.bridge.plan.settings.mats)
-        self.world_file, self._world_said, self._world_refers = path, world.settings, world.files
+        self.world_file, self._world_settings, self._world_refers = path, world.settings, world.files
         return _program_path(world.program) if world.program is not None else None
 
     def _load(self, plan: NextRun, program: Program | None) -> None:
@@ -266,12 +266,12 @@ class Loader:
         lab, plan = self._lab, self._lab.bridge.plan
         program = lab.bridge.program
         if program and program.path and Path(program.path) == path:
-            self._take_program(*_read_program(program.path))
+            self._apply_program(*_read_program(program.path))
             return True
         if path == self.world_file:
-            before = self._world_said
+            before = self._world_settings
             self._read_world(path)
-            self._take_said(_differences(before, self._world_said), program)
+            self._apply_changed(_differences(before, self._world_settings), program)
             return True
         fields = [
             field for field, word in plan.words.items() if _is_file_word(word) and Path(word).expanduser() == path
@@ -297,7 +297,7 @@ class Loader:
         """
         from tuisim.config.program_file import program_of_text
 
-        self._take_program(*_program_of(program_of_text(text, Path(path) if path else None, name)))
+        self._apply_program(*_program_of(program_of_text(text, Path(path) if path else None, name)))
 
     def take_new(self, text: str, name: str) -> None:
         """Open a new program without a file and without a magic line. Not during a run."""
@@ -308,26 +308,26 @@ class Loader:
         self._lab.bridge.program = program
         self._loaded()
 
-    def _take_program(self, new: Program, said: Mapping[str, Any]) -> None:
+    def _apply_program(self, new: Program, said: Mapping[str, Any]) -> None:
         """Apply another text of the open program, with the changes in its magic line."""
         program = self._lab.bridge.program
-        as_said = new.prelude if new.prelude != self._prelude_said or program is None else program.prelude
+        as_said = new.prelude if new.prelude != self._file_prelude or program is None else program.prelude
         folder = program.module_folder if program and not new.path else ""
-        before = self._magic_said
-        self._take_said(_differences(before, said), replace(new, prelude=as_said, module_folder=folder))
+        before = self._magic_settings
+        self._apply_changed(_differences(before, said), replace(new, prelude=as_said, module_folder=folder))
         self._note_program(new, said)
-        self._show_as_said(before, said)
+        self._apply_app_settings(before, said)
 
-    def _show_as_said(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
+    def _apply_app_settings(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
         """Apply the changes in a magic line that concern the app: panels, rays and speed."""
-        lab, panels = self._lab, _panels_said(now)
-        lab.desk.ask({panel: panels.get(panel) for panel, _ in _panels_said(before).items() ^ panels.items()})
+        lab, panels = self._lab, _panels_in(now)
+        lab.desk.ask({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
         if now.get("rays") and not before.get("rays") and lab.desk.world:
             lab.desk.world.show_rays = True
         if now.get("speed") is not None and now["speed"] != before.get("speed"):
             lab.bridge.set_speed(now["speed"])
 
-    def _take_said(self, differences: Mapping[str, Any], program: Program | None) -> None:
+    def _apply_changed(self, differences: Mapping[str, Any], program: Program | None) -> None:
         """Apply changed settings of a file; unchanged ones keep what the user has set since."""
         lab = self._lab
         plan = plans.with_choices(lab.bridge.plan, differences)
@@ -351,7 +351,7 @@ def _program_of(file: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
     return Program(name=file.name, text=file.text, prelude=file.prelude, path=file.path), file.switches
 
 
-def _said_in(program: Program | None) -> Mapping[str, Any]:
+def _settings_in(program: Program | None) -> Mapping[str, Any]:
     """Return the settings of the magic line of the open program; empty if the line is invalid by now."""
     from tuisim.config.program_file import program_of_text
 
@@ -374,7 +374,7 @@ def _program_path(word: str) -> str:
     return str(examples.get(word) or examples.get(f"{word}.py") or word)
 
 
-def _panels_said(said: Mapping[str, Any]) -> dict[str, bool]:
+def _panels_in(said: Mapping[str, Any]) -> dict[str, bool]:
     """Return the panels that a magic line shows (True) and hides (False)."""
     return {**dict.fromkeys(said.get("panels_on", ()), True), **dict.fromkeys(said.get("panels_off", ()), False)}
 

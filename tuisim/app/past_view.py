@@ -23,14 +23,14 @@ class Lookback:
     """
 
     def __init__(self, desk: PanelArea, timeline: Timeline) -> None:
-        self._desk = desk
+        self._panel_area = desk
         self._timeline = timeline
         self._traced: object = None
         self._printed: object = None
 
     def show(self) -> None:
         """Update the panels if they show another instant."""
-        desk, timeline = self._desk, self._timeline
+        desk, timeline = self._panel_area, self._timeline
         recording, tick = timeline.recording, timeline.at
         if world := desk.world:
             world.time_bar.marks = timeline.marks

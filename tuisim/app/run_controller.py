@@ -81,7 +81,7 @@ class RunController(RunView):
         self._look_at(Recording(run, branch.of.answers))
         self._branch = branch
 
-    def _branch_is_there(self, held: protocol.Paused | None = None) -> Branch | None:
+    def _branch_arrived(self, held: protocol.Paused | None = None) -> Branch | None:
         """Switch from the former run to the new one, which is paused at the instant of the branch or has ended.
 
         A program that ends before that instant is paused at its end.
@@ -187,7 +187,7 @@ class RunController(RunView):
             return
         if self.in_run:
             # While paused, placing the robot where it already is would only add a needless action to the record.
-            if not self._stands_still or pose != self.pose:
+            if not self._is_paused or pose != self.pose:
                 self._act(command)
             return
         self._start_at(pose)
@@ -225,12 +225,12 @@ class RunController(RunView):
     def _act(self, action: protocol.Message) -> None:
         """Send an action that changes the world; while paused, show it before it has taken effect."""
         record = self._record()
-        if record is not None and self._branch is None and self._stands_still:
+        if record is not None and self._branch is None and self._is_paused:
             self._pending.note(record, action)
         self._send(action)
 
     @property
-    def _stands_still(self) -> bool:
+    def _is_paused(self) -> bool:
         return self.run is not None and self.run.paused
 
     def _send(self, command: protocol.Message) -> None:
@@ -257,9 +257,9 @@ class RunController(RunView):
             match event:
                 case protocol.Ended():
                     ended, self._end = event, event.end
-                    branched = self._branch_is_there()
+                    branched = self._branch_arrived()
                 case protocol.Paused() if self._branch:
-                    branched = self._branch_is_there(event)
+                    branched = self._branch_arrived(event)
                     held.append(event)
                 case protocol.Paused() | protocol.Resumed() | protocol.Inspected():
                     held.append(event)

@@ -64,7 +64,7 @@ def _figure(value: float, digits: str = ".4g") -> str:
 Thing = TypeVar("Thing")
 
 
-class _MadeWhenSeen(Sequence[Cells], Generic[Thing]):
+class _LazyRows(Sequence[Cells], Generic[Thing]):
     """Rows that are created on access: a long log has a hundred thousand bands or events."""
 
     def __init__(self, things: Sequence[Thing], row: Callable[[Thing], Cells]) -> None:
@@ -78,7 +78,7 @@ class _MadeWhenSeen(Sequence[Cells], Generic[Thing]):
     @overload
     def __getitem__(self, at: slice) -> Sequence[Cells]: ...
     def __getitem__(self, at: int | slice) -> Cells | Sequence[Cells]:
-        return _MadeWhenSeen(self._things[at], self._row) if isinstance(at, slice) else self._row(self._things[at])
+        return _LazyRows(self._things[at], self._row) if isinstance(at, slice) else self._row(self._things[at])
 
 
 def _band(band: Band) -> Cells:
@@ -145,7 +145,7 @@ def _runs(model: Model) -> list[Cells]:
 PANES: Mapping[str, Pane] = {
     "table": Pane("Table", lambda _: (), ()),
     "bands": Pane(
-        "Bands", lambda model: _MadeWhenSeen(model.bands(), _band),
+        "Bands", lambda model: _LazyRows(model.bands(), _band),
         ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
         Model.bands_in_words, "No band: no ticked variable keeps a level",
     ),
@@ -155,7 +155,7 @@ PANES: Mapping[str, Pane] = {
         _between, empty="Tick a variable: v chooses one, space ticks it",
     ),
     "events": Pane(
-        "Events", lambda model: _MadeWhenSeen(model.events.found(model.log), _event),
+        "Events", lambda model: _LazyRows(model.events.found(model.log), _event),
         ("variable", "comes", "at s", "after s", "value", "row", "threshold"),
         empty="No events: c asks for a threshold, such as Colour < 50",
     ),

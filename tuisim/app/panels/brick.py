@@ -104,7 +104,7 @@ class Brick(Widget, can_focus=True):
         """The buttons that the user holds down."""
         return frozenset((*self._tapped, *self._latched, *filter(None, [self._clicked])))
 
-    def _works(self, name: str) -> bool:
+    def _has_program(self, name: str) -> bool:
         """Return whether a live program is in view, for which a button can be pressed."""
         if self._snapshot is not None and self._snapshot.state in IN_RUN and not self._snapshot.past:
             return True
@@ -117,7 +117,7 @@ class Brick(Widget, can_focus=True):
 
     def action_tap(self, name: str) -> None:
         """Press a button for a moment; key repeat keeps it pressed."""
-        if not self._works(name):
+        if not self._has_program(name):
             return
         before = self.held
         if timer := self._tapped.get(name):
@@ -147,7 +147,7 @@ class Brick(Widget, can_focus=True):
 
     def action_latch(self, name: str) -> None:
         """Hold a button down, or release it."""
-        if not self._works(name):
+        if not self._has_program(name):
             return
         before = self.held
         self._latched ^= {name}
@@ -178,7 +178,7 @@ class Brick(Widget, can_focus=True):
         if event.button == 3:
             self.action_latch(name)
             return
-        if not self._works(name):
+        if not self._has_program(name):
             return
         before = self.held
         self._clicked = name

@@ -64,8 +64,8 @@ def following(width_px: int, height_px: int, zoom: int, pose: Pose, previous: Vi
     )
     if same_scale and previous is not None and _well_inside(previous, pose):
         return previous
-    x_mm = _held(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
-    y_mm = _held(pose.y_mm, height_px * mm_per_px, FIELD_HEIGHT_MM)
+    x_mm = _clamped(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
+    y_mm = _clamped(pose.y_mm, height_px * mm_per_px, FIELD_HEIGHT_MM)
     moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm)
     return previous if previous is not None and moved == previous else moved
 
@@ -81,7 +81,7 @@ def _around(width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: 
     return Viewport(width_px, height_px, mm_per_px, -left_px * mm_per_px, FIELD_HEIGHT_MM + top_px * mm_per_px)
 
 
-def _held(centre_mm: float, shown_mm: float, field_mm: float) -> float:
+def _clamped(centre_mm: float, shown_mm: float, field_mm: float) -> float:
     """Return the centre of a view, clamped so that as little as possible off the field is shown."""
     if shown_mm >= field_mm:
         return field_mm / 2

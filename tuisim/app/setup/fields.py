@@ -68,13 +68,13 @@ def sections(plan: NextRun) -> list[FieldGroup]:
     eyes = {eye.name: eye for eye in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)}
     return [
         FieldGroup("Program", (Field("arguments", "Arguments", _arguments, _with_arguments),)),
-        FieldGroup("Robot", _robot_edits()),
-        *(FieldGroup(f"Sensor {name}", _eye_edits(name, eye, plan)) for name, eye in eyes.items()),
-        FieldGroup("Ultrasonic", _sonar_edits(plan)),
-        FieldGroup("Gyro", _gyro_edits(plan)),
-        *(FieldGroup(part.name.capitalize(), _further_edits(part)) for part in plan.robot_choice.spec.further_sensors),
-        FieldGroup("Pen", _pen_edits()),
-        FieldGroup("World", _world_edits()),
+        FieldGroup("Robot", _robot_fields()),
+        *(FieldGroup(f"Sensor {name}", _color_sensor_fields(name, eye, plan)) for name, eye in eyes.items()),
+        FieldGroup("Ultrasonic", _ultrasonic_fields(plan)),
+        FieldGroup("Gyro", _gyro_fields(plan)),
+        *(FieldGroup(part.name.capitalize(), _further_fields(part)) for part in plan.robot_choice.spec.further_sensors),
+        FieldGroup("Pen", _pen_fields()),
+        FieldGroup("World", _world_fields()),
     ]
 
 
@@ -97,7 +97,7 @@ def _whole(text: str) -> int:
 # The robot. The fields show the robot on its mat, and edit the robot as it was chosen.
 
 
-def _robot_edit(
+def _robot_field(
     edit_id: str,
     label: str,
     read: Callable[[RobotSpec], str],
@@ -117,7 +117,7 @@ def _length(key: str, label: str) -> Field:
         changed: dict[str, Any] = {key: _number(text)}
         return replace(robot, **changed)
 
-    return _robot_edit(key, label, lambda robot: _shown(getattr(robot, key)), change)
+    return _robot_field(key, label, lambda robot: _shown(getattr(robot, key)), change)
 
 
 def _named(robot: RobotSpec, text: str) -> RobotSpec:
@@ -141,7 +141,7 @@ def _weighed(robot: RobotSpec, text: str) -> RobotSpec:
         raise RobotError(reason(error), f"or {', '.join(ROBOT_WEIGHTS)}") from None
 
 
-def _motor_edit(key: str, label: str) -> Field:
+def _motor_port_field(key: str, label: str) -> Field:
     """Return the field for the port of a wheel's motor; a motor that already uses the port gets the freed one."""
     other = "right_port" if key == "left_port" else "left_port"
 
@@ -151,17 +151,17 @@ def _motor_edit(key: str, label: str) -> Field:
             ports[other] = getattr(robot, key)
         return replace(robot, **ports)
 
-    return _robot_edit(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
+    return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
 
 
-def _kind_edit(key: str, label: str) -> Field:
+def _motor_kind_field(key: str, label: str) -> Field:
     """Return the field for the kind of a wheel's motor."""
 
     def change(robot: RobotSpec, kind: str) -> RobotSpec:
         kinds: dict[str, Any] = {key: kind}
         return replace(robot, **kinds)
 
-    return _robot_edit(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
+    return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
 
 
 def _robot_word(plan: NextRun) -> str:
@@ -169,31 +169,31 @@ def _robot_word(plan: NextRun) -> str:
     return f"{word}, edited" if plan.robot_is_edited else word
 
 
-def _robot_edits() -> tuple[Field, ...]:
+def _robot_fields() -> tuple[Field, ...]:
     return (
         Field("preset", "", _robot_word, with_robot, tuple(ROBOTS)),
-        _robot_edit("name", "Name", lambda robot: robot.name, _named),
+        _robot_field("name", "Name", lambda robot: robot.name, _named),
         _length("wheel_diameter_mm", "Wheel ⌀ mm"),
         _length("wheel_spacing_mm", "Spacing mm"),
         _length("wheel_width_mm", "Width mm"),
         _length("back_mm", "Back mm"),
-        _robot_edit("weight", "Weight", _weight_name, _weighed),
-        _motor_edit("left_port", "Left motor"),
-        _motor_edit("right_port", "Right motor"),
-        _kind_edit("left_motor", "Left kind"),
-        _kind_edit("right_motor", "Right kind"),
+        _robot_field("weight", "Weight", _weight_name, _weighed),
+        _motor_port_field("left_port", "Left motor"),
+        _motor_port_field("right_port", "Right motor"),
+        _motor_kind_field("left_motor", "Left kind"),
+        _motor_kind_field("right_motor", "Right kind"),
     )
 
 
 # Sensors
 
 
-def _parts(robot: RobotSpec) -> dict[str, SensorSpec]:
+def _sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
     """Return all sensors by name."""
     return {sensor.name: sensor for sensor in robot.sensors}
 
 
-def _with_parts(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
+def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
     """Return the robot with some sensors replaced, all at once because two may have swapped ports."""
     changed = {part.name: part for part in parts}
     found: dict[str, Any] = {}
@@ -203,38 +203,38 @@ def _with_parts(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
     return replace(robot, **found)
 
 
-def _part_edit(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> Field:
+def _sensor_field(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> Field:
     """Return a field of a sensor."""
 
     def change(robot: RobotSpec, text: str) -> RobotSpec:
         changed: dict[str, Any] = {key: parse(text)}
-        return _with_parts(robot, replace(_parts(robot)[name], **changed))
+        return _with_sensors(robot, replace(_sensors(robot)[name], **changed))
 
     def read(robot: RobotSpec) -> str:
-        value = getattr(_parts(robot)[name], key)
+        value = getattr(_sensors(robot)[name], key)
         return value if isinstance(value, str) else _shown(value)
 
-    return _robot_edit(f"{name}.{key}", label, read, change, {"strategy": STRATEGIES}.get(key, ()))
+    return _robot_field(f"{name}.{key}", label, read, change, {"strategy": STRATEGIES}.get(key, ()))
 
 
-def _port_edit(name: str) -> Field:
+def _sensor_port_field(name: str) -> Field:
     """Return the field for a sensor's port; a sensor that already uses the port gets the freed one."""
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
-        parts = _parts(robot)
+        parts = _sensors(robot)
         swapped = [replace(part, port=parts[name].port) for part in parts.values() if part.port == port]
-        return _with_parts(robot, *swapped, replace(parts[name], port=port))
+        return _with_sensors(robot, *swapped, replace(parts[name], port=port))
 
-    return _robot_edit(f"{name}.port", "Port", lambda robot: _parts(robot)[name].port, change, INPUT_PORTS)
+    return _robot_field(f"{name}.port", "Port", lambda robot: _sensors(robot)[name].port, change, INPUT_PORTS)
 
 
-def _used_edit(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> Field:
+def _presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> Field:
     """Return the field that adds or removes a sensor."""
-    return _robot_edit(f"{name}.used", "Used", lambda robot: ON if name in _parts(robot) else OFF, change, SWITCHED)
+    return _robot_field(f"{name}.used", "Used", lambda robot: ON if name in _sensors(robot) else OFF, change, SWITCHED)
 
 
 def _free_port(robot: RobotSpec, wanted: str) -> str:
-    used = {part.port for part in _parts(robot).values()}
+    used = {part.port for part in _sensors(robot).values()}
     free = [port for port in (wanted, *INPUT_PORTS) if port not in used]
     if not free:
         raise RobotError("every port is in use", "switch another sensor off first")
@@ -250,7 +250,7 @@ def _placed(plan: NextRun, text: str, name: str) -> NextRun:
     return with_robot_edited(plan, replace(robot, color_sensors=tuple(eyes)), moved=True)
 
 
-def _eye_edits(name: str, eye: ColorSensorSpec, plan: NextRun) -> tuple[Field, ...]:
+def _color_sensor_fields(name: str, eye: ColorSensorSpec, plan: NextRun) -> tuple[Field, ...]:
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
         others = tuple(other for other in robot.color_sensors if other.name != name)
         if word == OFF:
@@ -262,17 +262,19 @@ def _eye_edits(name: str, eye: ColorSensorSpec, plan: NextRun) -> tuple[Field, .
         eyes = sorted((*others, again), key=lambda one: order.index(one.name) if one.name in order else len(order))
         return replace(robot, color_sensors=tuple(eyes))
 
-    used = _used_edit(name, switched)
-    if name not in _parts(plan.robot_choice.spec):
+    used = _presence_field(name, switched)
+    if name not in _sensors(plan.robot_choice.spec):
         return (used,)
-    x = Field(f"{name}.x_mm", "x mm", lambda now: _part_edit(name, "x_mm", "").read(now), partial(_placed, name=name))
+    x = Field(
+        f"{name}.x_mm", "x mm", lambda now: _sensor_field(name, "x_mm", "").read(now), partial(_placed, name=name)
+    )
     return (
         used,
-        _port_edit(name),
+        _sensor_port_field(name),
         x,
-        _part_edit(name, "y_mm", "y mm"),
-        _part_edit(name, "diameter_mm", "⌀ mm", _whole),
-        _part_edit(name, "strategy", "Weighing", str),
+        _sensor_field(name, "y_mm", "y mm"),
+        _sensor_field(name, "diameter_mm", "⌀ mm", _whole),
+        _sensor_field(name, "strategy", "Weighing", str),
     )
 
 
@@ -287,7 +289,7 @@ def _single_used(name: str, field: str, fresh: SensorSpec) -> Field:
             changed[field] = replace(fresh, port=_free_port(robot, fresh.port))
         return replace(robot, **changed)
 
-    return _used_edit(name, switched)
+    return _presence_field(name, switched)
 
 
 def _angles(text: str) -> tuple[float, ...]:
@@ -297,7 +299,7 @@ def _angles(text: str) -> tuple[float, ...]:
     return angles
 
 
-def _sonar_edits(plan: NextRun) -> tuple[Field, ...]:
+def _ultrasonic_fields(plan: NextRun) -> tuple[Field, ...]:
     sonar = plan.robot_choice.spec.ultrasonic
     fresh = sonar or plan.robot.spec.ultrasonic or UltrasonicSpec()
     used = _single_used(fresh.name, "ultrasonic", fresh)
@@ -315,37 +317,42 @@ def _sonar_edits(plan: NextRun) -> tuple[Field, ...]:
     def fan(robot: RobotSpec) -> str:
         return " ".join(map(_shown, robot.ultrasonic.ray_angles_deg)) if robot.ultrasonic else ""
 
-    rays = _robot_edit(f"{sonar.name}.ray_angles_deg", "Rays °", fan, fanned)
-    return (used, _port_edit(sonar.name), *(_part_edit(sonar.name, key, label) for key, label in labels), rays)
+    rays = _robot_field(f"{sonar.name}.ray_angles_deg", "Rays °", fan, fanned)
+    return (
+        used,
+        _sensor_port_field(sonar.name),
+        *(_sensor_field(sonar.name, key, label) for key, label in labels),
+        rays,
+    )
 
 
-def _gyro_edits(plan: NextRun) -> tuple[Field, ...]:
+def _gyro_fields(plan: NextRun) -> tuple[Field, ...]:
     gyro = plan.robot_choice.spec.gyro
     fresh = gyro or plan.robot.spec.gyro or GyroSpec()
     used = _single_used(fresh.name, "gyro", fresh)
-    return (used,) if gyro is None else (used, _port_edit(gyro.name))
+    return (used,) if gyro is None else (used, _sensor_port_field(gyro.name))
 
 
-def _further_edits(part: SensorSpec) -> tuple[Field, ...]:
+def _further_fields(part: SensorSpec) -> tuple[Field, ...]:
     keys = [field.name for field in fields(part) if type(getattr(part, field.name)) is float]
     labels = [key.replace("_deg", " °").replace("_", " ")[:MAX_LABEL] for key in keys]
     return (
-        _port_edit(part.name),
-        *(_part_edit(part.name, key, label) for key, label in zip(keys, labels, strict=True)),
+        _sensor_port_field(part.name),
+        *(_sensor_field(part.name, key, label) for key, label in zip(keys, labels, strict=True)),
     )
 
 
 # Pen and world
 
 
-def _pen_edits() -> tuple[Field, ...]:
+def _pen_fields() -> tuple[Field, ...]:
     def place(key: str) -> Field:
         def change(robot: RobotSpec, text: str) -> RobotSpec:
             changed: dict[str, Any] = {key: _number(text)}
             return replace(robot, pen=replace(robot.pen, **changed))
 
         label = key.replace("_", " ")
-        return _robot_edit(f"pen.{key}", label, lambda robot: _shown(getattr(robot.pen, key)), change)
+        return _robot_field(f"pen.{key}", label, lambda robot: _shown(getattr(robot.pen, key)), change)
 
     def width(plan: NextRun, text: str) -> NextRun:
         return with_values(plan, pen_width_mm=number(MIN_PEN_MM, MAX_PEN_MM)(text.strip().replace(",", "."), ""))
@@ -371,7 +378,7 @@ def _switch(id_: str, label: str, read: Callable[[NextRun], bool], field: str) -
     )
 
 
-def _world_edits() -> tuple[Field, ...]:
+def _world_fields() -> tuple[Field, ...]:
     def profile(plan: NextRun) -> str:
         return Path(plan.words.get("profile", plan.spec.profile.name)).name
 

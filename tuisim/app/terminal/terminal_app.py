@@ -110,7 +110,7 @@ class TerminalApp(App[None]):
             if was != self.too_small:
                 # The layout may stay the same, and would not be drawn then.
                 self.call_later(self.draw_again)
-        elif isinstance(event, (events.InputEvent, events.Paste)) and self._is_deaf_to(event):
+        elif isinstance(event, (events.InputEvent, events.Paste)) and self._ignores(event):
             return
         if isinstance(event, events.Key) and (self._waiting_keys or self._is_opening):
             # A screen that is not mounted yet would lose it.
@@ -118,7 +118,7 @@ class TerminalApp(App[None]):
             return
         await super().on_event(event)
 
-    def _is_deaf_to(self, event: events.Event) -> bool:
+    def _ignores(self, event: events.Event) -> bool:
         """Return whether to ignore an event of the user: nothing can handle it, or its target is invisible or was just
         removed."""
         if is_leaving(self):

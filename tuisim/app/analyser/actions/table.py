@@ -79,7 +79,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("hold", "H", "H", "Hold each value until the next, or not", CHART, view.hold),
         Action("align", "A", "A", "Lay runs over each other by time, distance or an event", CHART, view.ask_alignment),
         Action("against", "k", "k", "Draw the path, or one variable against another", CHART, view.ask_against),
-        Action("derive", "d", "d", "Derive a variable: slope(Colour), (Left + Right) / 2", LOG, derive.ask, "reckon"),
+        Action("derive", "d", "d", "Derive a variable: slope(Colour), (Left + Right) / 2", LOG, derive.ask, "derive"),
         Action("larger", "plus", "+", "Chart and pane, chart alone, pane alone", CHART, view.larger, of_rows=False),
         Action("column-before", "less_than_sign", "<", "Column before", TABLE, partial(table_view.choose, step=-1)),
         Action("column", "greater_than_sign", ">", "Next column", TABLE, partial(table_view.choose, step=1)),
