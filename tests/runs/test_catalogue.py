@@ -9,12 +9,14 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import RunSpec
-from tuisim.runs.catalogue import CATALOGUE_FILE
+from tuisim.errors import LogError
+from tuisim.runs.catalogue import CATALOGUE_FILE, Catalogue
 from tuisim.runs.run_folder import RunEnd
 from tuisim.runs.store import RunStore
 
@@ -123,3 +125,12 @@ def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
     assert sorted(numbers) == list(range(1, 25))
     infos = RunStore(tmp_path / "home").runs()
     assert [(info.number, info.end) for info in infos] == [(number, "finished") for number in range(1, 25)]
+
+
+def test_a_full_disk_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / CATALOGUE_FILE).mkdir()
+    monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=0))
+    with pytest.raises(
+        LogError, match=r"no space left on device \(make room, or TUISIM_HOME may name another folder\)"
+    ):
+        Catalogue(tmp_path, lambda: ()).remove(["r"])

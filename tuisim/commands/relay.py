@@ -11,7 +11,7 @@ from typing import Self, TextIO
 
 from tuisim.commands.echo import echo_error
 from tuisim.commands.exit_status import EXIT_BROKEN_PIPE
-from tuisim.commands.progress import aside
+from tuisim.commands.progress import aside, tell
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
@@ -54,6 +54,8 @@ class Interrupts:
         self.exit_code = 128 + number
         if self._handle is not None:
             self._handle.stop()
+            if self._handle.ended is not None:
+                tell("still writing; ctrl-C again cancels it")
 
 
 class Follower:

@@ -97,6 +97,11 @@ def _export(done: Sequence[StoredRun], arguments: Namespace) -> None:
             write(target)
         except (ExportError, LogError) as error:
             errors.append(error)
+        except KeyboardInterrupt:
+            option = "--telemetry " if target == arguments.telemetry else ""
+            again = f"tuisim runs export {' '.join(str(run.number) for run in done)} {option}{target}"
+            echo_error(f"tuisim: {target} was not written; the log is stored ({again})")
+            raise
     for other in errors[1:]:
         echo_error(f"tuisim: {other}")
     if errors:

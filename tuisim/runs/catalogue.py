@@ -9,6 +9,7 @@ from __future__ import annotations
 import fcntl
 import os
 import secrets
+import shutil
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
@@ -26,6 +27,7 @@ _BUSY_S = 10.0
 
 _Result = TypeVar("_Result")
 
+_FULL, _LEAST_FREE_BYTES = "no space left on device", 1 << 16
 HOME_HINT = "TUISIM_HOME may name another folder"
 
 _CREATE = """
@@ -166,7 +168,9 @@ class Catalogue:
             with closing(_open(self._path)) as connection:
                 return operation(connection)
         except (sqlite3.Error, OSError) as error:
-            raise LogError(f"the list of runs cannot be used: {error}", HOME_HINT, file=str(self._path)) from error
+            # SQLite says "disk I/O error" where a file beside its own has no room.
+            reason, hint = (_FULL, "make room, or " + HOME_HINT) if _is_full(self._home) else (error, HOME_HINT)
+            raise LogError(f"the list of runs cannot be used: {reason}", hint, file=str(self._path)) from error
 
     def _make_again(self) -> None:
         """Replace an invalid catalogue by a new one, filled from the run folders."""
@@ -195,6 +199,13 @@ class Catalogue:
             for info in sorted(self._scan(), key=lambda info: (not info.number, info.number, info.created)):
                 _insert(connection, info)
             connection.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
+
+
+def _is_full(folder: Path) -> bool:
+    try:
+        return shutil.disk_usage(folder).free < _LEAST_FREE_BYTES
+    except OSError:
+        return False
 
 
 @contextmanager
