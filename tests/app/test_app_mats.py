@@ -103,7 +103,7 @@ async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> N
         app = await ready(pilot)
         before = app.bridge.plan
         await choose(pilot, "FLL_2018_Into_Orbit")
-        await until(pilot, lambda: any("put it as FLL2018.jpg" in notice for notice in notices(app)))
+        await until(pilot, lambda: any("save it as FLL2018.jpg" in notice for notice in notices(app)))
         assert app.bridge.plan == before
 
 

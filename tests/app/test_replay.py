@@ -151,9 +151,9 @@ async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
     ("words", "said"),
     [
         (["--run", "99"], "no run '99'"),
-        (["--run", "1", "prog.py"], "not prog.py"),
-        (["--run", "1", "-b", "Lollipop"], "not background"),
-        (["--run", "1", "--world", "lab.toml"], "not lab.toml"),
+        (["--run", "1", "prog.py"], "remove prog.py"),
+        (["--run", "1", "-b", "Lollipop"], "remove background"),
+        (["--run", "1", "--world", "lab.toml"], "remove lab.toml"),
     ],
     ids=["no such run", "a program too", "a mat too", "a world too"],
 )
