@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from PIL.ImageFont import ImageFont
 
+from tests.running import Run
 from tests.shim.conftest import RunOn
 from tuisim.shim.fonts import FACES, drawn
 
@@ -71,3 +72,8 @@ def test_fonts_that_are_drawn_are_told_once(run_on: RunOn, profile: str) -> None
     assert done.errors == [
         "courB18: the published library has no font files; another font stands in, of that size and weight"
     ]
+
+
+def test_what_later_versions_of_pillow_remove_is_no_news_to_a_program_for_the_brick(run: Run) -> None:
+    warn = "warnings.warn('x is deprecated and will be removed in Pillow 14 (2027-10-15).', DeprecationWarning)"
+    assert not run(f"import warnings\nfrom PIL import Image\n{warn}", prelude="none").errors

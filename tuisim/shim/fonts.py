@@ -10,6 +10,7 @@ import io
 import struct
 import sys
 import types
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, wraps
@@ -95,6 +96,11 @@ def plain_font() -> ImageFont:
     plain: Any = getattr(ImageFont, "load_default_imagefont", ImageFont.load_default)
     found: ImageFont.ImageFont = plain()
     return found
+
+
+def quiet_pillow(_module: types.ModuleType) -> None:
+    """Hide warnings about what later versions of Pillow remove: the brick's own version never will."""
+    warnings.filterwarnings("ignore", r".* will be removed in Pillow ", DeprecationWarning)
 
 
 def patch_fonts_module(module: types.ModuleType) -> None:

@@ -11,7 +11,7 @@ from tuisim.shim.brick import build_brick
 from tuisim.shim.buttons import evdev_module, patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
 from tuisim.shim.display import patch_display_module
-from tuisim.shim.fonts import patch_fonts_module
+from tuisim.shim.fonts import patch_fonts_module, quiet_pillow
 from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.robolab import glue_module, patch_lego_module
@@ -90,6 +90,7 @@ def install(
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
         "ev3dev2.sound": lambda module: patch_sound_module(session, module, mixer),
+        "PIL": quiet_pillow,
         "subprocess": system.finish_subprocess,
         "asyncio.base_events": finish_asyncio,
         **dict.fromkeys(REFUSED, refuse_classes),

@@ -105,3 +105,9 @@ def test_untouched_lamps_are_green() -> None:
 )
 def test_the_last_sound_stands_below(sound: str, shown: str) -> None:
     assert text_of(BrickState(sound=sound), 60, 20)[-1].strip() == shown
+
+
+@pytest.mark.parametrize(("width", "shown"), [(60, "green"), (31, "gr…"), (27, "")], ids=str)
+def test_the_name_of_a_lamp_is_cut_with_an_ellipsis(width: int, shown: str) -> None:
+    (row,) = [line for line in text_of(BrickState(), width, 6) if "▲" in line]
+    assert row.split("⌫")[0].strip() == shown

@@ -211,7 +211,10 @@ def _lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
     red, green, blue = led_rgb(*lamp)
     ink = "#101010" if 3 * red + 6 * green > 1000 else "#d8d8d8"
     style = Style(color=ink, bgcolor=Color.from_rgb(red, green, blue))
-    return (led_name(*lamp) if named else "").center(columns)[:columns], style
+    name = led_name(*lamp) if named else ""
+    if len(name) > columns:
+        name = f"{name[: columns - 1]}…" if columns > 1 else ""
+    return name.center(columns), style
 
 
 def _pad(
