@@ -10,7 +10,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from tuisim.config.mat_image import check_file
@@ -184,16 +186,26 @@ def catalogue() -> Mapping[str, Background]:
         ConfigError: there is no folder of mats.
         BackgroundError: the catalogue cannot be read or is invalid.
     """
+    file = backgrounds_folder() / CATALOG
+    try:
+        status = file.stat()
+    except OSError as error:
+        raise BackgroundError(f"cannot be read: {error.strerror or error}", file=str(file)) from error
+    return _read_catalogue(file, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=1)
+def _read_catalogue(file: Path, _mtime_ns: int, _size: int) -> Mapping[str, Background]:
+    # Choosing a mat needs the catalogue several times; an edited file has another time or size.
     import tomllib
 
-    file = backgrounds_folder() / CATALOG
     try:
         entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise BackgroundError(f"cannot be read: {error.strerror or error}", file=str(file)) from error
     except ValueError as error:
         raise BackgroundError(f"is not TOML: {error}", file=str(file)) from error
-    return {name: _background(name, entry, file) for name, entry in entries.items()}
+    return MappingProxyType({name: _background(name, entry, file) for name, entry in entries.items()})
 
 
 def background(name: str) -> Background:
