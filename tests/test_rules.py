@@ -175,6 +175,16 @@ def test_ruff_finds_nothing() -> None:
     assert tool("ruff", "check", "--no-cache", ".") == ""
 
 
+@pytest.mark.parametrize(
+    "words",
+    # Tests and drawings may import what only the tests need, and need not use everything.
+    [["tuisim"], ["tests", "backgrounds", "--ignore", "DEP002,DEP004"]],
+    ids=["package", "tests and drawings"],
+)
+def test_imported_packages_are_declared(words: list[str]) -> None:
+    assert tool("deptry", "--no-ansi", *words) == ""
+
+
 @pytest.mark.slow
 def test_types_are_strict() -> None:
     assert tool("mypy") == ""
