@@ -18,6 +18,7 @@ from textual.widget import Widget
 
 from tuisim.app.actions import branch, time_travel
 from tuisim.app.actions.table import ACTIONS, Act
+from tuisim.app.background import is_leaving
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, Series, sample_series
@@ -34,7 +35,6 @@ from tuisim.app.snapshot import GOOD_ENDS
 from tuisim.app.speech import Voice
 from tuisim.app.start_options import AppSettings
 from tuisim.app.terminal.pacer import Pacer
-from tuisim.app.terminal.terminal_app import is_leaving
 from tuisim.errors import TuisimError
 from tuisim.protocol import Ended
 from tuisim.runs.records import CONSOLE, DISPLAY, OutputRow

@@ -9,8 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tuisim.app import background
 from tuisim.app.setup import next_run as plans
-from tuisim.app.setup.mat import mat_key
+from tuisim.app.setup.mat import mat_key, prepare_mat
 from tuisim.app.setup.next_run import NextRun
 from tuisim.config.options import Settings
 from tuisim.errors import TuisimError
@@ -72,18 +73,9 @@ class Loader:
 
     def prepare_mat(self) -> None:
         """Prepare the mat in the background; `LabApp.mat_ready` is called when done."""
-        work = partial(self._prepare_in_thread, self._lab.bridge.plan.spec)
-        self._lab.run_worker(work, thread=True, group="mat", exclusive=True)
-
-    def _prepare_in_thread(self, spec: RunSpec) -> None:
-        from tuisim.app.setup.mat import prepare_mat
-
-        try:
-            mat = prepare_mat(spec)
-        except TuisimError as error:
-            self._lab.call_from_thread(self._mat_failed, spec, error)
-            return
-        self._lab.call_from_thread(self._prepared, mat)
+        spec = self._lab.bridge.plan.spec
+        work, failed = partial(prepare_mat, spec), partial(self._mat_failed, spec)
+        background.run(self._lab, work, self._prepared, failed, group="mat", exclusive=True)
 
     def _mat_failed(self, spec: RunSpec, error: TuisimError) -> None:
         """Report the error in a mat, and restore the previous mat."""

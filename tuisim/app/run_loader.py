@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tuisim.app import background
 from tuisim.app.labels import end_label
 from tuisim.app.loader import NOT_NOW
 from tuisim.app.setup.next_run import plan_of_run, with_arguments
@@ -38,34 +39,30 @@ def open_run(lab: LabApp, run: str | StoredRun) -> None:
     if lab.bridge.in_run:
         lab.say(NOT_NOW)
         return
-    lab.run_worker(partial(_prepare_in_thread, lab, run), thread=True, group="mat", exclusive=True)
+    background.run(lab, partial(_prepare, run), partial(_show, lab), lab.complain, group="mat", exclusive=True)
 
 
-def _prepare_in_thread(lab: LabApp, word: str | StoredRun) -> None:
+def _prepare(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
+    """Return a run with its mat, or with a blank one and the reason for that. Reads both."""
     from tuisim.app.setup.mat import blank_mat, prepare_mat_of
     from tuisim.runs.store import RunStore
 
+    run = RunStore().load_run(word) if isinstance(word, str) else word
+    if not run.telemetry.count:
+        raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
+    # Packed recordings are unpacked here, which may be slow and may fail.
+    run.telemetry.record(0)
+    next(run.output.rows(), None)
     try:
-        run = RunStore().load_run(word) if isinstance(word, str) else word
-        if not run.telemetry.count:
-            raise LogError(
-                run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder)
-            )
-        # Packed recordings are unpacked here, which may be slow and may fail.
-        run.telemetry.record(0)
-        next(run.output.rows(), None)
+        return run, prepare_mat_of(run), None
     except TuisimError as error:
-        lab.call_from_thread(lab.complain, error)
-        return
-    try:
-        mat = prepare_mat_of(run)
-    except TuisimError as error:
-        lab.call_from_thread(lab.complain, error)
-        mat = blank_mat(run.spec)
-    lab.call_from_thread(_show, lab, run, mat)
+        return run, blank_mat(run.spec), error
 
 
-def _show(lab: LabApp, run: StoredRun, mat: Mat) -> None:
+def _show(lab: LabApp, loaded: tuple[StoredRun, Mat, TuisimError | None]) -> None:
+    run, mat, mat_error = loaded
+    if mat_error is not None:
+        lab.complain(mat_error)
     if lab.bridge.in_run:
         lab.say(NOT_NOW)
         return

@@ -6,9 +6,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tuisim.app import background
 from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.setup import next_run as plans
-from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
@@ -115,28 +115,26 @@ def compare(lab: LabApp) -> None:
 
     def take(run_id: str | None) -> None:
         if run_id:
-            work = partial(_diff_in_thread, lab, recording, run_id)
-            lab.run_worker(work, thread=True, group="diff", exclusive=True)
+            work, show = partial(_diff, recording.run_id, run_id), partial(_show, lab, recording)
+            background.run(lab, work, show, lab.complain, group="diff", exclusive=True)
 
     lab.push_screen(RunChooser(recording), take)
 
 
-def _diff_in_thread(lab: LabApp, recording: Recording, other_id: str) -> None:
+def _diff(run_id: str, other_id: str) -> tuple[str, RunDiff]:
+    """Return the name of the other run, and the differences. Reads both runs."""
     from tuisim.runs.diff import diff_runs
     from tuisim.runs.store import RunStore
 
-    try:
-        store = RunStore()
-        other = store.load_run(other_id)
-        diff = diff_runs(store.load_run(recording.run_id), other)
-    except TuisimError as error:
-        lab.call_from_thread(lab.complain, error)
-        return
-    lab.call_from_thread(_show, lab, recording, f"run {other.number}", diff)
+    store = RunStore()
+    other = store.load_run(other_id)
+    return f"run {other.number}", diff_runs(store.load_run(run_id), other)
 
 
-def _show(lab: LabApp, recording: Recording, other: str, diff: RunDiff) -> None:
+def _show(lab: LabApp, recording: Recording, compared: tuple[str, RunDiff]) -> None:
     from tuisim.app.dialogs.differences import Differences
+
+    other, diff = compared
 
     def go(there: bool | None) -> None:
         if there and diff.tick and lab.bridge.timeline.recording is recording:

@@ -26,9 +26,9 @@ from tuisim.app.analyser.columns import ask_if_unsure
 from tuisim.app.analyser.pane import PaneView
 from tuisim.app.analyser.panes import pane_frame
 from tuisim.app.analyser.world_pane import Beside
+from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.terminal.cell_view import LinesView
-from tuisim.app.terminal.terminal_app import is_leaving
 from tuisim.errors import LogError, TuisimError
 
 if TYPE_CHECKING:

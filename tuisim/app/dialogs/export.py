@@ -10,8 +10,8 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
+from tuisim.app import background
 from tuisim.app.dialogs.save import FileDialog
-from tuisim.errors import TuisimError
 from tuisim.logs.export import LISTED
 
 _KINDS = {
@@ -59,20 +59,18 @@ class ExportDialog(FileDialog):
     def write(self, target: Path) -> None:
         """Write the file in the background: it may be large."""
         self.say("Writing …")
-        self.run_worker(partial(self._write, target, self._telemetry), thread=True)
-
-    def _write(self, target: Path, telemetry: bool) -> None:
-        from tuisim.logs.export import export_samples, export_telemetry
-        from tuisim.runs.store import RunStore
-
-        try:
-            run = RunStore().load_run(self._run_id)
-            export_telemetry(run, target) if telemetry else export_samples([run], target)
-        except TuisimError as error:
-            self.app.call_from_thread(self.failed, str(error))
-            return
-        self.app.call_from_thread(self._written, target)
+        work = partial(_write, self._run_id, target, self._telemetry)
+        background.run(self, work, self._written, lambda error: self.failed(str(error)))
 
     def _written(self, target: Path) -> None:
         self.app.notify(f"The log is in {target}", markup=False)
         self.dismiss(target)
+
+
+def _write(run_id: str, target: Path, telemetry: bool) -> Path:
+    from tuisim.logs.export import export_samples, export_telemetry
+    from tuisim.runs.store import RunStore
+
+    run = RunStore().load_run(run_id)
+    export_telemetry(run, target) if telemetry else export_samples([run], target)
+    return target

@@ -12,6 +12,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
+from tuisim.app import background
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.render.mat import Pixels, shrink
 from tuisim.app.render.viewport import whole_field
@@ -92,20 +93,16 @@ class MatPicker(ListDialog):
             view.set_picture(picture)
         else:
             work = partial(self._decode, name, width, height, view.ground_rgb)
-            self.run_worker(work, thread=True, group="picture", exclusive=True)
+            then, failed = partial(self._decoded, (name, width, height)), partial(self._failed, name)
+            background.run(self, work, then, failed, group="picture", exclusive=True)
 
-    def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> None:
+    def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> Pixels:
         from tuisim.config.mat_image import decode, read_file
         from tuisim.config.own_mats import find_mat
 
-        try:
-            found = find_mat(name, self._folder)
-            mat = decode(read_file(found.image), found.image, found.fit or "stretch")
-        except TuisimError as error:
-            self.app.call_from_thread(self._told, name, str(error))
-            return
-        picture = shrink(mat, whole_field(width, height), outside_rgb)
-        self.app.call_from_thread(self._decoded, (name, width, height), picture)
+        found = find_mat(name, self._folder)
+        mat = decode(read_file(found.image), found.image, found.fit or "stretch")
+        return shrink(mat, whole_field(width, height), outside_rgb)
 
     def _decoded(self, key: tuple[str, int, int], picture: Pixels) -> None:
         self._pictures[key] = picture
@@ -118,7 +115,7 @@ class MatPicker(ListDialog):
             # The view got its height while the image was decoded.
             self._show_again()
 
-    def _told(self, name: str, text: str) -> None:
+    def _failed(self, name: str, error: TuisimError) -> None:
         if self.is_attached and name == self._shown:
             self.query_one(PixelView).clear_picture()
-            self.query_one("#title", Static).update(text)
+            self.query_one("#title", Static).update(str(error))

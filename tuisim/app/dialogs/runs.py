@@ -14,12 +14,12 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
+from tuisim.app import background
 from tuisim.app.actions.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.labels import end_label
 from tuisim.app.snapshot import GOOD_ENDS
 from tuisim.charts.text_runs import cut
-from tuisim.errors import TuisimError
 from tuisim.runs.catalogue import RunInfo
 
 if TYPE_CHECKING:
@@ -106,17 +106,7 @@ class RunChooser(ListDialog):
     def on_mount(self) -> None:
         """Read the list in the background: there may be thousands of runs."""
         super().on_mount()
-        self.run_worker(self._read, thread=True)
-
-    def _read(self) -> None:
-        from tuisim.runs.store import RunStore
-
-        try:
-            runs = RunStore().runs()
-        except TuisimError as error:
-            self.app.call_from_thread(self._say, str(error))
-            return
-        self.app.call_from_thread(self._fill, runs)
+        background.run(self, _stored_runs, self._fill, lambda error: self._say(str(error)))
 
     def _fill(self, runs: list[RunInfo]) -> None:
         self._runs = [run for run in runs if run.id != self._left_out]
@@ -160,6 +150,12 @@ class RunChooser(ListDialog):
         options = self.query_one(OptionList)
         if options.highlighted is not None:
             self.dismiss(options.get_option_at_index(options.highlighted).id)
+
+
+def _stored_runs() -> list[RunInfo]:
+    from tuisim.runs.store import RunStore
+
+    return RunStore().runs()
 
 
 class RunsChooser(RunChooser):

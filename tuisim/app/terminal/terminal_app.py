@@ -22,6 +22,7 @@ from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
 
+from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.terminal.driver import TerminalDriver
 from tuisim.app.terminal.frame_buffer import FrameBuffer
@@ -79,12 +80,6 @@ class TooSmall(CompositorUpdate):
 
 
 _HARMLESS = Sanitize()
-
-
-def is_leaving(app: App[Any]) -> bool:
-    """Return whether the app is shutting down: nothing may be opened any more, for it could not be drawn."""
-    # Textual has no public API for it.
-    return app._exit
 
 
 class TerminalApp(App[None]):
