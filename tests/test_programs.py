@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT, Command
-from tuisim.config.assets import programs
-from tuisim.config.program_file import read_program
+from tuisim.config.program_file import programs, read_program
 from tuisim.runs.brick_state import ROW_BYTES, BrickState, face_after
 from tuisim.runs.records import DISPLAY
 from tuisim.runs.store import load_run

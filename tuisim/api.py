@@ -126,7 +126,7 @@ def _source(program: str | Path) -> ProgramSource:
         return program_of_text(program, None, "program")
     path = Path(program)
     if path.parent == Path() and not path.exists():
-        from tuisim.config.assets import programs_folder
+        from tuisim.config.folders import programs_folder
 
         for name in (path.name, f"{path.name}.py"):
             if (example := programs_folder() / name).is_file():

@@ -15,7 +15,7 @@ from tuisim.app.editor.check import mistake_in
 from tuisim.app.editor.drafts import FOLDER, drop_draft, find_draft, keep_draft
 from tuisim.app.editor.syntax import Colouring, spans
 from tuisim.app.editor.text_file import Form, is_protected, read_text, write_text
-from tuisim.config.assets import programs
+from tuisim.config.program_file import programs
 from tuisim.errors import ConfigError
 
 

@@ -19,10 +19,9 @@ from tuisim.app.editor.drafts import find_draft, keep_draft
 from tuisim.app.panels.code import Code
 from tuisim.app.snapshot import ENDED, IDLE, RUNNING
 from tuisim.app.start_options import AppSettings
-from tuisim.config.assets import programs
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.config.program_file import read_program
+from tuisim.config.program_file import programs, read_program
 from tuisim.runs.handle import Program
 
 pytestmark = pytest.mark.usefixtures("home")

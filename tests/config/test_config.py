@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.config.assets import backgrounds
 from tuisim.config.build import build_run_spec
+from tuisim.config.mats import backgrounds
 from tuisim.config.options import Settings, parse_words, settings_of
 from tuisim.config.presets import OBSTACLES, ROBOTS
 from tuisim.core.collision import reach_mm

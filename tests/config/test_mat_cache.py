@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tuisim.config import assets, mat_cache
+from tuisim.config import folders, mat_cache, mats
 from tuisim.core.field import disc_mask
 from tuisim.errors import BackgroundError
 
@@ -52,7 +52,7 @@ def naive_sums(pixels: np.ndarray, diameter: int, col: int, row: int) -> list[in
 
 
 def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
-    files = mat_cache.prepare(assets.background("Testcard").image, (10, 20, 30))
+    files = mat_cache.prepare(mats.background("Testcard").image, (10, 20, 30))
     field, pixels = mat_cache.open_field(files), mat_cache.mat_pixels(files)
     dice = random.Random(5)
     for diameter in (10, 20, 30):
@@ -66,7 +66,7 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
 
 @pytest.mark.parametrize("diameter", [2, 7, 100, 128])
 def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
-    files = mat_cache.prepare(assets.background("Radial_red").image, [diameter])
+    files = mat_cache.prepare(mats.background("Radial_red").image, [diameter])
     field, pixels = mat_cache.open_field(files), mat_cache.mat_pixels(files)
     for col, row in [(1130, 520), (-3, -3), (WIDTH - 2, 600)]:
         assert list(field.disc_sums(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
@@ -79,7 +79,7 @@ def test_white_discs_do_not_overflow(home: Path, tmp_path: Path) -> None:
 
 
 def test_pixels_are_those_of_the_image(home: Path) -> None:
-    image = assets.background("Rainbow_bands").image
+    image = mats.background("Rainbow_bands").image
     files = mat_cache.prepare(image, ())
     with Image.open(image) as opened:
         assert np.array_equal(mat_cache.mat_pixels(files), np.asarray(opened))
@@ -187,7 +187,7 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_without_a_home_the_users_cache_is_used(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.delenv("TUISIM_HOME")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert mat_cache.cache_folder() == tmp_path / "tuisim"
+    assert folders.cache_folder() == tmp_path / "tuisim"
 
 
 def test_opening_needs_no_heavy_library(home: Path, tmp_path: Path) -> None:

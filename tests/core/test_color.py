@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tuisim.config import assets, mat_cache
+from tuisim.config import mat_cache, mats
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_mask, disc_pixels
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors import color
@@ -31,7 +31,7 @@ def mat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenMat]:
 
         @cache
         def opened(name: str) -> Field:
-            return mat_cache.open_field(mat_cache.prepare(assets.background(name).image, (10, 20, 30)))
+            return mat_cache.open_field(mat_cache.prepare(mats.background(name).image, (10, 20, 30)))
 
         yield opened
     # A hundred megabytes a mat.

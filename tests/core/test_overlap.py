@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
 from tests.core.test_solid import overlap_mm, simulation
-from tuisim.config.assets import backgrounds
+from tuisim.config.mats import backgrounds
 from tuisim.core.geometry import Pose
 from tuisim.core.motors import FOREVER
 from tuisim.core.profile import PROFILES

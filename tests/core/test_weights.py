@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tuisim.config import assets, mat_cache
+from tuisim.config import mat_cache, mats
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors.color import reading
@@ -32,7 +32,7 @@ EDGE = {
 
 @pytest.fixture(scope="module")
 def grey_bands() -> Field:
-    return mat_cache.open_field(mat_cache.prepare(assets.background("Grey_bands").image, {20}))
+    return mat_cache.open_field(mat_cache.prepare(mats.background("Grey_bands").image, {20}))
 
 
 def seen(field: Field, x_mm: float, strategy: str, light: int = 0) -> float:

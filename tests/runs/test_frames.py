@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from tests.runs.run_recorder import Recorder
-from tuisim.config.assets import background
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
+from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors import mounted

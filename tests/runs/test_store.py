@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.runs.run_recorder import PROGRAM, Recorder
-from tuisim.config.home import home_folder
+from tuisim.config.folders import home_folder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import LogError
 from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo

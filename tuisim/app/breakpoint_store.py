@@ -26,7 +26,7 @@ class Kept:
 
 
 def _file(program: str) -> Path:
-    from tuisim.config.home import home_folder
+    from tuisim.config.folders import home_folder
 
     return home_folder() / FOLDER / f"{hashlib.sha256(program.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
 

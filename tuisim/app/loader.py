@@ -358,7 +358,7 @@ def _settings_in(program: Program | None) -> Mapping[str, Any]:
 
 def _program_path(word: str) -> str:
     """Return the path of a program that a world file names: a path, or the name of an example."""
-    from tuisim.config.assets import programs
+    from tuisim.config.program_file import programs
 
     examples = {name: path for name, path, _ in programs()}
     if Path(word).exists():

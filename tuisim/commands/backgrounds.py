@@ -8,9 +8,8 @@ from pathlib import Path
 
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.config.assets import Background
+from tuisim.config.mats import Background, Taken, import_originals, mats, own_folder
 from tuisim.config.options import SwitchParser
-from tuisim.config.own_mats import Taken, import_originals, mats, own_folder
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import counted, listed
 

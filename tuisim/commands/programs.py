@@ -6,8 +6,9 @@ from argparse import Namespace
 
 from tuisim.commands.echo import echo, echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.config.assets import programs, programs_folder
+from tuisim.config.folders import programs_folder
 from tuisim.config.options import SwitchParser
+from tuisim.config.program_file import programs
 
 
 def add_arguments(parser: SwitchParser) -> None:

@@ -78,7 +78,7 @@ def find_program(word: str) -> Path:
         raise ConfigError(f"cannot read {word}: {error.strerror or error}") from error
     if not path.name or path.parent != Path() or path.exists():
         return path
-    from tuisim.config.assets import programs_folder
+    from tuisim.config.folders import programs_folder
 
     for name in (path.name, f"{path.name}.py"):
         if (example := programs_folder() / name).is_file():

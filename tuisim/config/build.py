@@ -7,10 +7,9 @@ import os
 from dataclasses import replace
 from typing import Any
 
-from tuisim.config.assets import Background
+from tuisim.config.mats import Background, find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles
 from tuisim.config.options import RobotChoice, Settings
-from tuisim.config.own_mats import find_mat, spec_name
 from tuisim.config.profiles import load_profile
 from tuisim.config.reader import errors_at
 from tuisim.config.robots import choose_robot

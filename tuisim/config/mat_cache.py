@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.atomic import PART_SUFFIX, make_private_folder, replacing, sweep
+from tuisim.config.folders import cache_folder
 from tuisim.config.mat_image import check_fit, decode, fits_as_it_is, read_file
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -66,15 +67,6 @@ class FieldFiles:
         """
         sums = tuple((int(diameter), Path(path)) for diameter, path in data["sums"])
         return cls(int(data["width_px"]), int(data["height_px"]), Path(data["pixels"]), sums)
-
-
-def cache_folder() -> Path:
-    """Return the folder of prepared mats: `cache` in TUISIM_HOME, else the user's cache folder."""
-    if home := os.environ.get("TUISIM_HOME"):
-        return Path(home) / "cache"
-    import platformdirs
-
-    return platformdirs.user_cache_path("tuisim")
 
 
 def _pixels_size() -> int:

@@ -1,4 +1,4 @@
-"""Preludes: source text that runs before a program and defines names for it."""
+"""Preludes: source text that runs before a program and defines names for it, and the magics that choose it."""
 
 from __future__ import annotations
 
@@ -30,3 +30,10 @@ def say(txt, wait=False, show=True):
 
 PRELUDE_TEXTS: Mapping[str, str] = {"none": "", "imports": _IMPORTS, "preloaded": _IMPORTS + _INSTANCES}
 """The text of each prelude, by name."""
+
+PRELUDES: Mapping[str, str] = {
+    "sim_magic": "none",
+    "sim_magic_imports": "imports",
+    "sim_magic_preloaded": "preloaded",
+}
+"""The prelude of each magic."""

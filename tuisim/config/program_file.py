@@ -1,4 +1,4 @@
-"""Reads a program file: its text, its magic line, and its prelude."""
+"""Program files: the examples, and what a program file contains: its text, its magic line, its prelude."""
 
 from __future__ import annotations
 
@@ -10,22 +10,15 @@ import symtable
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from tuisim.config.assets import programs
+from tuisim.config.folders import programs_folder
 from tuisim.config.options import nearest, parse_words
-from tuisim.config.preludes import PRELUDE_TEXTS
+from tuisim.config.preludes import PRELUDE_TEXTS, PRELUDES
 from tuisim.errors import ConfigError
 from tuisim.source import decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
-
-PRELUDES: Mapping[str, str] = {
-    "sim_magic": "none",
-    "sim_magic_imports": "imports",
-    "sim_magic_preloaded": "preloaded",
-}
-"""The prelude of each magic."""
 
 _FILE_FIELDS = {"background", "robot", "obstacles", "profile"}
 """Settings that may name a file."""
@@ -65,6 +58,35 @@ class ProgramSource:
     """Switches of the magic line, by field of `Settings`; file names are resolved from the program's folder."""
     module_folder: str = ""
     """Folder of its notebook if it is a cell; empty for a program file."""
+
+
+class ProgramFile(NamedTuple):
+    """One example program."""
+
+    name: str
+    """File name, such as `log_greys.py`."""
+    path: Path
+    title: str
+    """First line of the program's docstring, empty if it has none."""
+
+
+def _title_of(path: Path) -> str:
+    try:
+        lines = source_lines(path.read_text(encoding="utf-8"))
+        # A program may begin with a magic line, which is not Python.
+        module = ast.parse("\n".join("" if line.startswith("%") else line for line in lines))
+    except (SyntaxError, ValueError, OSError):
+        return ""
+    return (ast.get_docstring(module) or "").partition("\n")[0].strip()
+
+
+def programs() -> list[ProgramFile]:
+    """Return the example programs by name.
+
+    Raises:
+        ConfigError: there is no folder of programs.
+    """
+    return [ProgramFile(path.name, path, _title_of(path)) for path in sorted(programs_folder().glob("*.py"))]
 
 
 def _head(lines: list[str]) -> Iterator[tuple[int, str]]:

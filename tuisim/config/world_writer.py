@@ -8,11 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.assets import Background
 from tuisim.config.build import build_run_spec, robot_on_mat
+from tuisim.config.mats import Background, mat_of_spec
 from tuisim.config.obstacles import obstacle_lines
 from tuisim.config.options import RobotChoice, settings_of
-from tuisim.config.own_mats import mat_of_spec
 from tuisim.config.presets import OBSTACLES, ROBOTS
 from tuisim.config.profiles import profile_lines
 from tuisim.config.reader import Section, parse_toml

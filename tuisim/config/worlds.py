@@ -9,10 +9,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.assets import programs_folder
+from tuisim.config.folders import programs_folder
+from tuisim.config.mats import find_mat
 from tuisim.config.obstacles import load_obstacles, obstacles_from_table
 from tuisim.config.options import MAX_ANGLE_DEG, MAX_PEN_MM, MAX_POSITION_MM, MAX_SEED, MIN_PEN_MM, PANELS, pen_color
-from tuisim.config.own_mats import find_mat
 from tuisim.config.profiles import load_profile, profile_from_table
 from tuisim.config.reader import Section, means_file, name_of, read_file, shown
 from tuisim.config.robot_table import robot_from_table

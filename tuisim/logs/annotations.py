@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
-from tuisim.config.home import home_folder
+from tuisim.config.folders import home_folder
 from tuisim.errors import LogError
 
 NOTES_FILE = "notes.jsonl"

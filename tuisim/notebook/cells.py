@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.config.options import nearest
-from tuisim.config.program_file import PRELUDES, ProgramSource, beside
+from tuisim.config.preludes import PRELUDES
+from tuisim.config.program_file import ProgramSource, beside
 from tuisim.errors import ConfigError
 from tuisim.notebook.magic_line import lasting_after, parse_line
 from tuisim.source import source_lines

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from IPython.core.interactiveshell import InteractiveShell
 
-from tuisim.config.program_file import PRELUDES
+from tuisim.config.preludes import PRELUDES
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds
 from tuisim.notebook.lab import Lab, roboSim

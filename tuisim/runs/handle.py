@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints
-from tuisim.config import assets
+from tuisim.config import mats
 from tuisim.config.mat_cache import FieldFiles, prepare
 from tuisim.core.spec import RunSpec
 from tuisim.errors import HostError, LogError
@@ -391,7 +391,7 @@ def field_files(spec: RunSpec) -> FieldFiles:
     Raises:
         BackgroundError: the mat does not exist, or its image cannot be read.
     """
-    image = assets.background(spec.world.background).image
+    image = mats.background(spec.world.background).image
     return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tuisim.config.assets import background
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
+from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.errors import ConfigError, LogError
 from tuisim.runs.run_folder import StoredRun

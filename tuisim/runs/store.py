@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.atomic import make_private_folder
-from tuisim.config.home import home_folder
+from tuisim.config.folders import home_folder
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.errors import LogError

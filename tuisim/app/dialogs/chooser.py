@@ -132,7 +132,7 @@ class Chooser(ListDialog):
 
 def program_chooser() -> Chooser:
     """Return the dialog for programs and worlds: those in the current folder, and the examples."""
-    from tuisim.config.assets import programs
+    from tuisim.config.program_file import programs
     from tuisim.config.worlds import load_world
 
     examples = programs()

@@ -21,7 +21,7 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
-    from tuisim.config.assets import Background
+    from tuisim.config.mats import Background
 
 WIDEST_NAME = 32
 """Most columns of the list: a custom file may have any name."""
@@ -47,7 +47,7 @@ class MatPicker(ListDialog):
 
     def content(self) -> ComposeResult:
         """Return the list, the preview, and a path field."""
-        from tuisim.config.own_mats import spec_name
+        from tuisim.config.mats import spec_name
 
         listed = OptionList(*(Option(name, id=name) for name in self._mats), markup=False)
         listed.styles.width = min(max(map(len, self._mats), default=0) + 5, WIDEST_NAME)
@@ -98,7 +98,7 @@ class MatPicker(ListDialog):
 
     def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> Pixels:
         from tuisim.config.mat_image import decode, read_file
-        from tuisim.config.own_mats import find_mat
+        from tuisim.config.mats import find_mat
 
         found = find_mat(name, self._folder)
         mat = decode(read_file(found.image), found.image, found.fit or "stretch")

@@ -27,7 +27,7 @@ class Draft:
 
 
 def _file(path: str) -> Path:
-    from tuisim.config.home import home_folder
+    from tuisim.config.folders import home_folder
 
     return home_folder() / FOLDER / f"{hashlib.sha256(path.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
 

@@ -83,7 +83,7 @@ def _is_named(encoding: str, text: str) -> bool:
 
 def is_protected(path: Path) -> bool:
     """Return whether a program must not be overwritten: it is an example, or read-only."""
-    from tuisim.config.assets import programs_folder
+    from tuisim.config.folders import programs_folder
 
     examples = programs_folder().resolve()
     return path.resolve().parent == examples or (path.exists() and not os.access(path, os.W_OK))

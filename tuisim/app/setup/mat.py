@@ -53,9 +53,9 @@ def prepare_mat(spec: RunSpec) -> Mat:
     Raises:
         BackgroundError: there is no such mat, or its image cannot be read.
     """
-    from tuisim.config import assets, mat_cache
+    from tuisim.config import mat_cache, mats
 
-    image = assets.background(spec.world.background).image
+    image = mats.background(spec.world.background).image
     key = mat_key(spec)
     return _opened(key, mat_cache.prepare(image, key[2], fit=key[1]))
 

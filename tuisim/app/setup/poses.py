@@ -73,7 +73,7 @@ _LIMITS = {"x_mm": 10_000.0, "y_mm": 10_000.0, "heading_deg": 36_000.0}
 
 def poses_file() -> Path:
     """Return the path of the file of saved poses."""
-    from tuisim.config.home import home_folder
+    from tuisim.config.folders import home_folder
 
     return home_folder() / FILE
 

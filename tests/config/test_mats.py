@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.config import assets
+from tuisim.config import folders, mats, program_file
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
 from tuisim.errors import BackgroundError, ConfigError
@@ -49,7 +49,7 @@ def given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An assets folder of the test's own, with one mat and one program."""
     (tmp_path / "backgrounds").mkdir()
     (tmp_path / "programs").mkdir()
-    shutil.copy(assets.backgrounds_folder() / "Square.png", tmp_path / "backgrounds" / "Mine.png")
+    shutil.copy(folders.backgrounds_folder() / "Square.png", tmp_path / "backgrounds" / "Mine.png")
     monkeypatch.setenv("TUISIM_ASSETS", str(tmp_path))
     catalog(tmp_path, GOOD)
     return tmp_path
@@ -64,25 +64,25 @@ def catalog(folder: Path, text: str) -> None:
 
 @pytest.mark.parametrize("name", STARTS)
 def test_mat_has_its_start_pose(name: str) -> None:
-    found = assets.background(name)
+    found = mats.background(name)
     assert found.start == Pose(*STARTS[name])
     assert found.image.is_file()
     assert found.title and "\n" not in found.title
 
 
 def test_only_one_mat_brings_obstacles() -> None:
-    boxes = {name: mat.obstacles for name, mat in assets.backgrounds().items() if mat.obstacles}
+    boxes = {name: mat.obstacles for name, mat in mats.backgrounds().items() if mat.obstacles}
     corners = ((46, 388), (479, 704), (852, 388), (1374, 388), (1758, 900), (2126, 388))
     assert boxes == {"Obstacles_Test": tuple(Obstacle(x, y, 150, 150) for x, y in corners)}
 
 
 def test_only_radial_grey_moves_sensors() -> None:
-    moved = {name: mat.sensor_x_mm for name, mat in assets.backgrounds().items() if mat.sensor_x_mm}
+    moved = {name: mat.sensor_x_mm for name, mat in mats.backgrounds().items() if mat.sensor_x_mm}
     assert moved == {"Radial_grey": {"left": -60.0, "right": 60.0}}
 
 
 def test_every_mat_is_listed_in_order() -> None:
-    assert [name for name in assets.backgrounds() if name in STARTS] == list(STARTS)
+    assert [name for name in mats.backgrounds() if name in STARTS] == list(STARTS)
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_every_mat_is_listed_in_order() -> None:
 )
 def test_a_wrong_name_gets_a_guess_and_the_list(name: str, guess: str) -> None:
     with pytest.raises(BackgroundError) as caught:
-        assets.background(name)
+        mats.background(name)
     assert name in caught.value.message
     assert f"did you mean {guess}?" in caught.value.hint
     assert all(known in caught.value.hint for known in STARTS)
@@ -100,7 +100,7 @@ def test_a_wrong_name_gets_a_guess_and_the_list(name: str, guess: str) -> None:
 @pytest.mark.parametrize("name", ["", "zzzzzz", "..", "~"])
 def test_a_strange_name_is_refused(name: str) -> None:
     with pytest.raises(BackgroundError, match="no such mat"):
-        assets.background(name)
+        mats.background(name)
 
 
 @pytest.fixture
@@ -108,7 +108,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A current folder with pictures in it."""
     (tmp_path / "mats").mkdir()
     for name in ("maze.png", "maze", "mats/maze.v2.jpg", "Loop"):
-        shutil.copy(assets.backgrounds_folder() / "Square.png", tmp_path / name)
+        shutil.copy(folders.backgrounds_folder() / "Square.png", tmp_path / name)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
     return tmp_path
@@ -127,18 +127,18 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ],
 )
 def test_an_image_is_a_mat(word: str, file: str, name: str, here: Path) -> None:
-    mat = assets.background(word)
+    mat = mats.background(word)
     assert (mat.name, mat.image, mat.start) == (name, here / file, Pose(200, 800, 0))
     assert mat.title == f"The image {Path(file).name}"
     assert not mat.obstacles and not mat.sensor_x_mm
 
 
 def test_a_whole_path_is_a_mat(here: Path) -> None:
-    assert assets.background(str(here / "maze.png")).image == here / "maze.png"
+    assert mats.background(str(here / "maze.png")).image == here / "maze.png"
 
 
 def test_the_catalogue_goes_before_files(here: Path) -> None:
-    assert assets.background("Loop").image == assets.backgrounds_folder() / "Loop.png"
+    assert mats.background("Loop").image == folders.backgrounds_folder() / "Loop.png"
 
 
 @pytest.mark.parametrize(
@@ -155,11 +155,11 @@ def test_the_catalogue_goes_before_files(here: Path) -> None:
 )
 def test_an_image_that_is_not_there(word: str, message: str, here: Path) -> None:
     with pytest.raises(BackgroundError, match=message):
-        assets.background(word)
+        mats.background(word)
 
 
 def test_programs_have_titles(root: Path) -> None:
-    found = assets.programs()
+    found = program_file.programs()
     assert [each.path for each in found] == sorted((root / "programs").glob("*.py"))
     for name, path, title in found:
         docstring = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
@@ -180,24 +180,24 @@ def test_programs_have_titles(root: Path) -> None:
 )
 def test_program_title(text: str, title: str, given: Path) -> None:
     (given / "programs" / "turn.py").write_text(text, encoding="utf-8")
-    assert assets.programs() == [("turn.py", given / "programs" / "turn.py", title)]
+    assert program_file.programs() == [("turn.py", given / "programs" / "turn.py", title)]
 
 
 def test_a_given_folder_comes_first(given: Path) -> None:
-    assert assets.backgrounds_folder() == given / "backgrounds"
-    assert assets.background("Mine").start == Pose(1, 2.5, -90)
+    assert folders.backgrounds_folder() == given / "backgrounds"
+    assert mats.background("Mine").start == Pose(1, 2.5, -90)
 
 
 def test_a_given_folder_needs_only_what_is_asked_for(given: Path) -> None:
     (given / "programs").rmdir()
-    assert assets.background("Mine").title == "My own"
+    assert mats.background("Mine").title == "My own"
     with pytest.raises(ConfigError, match="TUISIM_ASSETS"):
-        assets.programs()
+        program_file.programs()
 
 
 def test_a_checkout_is_found_beside_the_package(root: Path) -> None:
-    assert assets.backgrounds_folder() == root / "backgrounds"
-    assert assets.programs_folder() == root / "programs"
+    assert folders.backgrounds_folder() == root / "backgrounds"
+    assert folders.programs_folder() == root / "programs"
 
 
 def test_an_installed_copy_is_found_in_the_package(tmp_path: Path, root: Path) -> None:
@@ -206,7 +206,9 @@ def test_an_installed_copy_is_found_in_the_package(tmp_path: Path, root: Path) -
         shutil.copytree(root / name, tmp_path / "tuisim" / "_assets" / name)
     # A stranger's folder beside the package must not be taken for ours.
     (tmp_path / "programs").mkdir()
-    code = "from tuisim.config import assets; print(assets.background('Loop').image); print(assets.programs_folder())"
+    code = (
+        "from tuisim.config import folders as f, mats; print(mats.background('Loop').image); print(f.programs_folder())"
+    )
     printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
     inside = tmp_path / "tuisim" / "_assets"
     assert printed.stdout.split() == [str(inside / "backgrounds" / "Loop.png"), str(inside / "programs")]
@@ -214,7 +216,7 @@ def test_an_installed_copy_is_found_in_the_package(tmp_path: Path, root: Path) -
 
 def test_obstacles_and_sensors_are_read(given: Path) -> None:
     catalog(given, GOOD + "obstacles = [[46, 388, 150, 150], [9, 8, 7, 6]]\nsensor_x_mm = { left = -30 }\n")
-    mat = assets.background("Mine")
+    mat = mats.background("Mine")
     assert mat.obstacles == (Obstacle(46, 388, 150, 150), Obstacle(9, 8, 7, 6))
     assert mat.sensor_x_mm == {"left": -30.0}
 
@@ -239,17 +241,17 @@ def test_obstacles_and_sensors_are_read(given: Path) -> None:
 def test_a_wrong_catalogue_is_explained(text: str, message: str, given: Path) -> None:
     catalog(given, text)
     with pytest.raises(BackgroundError, match=message) as caught:
-        assets.backgrounds()
+        mats.backgrounds()
     assert "catalog.toml" in str(caught.value)
 
 
 def test_a_missing_catalogue_is_told(given: Path) -> None:
     (given / "backgrounds" / "catalog.toml").unlink()
     with pytest.raises(BackgroundError, match=r"catalog\.toml: cannot be read"):
-        assets.backgrounds()
+        mats.backgrounds()
 
 
 def test_a_missing_picture_is_told(given: Path) -> None:
     (given / "backgrounds" / "Mine.png").unlink()
     with pytest.raises(BackgroundError, match=r"Mine\.png"):
-        assets.background("Mine")
+        mats.background("Mine")
