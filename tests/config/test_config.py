@@ -8,8 +8,8 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.mats import backgrounds
 from tuisim.config.options import Settings, parse_words, settings_of
 from tuisim.config.presets import OBSTACLES, ROBOTS
-from tuisim.core.collision import reach_mm
 from tuisim.core.geometry import Pose
+from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec, from_plain, to_plain
 from tuisim.errors import BackgroundError, ConfigError, ObstacleError, ProfileError, RobotError
 
@@ -17,7 +17,7 @@ from tuisim.errors import BackgroundError, ConfigError, ObstacleError, ProfileEr
 @pytest.mark.parametrize("name", backgrounds())
 def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
     spec = build_run_spec(Settings(background=name, profile="ev3"))
-    reach, start, mat = reach_mm(spec.robot), spec.world.start, backgrounds()[name].start
+    reach, start, mat = outline_of(spec.robot).reach_mm, spec.world.start, backgrounds()[name].start
     assert reach <= start.x_mm <= FIELD_WIDTH_MM - reach
     assert reach <= start.y_mm <= FIELD_HEIGHT_MM - reach
     assert start.heading_deg == mat.heading_deg

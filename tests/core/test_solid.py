@@ -11,8 +11,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
-from tuisim.core.collision import Solids, outline
+from tuisim.core.collision import Solids
 from tuisim.core.geometry import Pose, world_point
+from tuisim.core.outline import outline_of
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
@@ -26,7 +27,7 @@ def simulation(world: WorldSpec, robot: RobotSpec | None = None, profile: str = 
 
 def overlap_mm(sim: Simulation) -> float:
     """How deep the outline is in anything solid, by projecting on every edge's normal (independent of the code)."""
-    corners = [world_point(sim.pose, x, y) for x, y in outline(sim.spec.robot)]
+    corners = [world_point(sim.pose, x, y) for x, y in outline_of(sim.spec.robot).corners_mm]
     deepest = max(
         max(-x, x - FIELD_WIDTH_MM, -y, y - FIELD_HEIGHT_MM) if sim.spec.world.walls else -math.inf for x, y in corners
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import atan2, degrees, hypot
 from typing import Any
 
@@ -11,12 +12,22 @@ import pytest
 from PIL import Image
 
 from tests.running import Run
-from tuisim.charts.robot_image import COLORED, shape_of
-from tuisim.charts.world_image import CHART_SIZE, chart_picture, pen_trace, world_picture, world_view
+from tuisim.app.render.viewport import whole_field
+from tuisim.charts.world_image import (
+    CHART_SIZE,
+    COLORED,
+    chart_picture,
+    draw_robot,
+    pen_points_mm,
+    pen_trace,
+    world_picture,
+    world_view,
+)
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.presets import ROBOTS
 from tuisim.core.geometry import Pose, world_point
+from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
 from tuisim.runs.samples import Sample
 
@@ -85,18 +96,46 @@ def near(x_mm: float, y_mm: float, places: Sequence[tuple[float, float]]) -> boo
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
     spec = at(robot)
-    shape, picture = shape_of(spec.robot), world_picture(spec, WHITE, MIDDLE)
+    outline, picture = outline_of(spec.robot), world_picture(spec, WHITE, MIDDLE)
+    wheel_mm = outline.half_width_mm - outline.wheel_width_mm / 2
     parts = {
-        COLORED.body: [(side * 0.7 * (shape.half_width_mm - shape.wheel_half_width_mm), 0.0) for side in (-1, 1)],
-        COLORED.wheel: [(-shape.half_width_mm, 0.0), (shape.half_width_mm, 0.0)],
-        COLORED.marker: [(0.0, shape.back_mm / 3), (0.0, shape.front_mm)],
+        COLORED.body: [(side * 0.7 * (wheel_mm - outline.wheel_width_mm / 2), 0.0) for side in (-1, 1)],
+        COLORED.wheel: [(-wheel_mm, 0.0), (wheel_mm, 0.0)],
+        COLORED.marker: [(0.0, outline.back_mm / 3), (0.0, outline.back_mm / 9)],
         # Another sensor in the same place lies on top of an eye.
-        COLORED.sensor: [(x, y) for x, y, radius in shape.eyes_mm if radius > 5 and not near(x, y, shape.spots_mm)],
+        COLORED.sensor: [
+            (x, y)
+            for x, y, radius in outline.color_sensors_mm
+            if radius > 5 and not near(x, y, outline.other_sensors_mm)
+        ],
     }
     for color, places in parts.items():
         for place in places:
             found = pixel(picture, spec.robot, world_point(MIDDLE, *place))
             assert np.abs(np.subtract(found, color)).max() < 60, (color, place)
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("heading", [0, 90, 180, -90])
+def test_the_robot_is_drawn_as_large_as_what_collides(robot: str, heading: int) -> None:
+    # Bumpers are pressed before anything collides.
+    outline = outline_of(replace(at(robot).robot, touch_sensors=()))
+    view, picture = whole_field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM), np.zeros_like(WHITE)
+    pose = replace(MIDDLE, heading_deg=float(heading))
+
+    draw_robot(picture, view, pose, outline, COLORED)
+
+    rows, cols = np.nonzero(picture.any(axis=2))
+    corners = np.array([view.to_px(*world_point(pose, *corner)) for corner in outline.corners_mm])
+    assert [cols.min(), rows.min()] == pytest.approx(corners.min(axis=0), abs=1)
+    assert [cols.max() + 1, rows.max() + 1] == pytest.approx(corners.max(axis=0), abs=1)
+
+
+def test_the_pen_is_where_the_simulation_has_it() -> None:
+    robot, poses = RobotSpec(pen=PenSpec(x_mm=15.0, y_mm=-70.0)), [(100.0, 200.0, 0.0), (900.5, 300.25, -400.0)]
+    records = np.array(poses, dtype=[("x_mm", float), ("y_mm", float), ("heading_deg", float)])
+    expected = [world_point(Pose(*pose), 15.0, -70.0) for pose in poses]
+    assert np.transpose(pen_points_mm(robot, records)) == pytest.approx(np.array(expected))
 
 
 @pytest.mark.parametrize("robot", ROBOTS)

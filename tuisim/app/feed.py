@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from tuisim.app.snapshot import telemetry_traces
+from tuisim.charts.world_image import pen_points_mm
 from tuisim.core.field import Field
-from tuisim.core.spec import PenSpec
+from tuisim.core.spec import RobotSpec
 from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.runs.records import OutputRow
 from tuisim.runs.samples import samples_of
@@ -93,7 +94,7 @@ class Feed:
         self._last_xy_mm = float(records["x_mm"][-1]), float(records["y_mm"][-1])
         kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
-        xs, ys, lifted = _pen_points(records, self.recording.spec.robot.pen)
+        xs, ys, lifted = _pen_points(records, self.recording.spec.robot)
         # One gap is enough for a stretch with the pen up.
         kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
         self._lifted = bool(lifted[-1])
@@ -111,7 +112,7 @@ def trace_until(run: Recording, tick: int) -> Points:
         return [], []
     kept_at = np.append(np.arange(0, tick, stride), tick)
     jumps = _jumps(records, None)[kept_at]
-    xs, ys, lifted = _pen_points(records[kept_at], run.spec.robot.pen)
+    xs, ys, lifted = _pen_points(records[kept_at], run.spec.robot)
     kept = ~(lifted & np.concatenate(([False], lifted[:-1])))
     return _with_gaps(xs[kept], ys[kept], jumps[kept])
 
@@ -127,14 +128,12 @@ def _jumps(records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None)
 
 
 def _pen_points(
-    records: np.ndarray[Any, Any], pen: PenSpec
+    records: np.ndarray[Any, Any], robot: RobotSpec
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
     """Return where the pen was at each record (NaN where it was up) and whether it was up."""
     import numpy as np
 
-    turn = np.radians(records["heading_deg"] - 90.0)
-    xs = records["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
-    ys = records["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
+    xs, ys = pen_points_mm(robot, records)
     lifted = (records["flags"] & FLAG_PEN_DOWN) == 0
     xs[lifted] = ys[lifted] = np.nan
     return xs, ys, lifted

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tuisim.config.options import Settings
+from tuisim.config.options import DEFAULT_FPS, Settings
 from tuisim.core.spec import RunSpec
 from tuisim.runs.handle import Program
 from tuisim.runs.run_folder import StoredRun
-
-DEFAULT_FPS = 20
 
 
 @dataclass(frozen=True, slots=True)

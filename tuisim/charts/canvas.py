@@ -15,7 +15,8 @@ from rich.style import Style
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.decimation import min_max
-from tuisim.charts.text_runs import Rgb, Run
+from tuisim.charts.text_runs import Run
+from tuisim.core.css_colors import Rgb
 from tuisim.runs.arrays import FloatArray
 
 TextRun = tuple[str, Rgb | None]

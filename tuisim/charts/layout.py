@@ -10,7 +10,7 @@ import numpy as np
 
 from tuisim.charts.axes import Limits, label, ticks, value_limits
 from tuisim.charts.figure import Chart, Line, unit_of
-from tuisim.charts.text_runs import Rgb
+from tuisim.core.css_colors import Rgb
 from tuisim.logs.units import begins_at_zero
 from tuisim.runs.arrays import FloatArray
 

@@ -6,7 +6,7 @@ import re
 from html import escape
 
 from tuisim.charts.layout import FONT_PX, Drawing, Rule, Shade, Shape, Stroke, Words
-from tuisim.charts.text_runs import Rgb
+from tuisim.core.css_colors import Rgb
 
 _INK, _PAPER = "#222", "#fff"
 _FONT = "system-ui, sans-serif"

@@ -7,8 +7,6 @@ from typing import TypeAlias
 
 from rich.style import Style
 
-from tuisim.charts.robot_image import Rgb as Rgb
-
 Run: TypeAlias = tuple[str, Style]
 """A piece of a line in one style."""
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from tuisim.charts.text_runs import Rgb
+from tuisim.core.css_colors import Rgb
 from tuisim.runs.arrays import FloatArray
 
 _COLORS: tuple[Rgb, ...] = (

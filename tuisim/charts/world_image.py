@@ -1,27 +1,200 @@
-"""Pictures of runs for notebooks and scripts: the world, what the colour sensors see, the chart. Pillow only."""
+"""The world from above: the robot in every picture, and whole pictures for files, notebooks and reports."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil, cos, radians, sin
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
 
 from tuisim.charts.axes import Limits, label, ticks, value_limits
-from tuisim.charts.robot_image import COLORED, draw_robot, shape_of
-from tuisim.core.css_colors import css_rgb
+from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
+from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.sensors.ultrasonic import rays_mm
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
 from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.runs.arrays import FloatArray
 from tuisim.runs.samples import Sample
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
     from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
+
+Pixels = npt.NDArray[np.uint8]
+"""Shape (height, width, 3): red, green, blue."""
+
+_SAMPLES = 4
+"""Samples along each side of a pixel."""
+
+_MIN_PX = 6.0
+"""A robot narrower than this many pixels is drawn enlarged, or it could not be told from a dot."""
+
+_FEW_PX = 8.0
+"""In a robot narrower than this many pixels the marker cannot be told from the body around it."""
+
+_BUMPER_MM = 8.0
+"""How thick the bar of a touch sensor is drawn."""
+
+_SPOT_MM = 10.0
+"""Radius of a further sensor."""
+
+_NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
+
+
+class View(Protocol):
+    """Which part of the field a picture shows, and how large."""
+
+    @property
+    def width_px(self) -> int:
+        """Width of the picture."""
+
+    @property
+    def height_px(self) -> int:
+        """Height of the picture."""
+
+    @property
+    def mm_per_px(self) -> float:
+        """Scale."""
+
+    def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
+        """Return the picture column and row of a point of the world; whole numbers are pixel corners."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotColors:
+    """Colours of the parts; the defaults are in every 256-colour palette."""
+
+    edge: Rgb = (255, 255, 255)
+    body: Rgb = (0, 95, 215)
+    wheel: Rgb = (28, 28, 28)
+    sensor: Rgb = (255, 95, 95)
+    marker: Rgb = (255, 215, 0)
+    bumper: Rgb = (0, 135, 95)
+    pressed: Rgb = (255, 0, 0)
+    spot: Rgb = (135, 0, 95)
+
+
+COLORED = RobotColors()
+GREY = RobotColors(
+    body=(48, 48, 48), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255),
+    bumper=(108, 108, 108), pressed=(0, 0, 0), spot=(128, 128, 128),
+)  # fmt: skip
+"""For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
+GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
+"""For a robot that is shown where it was."""
+GREY_GHOST = RobotColors(body=(158, 158, 158), wheel=(88, 88, 88), sensor=(88, 88, 88), marker=(0, 0, 0))
+
+
+def drawn_reach_mm(outline: RobotOutline) -> float:
+    """Return the radius about a robot's pose of a circle that holds everything that is drawn of it."""
+    wheels_mm = math.hypot(outline.half_width_mm, outline.wheel_radius_mm)
+    bars_mm = (math.hypot(abs(x) + half, abs(y) + _BUMPER_MM) for x, y, half in outline.bumpers_mm)
+    spots_mm = (math.hypot(*spot) + _SPOT_MM for spot in outline.other_sensors_mm)
+    return max((outline.reach_mm, wheels_mm, *spots_mm, *bars_mm))
+
+
+def drawn_scale(outline: RobotOutline, view: View) -> float:
+    """Return how much larger than life a robot is drawn, at least 1."""
+    return max(1.0, _MIN_PX * view.mm_per_px / (2 * outline.half_width_mm))
+
+
+def draw_robot(
+    picture: Pixels,
+    view: View,
+    pose: Pose,
+    outline: RobotOutline,
+    colors: RobotColors,
+    opacity: float = 1.0,
+    pressed: tuple[bool, ...] = (),
+) -> None:
+    """Paint a robot into a picture; what lies outside it is left out.
+
+    Args:
+        picture: Written in place, shape (view.height_px, view.width_px, 3).
+        view: What the picture shows.
+        pose: Where the robot is.
+        outline: Its body and parts.
+        colors: Colours of its parts.
+        opacity: 0 … 1.
+        pressed: Which of its bumpers are; empty for none.
+    """
+    scale = drawn_scale(outline, view)
+    col, row = view.to_px(pose.x_mm, pose.y_mm)
+    reach = drawn_reach_mm(outline) * scale / view.mm_per_px + 2
+    left, right = max(math.floor(col - reach), 0), min(math.ceil(col + reach), view.width_px)
+    top, bottom = max(math.floor(row - reach), 0), min(math.ceil(row + reach), view.height_px)
+    if left >= right or top >= bottom:
+        return
+    step_mm = view.mm_per_px / scale
+    fine = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    east = ((np.arange(left, right)[:, None] + fine).ravel() - col)[None, :] * step_mm
+    north = (row - (np.arange(top, bottom)[:, None] + fine).ravel())[:, None] * step_mm
+    heading = math.radians(pose.heading_deg)
+    cos, sin = math.cos(heading), math.sin(heading)
+    side, ahead = east * sin - north * cos, east * cos + north * sin
+    parts = _parts(outline, side, ahead, step_mm)
+    _mount(parts, outline, side, ahead, step_mm, pressed)
+    _blend(picture[top:bottom, left:right], parts, colors, opacity)
+
+
+def _parts(outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: float) -> npt.NDArray[np.intp]:
+    """Return which part covers each sample, given by its distance to the right and ahead in mm."""
+    across = np.abs(side)
+    parts = np.zeros(side.shape, np.intp)
+    front_mm, back_mm = outline.front_mm, outline.back_mm
+    inside_mm = np.minimum(outline.half_width_mm - across, np.minimum(ahead - back_mm, front_mm - ahead))
+    parts[inside_mm >= 0] = _EDGE
+    parts[inside_mm >= min(0.35 * px_mm, 12.0)] = _BODY
+    wheel_mm = max(outline.wheel_width_mm, 1.2 * px_mm)
+    beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
+    parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
+    # In few pixels the nose sticks out by one, and it is never thinner than that, so that the heading can be seen.
+    tip = front_mm + (1.2 * px_mm if 2 * outline.half_width_mm < _FEW_PX * px_mm else 0.0)
+    base = back_mm * 0.55
+    widest_mm = 0.62 * (outline.half_width_mm - outline.wheel_width_mm)
+    flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), 0.4 * px_mm)
+    parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
+    # Below about three pixels an eye would only blur the marker.
+    for x_mm, y_mm, radius in outline.color_sensors_mm:
+        if 2 * radius >= 1.5 * px_mm:
+            parts[np.hypot(side - x_mm, ahead - y_mm) <= radius] = _SENSOR
+    return parts
+
+
+def _mount(
+    parts: npt.NDArray[np.intp],
+    outline: RobotOutline,
+    side: FloatArray,
+    ahead: FloatArray,
+    px_mm: float,
+    pressed: tuple[bool, ...],
+) -> None:
+    """Put on what not every robot has; the heading marker stays on top of it."""
+    free = parts != _MARKER
+    for at, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
+        # A bar is never so thin, nor so short, that it would be lost.
+        bar = np.abs(ahead - y_mm) <= max(_BUMPER_MM / 2, 0.5 * px_mm)
+        bar = bar & (np.abs(side - x_mm) <= max(half, 0.5 * px_mm))
+        parts[bar & free] = _PRESSED if at < len(pressed) and pressed[at] else _BUMPER
+    for x_mm, y_mm in outline.other_sensors_mm if 2 * _SPOT_MM >= 1.5 * px_mm else ():
+        parts[np.hypot(side - x_mm, ahead - y_mm) <= _SPOT_MM] = _SPOT
+
+
+def _blend(target: Pixels, parts: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:
+    drawn = (colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker)
+    table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.spot], np.float32)
+    rows, cols = target.shape[:2]
+    blocks = parts.reshape(rows, _SAMPLES, cols, _SAMPLES)
+    total = table[blocks].sum(axis=(1, 3))
+    covered = (blocks != _NONE).sum(axis=(1, 3))[..., None] / _SAMPLES**2
+    mixed = target * (1 - opacity * covered) + total * (opacity / _SAMPLES**2)
+    target[:] = np.rint(mixed).astype(np.uint8)
+
 
 MM_PER_PX = 3
 """Scale of the world's picture."""
@@ -82,7 +255,7 @@ class WorldView:
 
 def world_view(robot: RobotSpec) -> WorldView:
     """Return what a picture shows in which a robot is wholly to be seen as long as its axle is on the field."""
-    return WorldView(ceil(shape_of(robot).reach_mm / MM_PER_PX) + _FRAME_PX)
+    return WorldView(math.ceil(drawn_reach_mm(outline_of(robot)) / MM_PER_PX) + _FRAME_PX)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,20 +268,30 @@ class PenTrace:
     """In pixels from the upper left corner of the field."""
 
 
-def pen_trace(spec: RunSpec, telemetry: NDArray[Any]) -> PenTrace:
+def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+    """Return x and y of the pen in the world at each record, up or down, each of shape (n,).
+
+    Args:
+        robot: The robot.
+        telemetry: As from `runs.views.TelemetryView.array`.
+    """
+    # As `core.geometry.world_point`, for all ticks at once.
+    right_mm, ahead_mm = outline_of(robot).pen_mm
+    turn = np.radians(telemetry["heading_deg"] - 90.0)
+    cos, sin = np.cos(turn), np.sin(turn)
+    x_mm, y_mm = telemetry["x_mm"], telemetry["y_mm"]
+    return x_mm + cos * right_mm - sin * ahead_mm, y_mm + sin * right_mm + cos * ahead_mm
+
+
+def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
     """Return the pen trace of a run.
 
     Args:
         spec: What the run is made of.
-        telemetry: As from `datalog.views.TelemetryView.array`.
+        telemetry: As from `runs.views.TelemetryView.array`.
     """
-    import numpy as np
-
     pen = spec.robot.pen
-    # As `core.geometry.world_point`, for all ticks at once.
-    turn = np.radians(telemetry["heading_deg"] - 90.0)
-    x_mm = telemetry["x_mm"] + np.cos(turn) * pen.x_mm - np.sin(turn) * pen.y_mm
-    y_mm = telemetry["y_mm"] + np.sin(turn) * pen.x_mm + np.cos(turn) * pen.y_mm
+    x_mm, y_mm = pen_points_mm(spec.robot, telemetry)
     points = np.stack([x_mm, FIELD_HEIGHT_MM - y_mm], axis=1) / MM_PER_PX
     down = np.concatenate([[False], (telemetry["flags"] & FLAG_PEN_DOWN) != 0, [False]])
     starts, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(~down[1:] & down[:-1])
@@ -123,7 +306,7 @@ def pen_trace(spec: RunSpec, telemetry: NDArray[Any]) -> PenTrace:
 
 
 def world_picture(
-    spec: RunSpec, mat: NDArray[np.uint8], pose: Pose | None = None, traces: Sequence[PenTrace] = (), *,
+    spec: RunSpec, mat: Pixels, pose: Pose | None = None, traces: Sequence[PenTrace] = (), *,
     rays: bool = False,
 ) -> Image:  # fmt: skip
     """Return mat, obstacles, pen traces and robot.
@@ -138,7 +321,6 @@ def world_picture(
     Returns:
         What `world_view` says of the robot, in that size.
     """
-    import numpy as np
     from PIL import Image, ImageDraw
 
     # What is left of the last column, when each pixel is three mm, is less than one.
@@ -161,7 +343,7 @@ def world_picture(
     ImageDraw.Draw(picture).rectangle(corners, fill=_FRAME)
     picture.paste(field, (view.rim_px, view.rim_px))
     pixels = np.array(picture)
-    draw_robot(pixels, view, pose, shape_of(spec.robot), COLORED)
+    draw_robot(pixels, view, pose, outline_of(spec.robot), COLORED)
     return Image.fromarray(pixels)
 
 
@@ -170,8 +352,8 @@ def _draw_rays(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:
     assert sensor is not None
     x_mm, y_mm = world_point(pose, sensor.x_mm, sensor.y_mm)
     for angle_deg, length_mm in rays_mm(pose, sensor, spec.world):
-        turn = radians(angle_deg)
-        end = _at(x_mm + cos(turn) * length_mm, y_mm + sin(turn) * length_mm)
+        turn = math.radians(angle_deg)
+        end = _at(x_mm + math.cos(turn) * length_mm, y_mm + math.sin(turn) * length_mm)
         draw.line([_at(x_mm, y_mm), end], fill=_RAY)
 
 

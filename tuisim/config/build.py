@@ -13,8 +13,8 @@ from tuisim.config.options import RobotChoice, Settings
 from tuisim.config.profiles import load_profile
 from tuisim.config.reader import errors_at
 from tuisim.config.robots import choose_robot
-from tuisim.core.collision import reach_mm
 from tuisim.core.geometry import Pose
+from tuisim.core.outline import outline_of
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec import (
     BACKGROUND_FITS,
@@ -42,7 +42,7 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
     """Return the mat's start pose, overridden by the settings; with solid walls, moved so the robot can turn."""
     start = mat.start
     if walled:
-        margin_mm = reach_mm(robot)
+        margin_mm = outline_of(robot).reach_mm
         start = replace(
             start,
             x_mm=_inside(start.x_mm, margin_mm, FIELD_WIDTH_MM),

@@ -27,6 +27,7 @@ MAX_SEED = 2**63 - 1
 MIN_PEN_MM, MAX_PEN_MM = 0.1, 200.0
 MIN_SPEED, MAX_SPEED = 0.01, 1000.0
 MAX_SPEED_WORD = "max"
+DEFAULT_FPS = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +87,7 @@ class Settings:
     rays: bool = False
     panels_on: tuple[str, ...] = ()
     panels_off: tuple[str, ...] = ()
-    fps: int = 20
+    fps: int = DEFAULT_FPS
     colors: str = "auto"
 
 

@@ -16,6 +16,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, WorldSpec
 
 TOUCH_MM = 1e-4
@@ -32,9 +33,6 @@ STEP_MM = 1.0
 
 NEAR_MM = 150.0
 """Obstacles farther from the robot's reach than this are checked again only after it has moved this far."""
-
-SENSOR_HOUSING_MM = 15.0
-"""A sensor's housing extends this far from its centre, to every side."""
 
 _HALVINGS = 22
 
@@ -72,28 +70,6 @@ class Leeway(NamedTuple):
 UNHINDERED = Leeway(1.0, (0.0, 0.0))
 
 
-def front_mm(robot: RobotSpec) -> float:
-    """Return how far the body extends forward of the axle: to the front of its sensors."""
-    sensors = [sensor.y_mm for sensor in robot.color_sensors]
-    return max([0.0, robot.wheel_diameter_mm / 2, *(y + SENSOR_HOUSING_MM for y in sensors)])
-
-
-def half_width_mm(robot: RobotSpec) -> float:
-    """Return how far the body extends to either side: to the outer edge of its wheels."""
-    return (robot.wheel_spacing_mm + robot.wheel_width_mm) / 2
-
-
-def outline(robot: RobotSpec) -> tuple[tuple[float, float], ...]:
-    """Return the four corners of the body in robot coordinates, x right and y forward, in mm."""
-    side, front, back = half_width_mm(robot), front_mm(robot), robot.back_mm
-    return (-side, back), (side, back), (side, front), (-side, front)
-
-
-def reach_mm(robot: RobotSpec) -> float:
-    """Return the largest distance of the body from the centre of the axle, about which it turns."""
-    return max(math.hypot(x, y) for x, y in outline(robot))
-
-
 class Solids:
     """The obstacles and walls of a world, for one robot.
 
@@ -110,11 +86,12 @@ class Solids:
         self._early = early
         self._walls = world.walls
         self._boxes: list[Box] = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
-        self._half_width, front, back = half_width_mm(robot), front_mm(robot), robot.back_mm
+        outline = outline_of(robot)
+        self._half_width, front, back = outline.half_width_mm, outline.front_mm, outline.back_mm
         self._middle, self._half_length = (front + back) / 2, (front - back) / 2
         self._turns_mm = robot.wheel_spacing_mm / 2 * (1.0 + 1e-9)
         """Distance per radian of turn up to which a motion is a turn: its wheels do not push the same way."""
-        self.reach_mm = reach_mm(robot)
+        self.reach_mm = outline.reach_mm
         """Largest distance of the body from the centre of the axle."""
         self._near: list[Box] = []
         self._near_at = (math.inf, math.inf)

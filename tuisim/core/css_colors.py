@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from typing import TypeAlias
+
+Rgb: TypeAlias = tuple[int, int, int]
+"""Red, green and blue, 0 to 255 each."""
 
 _TABLE = """
 aliceblue#f0f8ff antiquewhite#faebd7 aqua#00ffff aquamarine#7fffd4 azure#f0ffff beige#f5f5dc bisque#ffe4c4
@@ -37,18 +41,18 @@ _HEX = re.compile(r"#[0-9a-f]{6}")
 
 
 @cache
-def css_names() -> dict[str, tuple[int, int, int]]:
+def css_names() -> dict[str, Rgb]:
     """Return red, green and blue, 0 … 255, of every CSS colour name."""
     pairs = (entry.split("#") for entry in _TABLE.split())
     return {name: _channels(value) for name, value in pairs}
 
 
-def css_rgb(color: str) -> tuple[int, int, int] | None:
+def css_rgb(color: str) -> Rgb | None:
     """Return red, green and blue, 0 … 255, of a CSS colour name or `#rrggbb`; None for anything else."""
     color = color.lower()
     return _channels(color[1:]) if _HEX.fullmatch(color) else css_names().get(color)
 
 
-def _channels(value: str) -> tuple[int, int, int]:
+def _channels(value: str) -> Rgb:
     red, green, blue = bytes.fromhex(value)
     return red, green, blue

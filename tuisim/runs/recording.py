@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.core.field import Field
+from tuisim.core.motion import STALL_MS
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
     from tuisim.runs.views import OutputView, TelemetryView, TickRecord
 
-STALL_S = 0.1
-"""A running motor that has not turned for longer than this is stalled (EV3 motor driver)."""
 _STILL_DEG = 0.05
 """Less rotation than this in that time counts as none."""
 
@@ -104,7 +103,7 @@ class Recording:
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn."""
-        ticks = int(STALL_S * self.spec.profile.tick_hz) + 1
+        ticks = STALL_MS * self.spec.profile.tick_hz // 1000 + 1
         if record.tick < ticks:
             return False, False
         before = self.telemetry.record(record.tick - ticks)

@@ -7,7 +7,7 @@ import pytest
 
 from tuisim.app.render.colors import PALETTE_16, PALETTE_256, ColorMode, reduce_pixels, sgr_index
 from tuisim.app.render.mat import Pixels
-from tuisim.charts.robot_image import COLORED, GREY
+from tuisim.charts.world_image import COLORED, GREY
 
 MODES = [
     pytest.param(ColorMode(), id="full"),

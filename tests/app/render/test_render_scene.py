@@ -12,8 +12,9 @@ from tuisim.app.render.mat import Pixels
 from tuisim.app.render.pen_trace import PenTrace, pen_rgb
 from tuisim.app.render.scene import ScenePainter, SceneState
 from tuisim.app.render.viewport import Viewport, whole_field
-from tuisim.charts.robot_image import COLORED, draw_robot, shape_of
+from tuisim.charts.world_image import COLORED, draw_robot
 from tuisim.core.geometry import Pose
+from tuisim.core.outline import outline_of
 from tuisim.core.parts import BeaconSpec, InfraredSpec, TouchSpec
 from tuisim.core.spec import Obstacle, PenSpec, RobotSpec
 
@@ -38,7 +39,7 @@ def test_the_marker_shows_the_heading(width: int, heading: int) -> None:
     view = whole_field(width, width)
     picture = np.full((view.height_px, view.width_px, 3), 255, np.uint8)
 
-    draw_robot(picture, view, Pose(1181, 571, heading), shape_of(ROBOT), COLORED)
+    draw_robot(picture, view, Pose(1181, 571, heading), outline_of(ROBOT), COLORED)
 
     yellow = (picture[..., 2] < 120) & (picture[..., 0] > 130)
     blue = (picture[..., 0] < 130) & (picture[..., 2] > 150)
@@ -51,7 +52,7 @@ def test_the_marker_shows_the_heading(width: int, heading: int) -> None:
 def test_a_robot_off_the_picture_is_left_out() -> None:
     picture = np.zeros((20, 40, 3), np.uint8)
 
-    draw_robot(picture, whole_field(40, 20), Pose(9000, -9000, 0), shape_of(ROBOT), COLORED)
+    draw_robot(picture, whole_field(40, 20), Pose(9000, -9000, 0), outline_of(ROBOT), COLORED)
 
     assert not picture.any()
 

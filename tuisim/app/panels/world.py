@@ -21,8 +21,9 @@ from tuisim.app.render.scene import ScenePainter, SceneState
 from tuisim.app.render.viewport import ZOOMS, Viewport, following
 from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import PixelView
-from tuisim.charts.robot_image import drawn_scale, shape_of
+from tuisim.charts.world_image import drawn_scale
 from tuisim.core.geometry import Pose
+from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 
 TURN_STEP_DEG = 5.0
@@ -289,9 +290,10 @@ class WorldView(PixelView):
         assert self._port is not None and self._snapshot is not None
         pose = self._held or self._snapshot.instant.pose
         x_mm, y_mm = self._at(event)
-        shape = shape_of(self._snapshot.spec.robot)
-        reach_mm = shape.half_width_mm * drawn_scale(shape, self._port) + 1.5 * self._port.mm_per_px
-        if math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) > max(reach_mm, shape.half_width_mm - shape.back_mm / 2):
+        robot = self._snapshot.spec.robot
+        half_mm = robot.wheel_spacing_mm / 2
+        reach_mm = half_mm * drawn_scale(outline_of(robot), self._port) + 1.5 * self._port.mm_per_px
+        if math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) > max(reach_mm, half_mm - robot.back_mm / 2):
             return False
         self._grip = _Grip(pose, x_mm, y_mm, turns=event.shift or event.ctrl)
         self.capture_mouse()

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rich.color import Color
 from rich.style import Style
 
-from tuisim.charts.text_runs import Rgb, Run
+from tuisim.charts.text_runs import Run
+from tuisim.core.css_colors import Rgb
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
 
 _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.app.render.viewport import Viewport
-from tuisim.charts.robot_image import Pixels as Pixels
+from tuisim.charts.world_image import Pixels as Pixels
 
 _REMEMBERED = 4
 

@@ -8,8 +8,7 @@ from itertools import groupby
 
 import numpy as np
 
-from tuisim.charts.text_runs import Rgb
-from tuisim.core.css_colors import css_rgb
+from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.spec import PenSpec
 from tuisim.runs.arrays import FloatArray
 

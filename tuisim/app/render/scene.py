@@ -8,9 +8,10 @@ from tuisim.app.render.field import draw_beacon, draw_obstacles, draw_rays, trac
 from tuisim.app.render.mat import MatPictures, Pixels
 from tuisim.app.render.pen_trace import PenTrace
 from tuisim.app.render.viewport import Viewport
-from tuisim.charts.robot_image import COLORED, GHOST, GREY, GREY_GHOST, RobotShape, draw_robot, shape_of
-from tuisim.charts.text_runs import Rgb
+from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, draw_robot
+from tuisim.core.css_colors import Rgb
 from tuisim.core.geometry import Pose, world_point
+from tuisim.core.outline import outline_of
 from tuisim.core.parts import BeaconSpec
 from tuisim.core.spec import Obstacle, RobotSpec
 
@@ -33,7 +34,7 @@ class SceneState:
     marked: int | None = None
     """Index of the selected obstacle."""
     pressed: tuple[bool, ...] = ()
-    """Names of the bumpers that are pressed."""
+    """Whether each touch sensor is pressed; empty for none."""
     beacon: BeaconSpec | None = None
     """The infrared beacon on the field."""
 
@@ -56,19 +57,18 @@ class ScenePainter:
         self._ground: Pixels | None = None
         self._ground_key: object = None
         self._pieces_drawn = 0
-        self._shape: tuple[RobotSpec, RobotShape] | None = None
 
     def paint(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return the picture, shape (view.height_px, view.width_px, 3)."""
         picture = self._ground_picture(view, scene).copy()
-        shape = self._shape_of(scene.robot)
+        outline = outline_of(scene.robot)
         if scene.rays and scene.robot.ultrasonic is not None:
-            sonar = scene.robot.ultrasonic
-            x_mm, y_mm = world_point(scene.rays_from or scene.pose, sonar.x_mm, sonar.y_mm)
+            ultrasonic = scene.robot.ultrasonic
+            x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
             draw_rays(picture, view, x_mm, y_mm, scene.rays)
         if scene.ghost is not None:
-            draw_robot(picture, view, scene.ghost, shape, self._ghost_colors, _GHOST_OPACITY)
-        draw_robot(picture, view, scene.pose, shape, self._robot_colors, pressed=scene.pressed)
+            draw_robot(picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY)
+        draw_robot(picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed)
         return picture
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
@@ -87,8 +87,3 @@ class ScenePainter:
             self._ground[rows, cols] = piece.rgb
         self._pieces_drawn = len(self.trace)
         return self._ground
-
-    def _shape_of(self, robot: RobotSpec) -> RobotShape:
-        if self._shape is None or self._shape[0] is not robot:
-            self._shape = robot, shape_of(robot)
-        return self._shape[1]

@@ -9,8 +9,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder
-from tuisim.core.collision import outline
 from tuisim.core.geometry import Pose, world_point
+from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.errors import ConfigError
 
@@ -39,7 +39,7 @@ def random_pose(spec: RunSpec, chance: random.Random) -> Pose | None:
 
 def fits(spec: RunSpec, pose: Pose) -> bool:
     """Return whether the robot's outline is on the field, and clear of obstacles where those are solid."""
-    corners = [world_point(pose, x, y) for x, y in outline(spec.robot)]
+    corners = [world_point(pose, x, y) for x, y in outline_of(spec.robot).corners_mm]
     if not all(0 <= x <= FIELD_WIDTH_MM and 0 <= y <= FIELD_HEIGHT_MM for x, y in corners):
         return False
     if not spec.world.solid:
