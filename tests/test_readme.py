@@ -32,7 +32,7 @@ TABLES = {
     "switch": [switch.flags[0] for switch in SWITCHES],
     "panel's key": [panel.key for panel in PANELS.values()],
     "app's key": [action.key_label for action in ACTIONS.values() if not action.id.startswith("nudge-")],
-    "analyser's key": [action.label for action in ANALYSER_ACTIONS.values()],
+    "analyser's key": [action.key_label for action in ANALYSER_ACTIONS.values()],
 }
 
 

@@ -9,10 +9,10 @@ import pytest
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
-from tuisim.app.actions.table import ACTIONS, Action, Situation, working
+from tuisim.app.actions.table import ACTIONS, LabAction, Situation, working
 from tuisim.app.app import LabApp
-from tuisim.app.keys.app_help import HelpScreen
 from tuisim.app.keys.footer import fitting
+from tuisim.app.keys.help import KeyHelp
 from tuisim.app.panels import LARGE, PANELS
 from tuisim.app.panels.position import parse_field
 from tuisim.app.snapshot import IDLE, PAUSED, RUNNING
@@ -192,13 +192,13 @@ async def test_help_lists_every_key() -> None:
     async with LabApp(settings()).run_test(size=(100, 170)) as pilot:
         app = await ready(pilot)
         await pilot.press("question_mark")
-        assert isinstance(app.screen, HelpScreen)
+        assert isinstance(app.screen, KeyHelp)
         await pilot.pause()
         text = screen_text(app)
         for action in ACTIONS.values():
             assert action.id.startswith("nudge") or action.title in text
         await pilot.press("escape")
-        assert not isinstance(app.screen, HelpScreen)
+        assert not isinstance(app.screen, KeyHelp)
 
 
 async def test_bad_position_is_refused_with_a_reason() -> None:
@@ -292,7 +292,7 @@ def test_footer_fits_and_always_shows_help_and_quit(width: int, state: str) -> N
 
 
 @pytest.mark.parametrize("action", ACTIONS.values(), ids=list(ACTIONS))
-def test_each_line_of_the_table_is_an_action(action: Action) -> None:
+def test_each_line_of_the_table_is_an_action(action: LabAction) -> None:
     assert action.title
     assert callable(action.do)
     for state in (IDLE, RUNNING, PAUSED):

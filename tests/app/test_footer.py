@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
+from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.analyser.test_analyser_screen import text_of
+from tests.app.app_help import LOGS, program, ready, settings, until
+from tuisim.analysis.source import LogRequest
 from tuisim.app.actions.table import Situation, working
+from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.keys.footer import fitting
 from tuisim.app.snapshot import ENDED
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs.handle import RunOptions, start_run
 
 pytestmark = pytest.mark.usefixtures("home")
 
@@ -19,6 +28,18 @@ def test_after_a_run_the_next_steps_of_a_student_come_first(width: int) -> None:
     status = " time limit max "
     shown = fitting(working(Situation(ENDED, has_program=True, has_run=True)), width - len(status))
     assert [action.footer_key or action.key for action in shown][:5] == ["R", "l", "e", "c", "d"]
+
+
+async def test_the_footer_of_the_analyser_offers_what_works_and_a_click_runs_it() -> None:
+    run = start_run(program("print('no sample')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))
+    run.wait()
+    async with AnalyserApp(LogRequest(runs=(run.run_id,))).run_test(size=(80, 24)) as pilot:
+        await until(pilot, lambda: "t table" in last_line(pilot))
+        assert "m note" not in last_line(pilot)
+        await pilot.press("T")
+        await until(pilot, lambda: "m note" in last_line(pilot))
+        await pilot.click(offset=(last_line(pilot).index("stats"), 23))
+        await until(pilot, lambda: "[Statistics]" in text_of(pilot))
 
 
 FAILS = "print('Colour: 1')\n1 / 0\n"
@@ -38,21 +59,21 @@ async def test_the_state_of_a_run_that_failed_is_a_warning() -> None:
         assert said() == [warning] * 3
 
 
-def footer(app: LabApp) -> str:
-    return screen_text(app).split("\n")[-1]
+def last_line(pilot: Pilot[Any]) -> str:
+    return text_of(pilot).split("\n")[-1]
 
 
 async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
     shown = frozenset({"code", "noise"})
     async with LabApp(settings(LOGS, panels_on=shown)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: "R run" in footer(app))
+        await until(pilot, lambda: "R run" in last_line(pilot))
         await pilot.press("d")
-        await until(pilot, lambda: "esc done" in footer(app))
-        assert "R run" not in footer(app)
+        await until(pilot, lambda: "esc done" in last_line(pilot))
+        assert "R run" not in last_line(pilot)
         await pilot.press("escape")
-        await until(pilot, lambda: "R run" in footer(app))
+        await until(pilot, lambda: "R run" in last_line(pilot))
         app.query_one("#light-number", Input).focus()
-        await until(pilot, lambda: "⏎ take it" in footer(app) and "R run" not in footer(app))
+        await until(pilot, lambda: "⏎ apply" in last_line(pilot) and "R run" not in last_line(pilot))
         await pilot.press("escape")
-        await until(pilot, lambda: "R run" in footer(app))
+        await until(pilot, lambda: "R run" in last_line(pilot))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -23,8 +23,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.dialogs.question import Question
-from tuisim.app.keys.analyser_help import AnalyserHelp
-from tuisim.app.keys.app_help import HelpScreen
+from tuisim.app.keys.help import KeyHelp
 from tuisim.app.keys.palette import Palette
 
 IN_THE_LAB = {
@@ -53,7 +52,7 @@ async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
         await pilot.pause(0.1)
         await until(pilot, lambda: len(app.screen_stack) == 1)
         at_once(pilot, ["question_mark"])
-        await until(pilot, lambda: isinstance(app.screen, HelpScreen))
+        await until(pilot, lambda: isinstance(app.screen, KeyHelp))
 
 
 IN_THE_ANALYSER = {
@@ -73,7 +72,7 @@ async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
         await pilot.pause(0.1)
         await until(pilot, lambda: app.screen is analyser)
         at_once(pilot, ["question_mark"])
-        await until(pilot, lambda: isinstance(app.screen, AnalyserHelp))
+        await until(pilot, lambda: isinstance(app.screen, KeyHelp))
 
 
 async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
@@ -87,7 +86,7 @@ async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
 async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[object] = []
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app, dialog = await ready(pilot), HelpScreen()
+        app, dialog = await ready(pilot), KeyHelp("Help", "", {})
         await app.push_screen(dialog)
         await pilot.press("escape")
         monkeypatch.setattr(App, "_display", lambda app, screen, renderable: drawn.append(renderable))
@@ -149,7 +148,7 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         text = Static("gone", id="gone")
-        await app.push_screen(HelpScreen())
+        await app.push_screen(KeyHelp("Help", "", {}))
         await app.screen.mount(text)
         await until(pilot, lambda: text.region.area > 0)
         x, y = text.region.offset
@@ -172,8 +171,10 @@ async def test_no_palette_opens_above_a_dialog(key: str) -> None:
         assert len(app.screen_stack) == 2
 
 
-@pytest.mark.parametrize("above", [HelpScreen, Palette])
-async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(above: type[Screen[None]]) -> None:
+@pytest.mark.parametrize("above", [lambda: KeyHelp("Help", "", {}), Palette], ids=["help", "palette"])
+async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(
+    above: Callable[[], Screen[None]],
+) -> None:
     given: list[str | None] = []
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

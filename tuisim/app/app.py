@@ -5,25 +5,26 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import constants, events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.command import Provider
 from textual.timer import Timer
 from textual.widget import Widget
+from textual.widgets import Input
 
 from tuisim.app.actions import branch, time_travel
-from tuisim.app.actions.table import ACTIONS, Act
+from tuisim.app.actions.table import ACTIONS, IN_RUN, Situation, working
 from tuisim.app.background import is_leaving
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, Series, sample_series
-from tuisim.app.keys.footer import KeyFooter, show_footer, situation
-from tuisim.app.labels import end_label
+from tuisim.app.keys.action import ActionHost, KeyWord, key_bindings
+from tuisim.app.keys.footer import FIELD_KEYS, TYPING_KEYS, KeyFooter
+from tuisim.app.labels import end_label, speed_label
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
@@ -31,7 +32,7 @@ from tuisim.app.panels import PANELS
 from tuisim.app.past_view import Lookback
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.run_loader import open_run
-from tuisim.app.snapshot import GOOD_ENDS
+from tuisim.app.snapshot import ENDED, GOOD_ENDS, Snapshot
 from tuisim.app.speech import Voice
 from tuisim.app.start_options import AppSettings
 from tuisim.app.terminal.pacer import Pacer
@@ -53,13 +54,7 @@ _AWAKE_S = 1.0
 """Seconds to keep polling at frame rate after something has happened."""
 
 
-def _palette() -> type[Provider]:
-    from tuisim.app.keys.palette import ActionProvider
-
-    return ActionProvider
-
-
-class LabApp(PanelMessages):
+class LabApp(ActionHost, PanelMessages):
     """The robot lab.
 
     Args:
@@ -68,10 +63,10 @@ class LabApp(PanelMessages):
 
     CSS_PATH = "tuisim.tcss"
     TITLE = "tuisim"
-    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {_palette}
     NOTIFICATION_TIMEOUT = 4
+    ACTIONS = ACTIONS
     BINDINGS: ClassVar[list[BindingType]] = [
-        *(Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()),
+        *key_bindings(ACTIONS.values()),
         Binding("escape", "leave_field", "Leave a field", show=False),
     ]
 
@@ -303,7 +298,7 @@ class LabApp(PanelMessages):
         self._feed_panels()
         self.lookback.show()
         self.desk.show(snapshot)
-        show_footer(self, snapshot)
+        self._show_footer(snapshot)
         self.pacer.drawn()
         return True
 
@@ -336,7 +331,33 @@ class LabApp(PanelMessages):
     def situation_changed(self) -> None:
         """Update the footer."""
         self._wake()
-        show_footer(self, self.bridge.snapshot())
+        self._show_footer(self.bridge.snapshot())
+
+    def situation(self) -> Situation:
+        """Return the state that decides which keys are available."""
+        bridge = self.bridge
+        has_program = bridge.program is not None
+        return Situation(bridge.state, has_program, bool(bridge.run_id), bridge.in_past, self.debugging.is_away)
+
+    def _show_footer(self, snapshot: Snapshot) -> None:
+        status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
+        if self.debugging.looks_back:
+            status = "playing" if self.bridge.timeline.playing else f"past {snapshot.time_s:.2f} s"
+        if snapshot.state in IN_RUN or snapshot.speed != 1:
+            status += f" {speed_label(snapshot.speed)}"
+        off = frozenset(f"panel-{panel}" for panel in PANELS if not self.desk.shown(panel))
+        failed = snapshot.failed and not self.debugging.looks_back
+        self.key_footer.show(working(self.situation()), status, off, self._field_keys(), failed)
+
+    def _field_keys(self) -> tuple[KeyWord, ...]:
+        """Return the keys of the text field that has the focus; empty if there is none."""
+        # The focus may already be gone while the app ends.
+        focused = self.focused if self.screen_stack else None
+        if isinstance(focused, Input):
+            return FIELD_KEYS
+        code = self.desk.code
+        typing = code is not None and code.typing and focused is not None and code in focused.ancestors
+        return TYPING_KEYS if typing else ()
 
     # Panels
 
@@ -367,20 +388,6 @@ class LabApp(PanelMessages):
 
     # What the user does
 
-    def action_act(self, name: str) -> None:
-        """Run the action of a key, or say why it is unavailable now."""
-        if is_leaving(self):
-            return
-        action = ACTIONS[name]
-        if reason := action.why_not(situation(self)):
-            self.say(reason)
-            return
-        action.do(self)
-
-    def on_act(self, message: Act) -> None:
-        """Run an action whose word in the footer or on a panel was clicked."""
-        self.action_act(message.action)
-
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""
         if self.debugging.is_away and self.focused in (None, self.desk.world):
@@ -397,14 +404,6 @@ class LabApp(PanelMessages):
         in_a_dialog = self.screen is not self.desk.screen
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             self.action_leave_field()
-
-    def say(self, text: str) -> None:
-        """Show a short notice."""
-        self.notify(text, timeout=3, markup=False)
-
-    def complain(self, error: TuisimError) -> None:
-        """Show an error."""
-        self.notify(str(error), severity="error", timeout=8, markup=False)
 
 
 def _choose_colors(colors: str) -> None:

@@ -4,15 +4,33 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tuisim.app.editor.area import EDITOR_KEYS
+from tuisim.app.keys.help import KeyHelp, key_groups
+
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
 
 
-def show_help(lab: LabApp) -> None:
-    """Show every key."""
-    from tuisim.app.keys.app_help import HelpScreen
+_START = (
+    "Press o and open an example, then R: the robot runs it. S stops, space pauses. b lays out another mat; "
+    "drag the robot with the mouse or nudge it with the arrows, and the sensors follow. What a program prints as "
+    "a name, a colon and a number, such as Colour: 86.3, goes into the log and the chart; e writes the log to a "
+    "file."
+)
+_NUDGES = (
+    ("← ↑ → ↓", "Move the robot 10 mm"),
+    ("shift + arrow", "Move the robot 1 mm"),
+    ("a f", "Turn the robot 5° to the left, to the right; also ctrl + ← →"),
+)
+"""The ten keys that move or turn the robot, in three rows."""
+_EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field"))
 
-    lab.push_screen(HelpScreen())
+
+def show_help(lab: LabApp) -> None:
+    """Show every key of the app, of the editor, and those that work everywhere."""
+    groups = key_groups(action for action in lab.ACTIONS.values() if not action.id.startswith("nudge-"))
+    groups["Robot"] += _NUDGES
+    lab.push_screen(KeyHelp("Help", _START, {**groups, "In the code": EDITOR_KEYS, "": _EVERYWHERE}))
 
 
 def redraw(lab: LabApp) -> None:

@@ -6,32 +6,19 @@ follow from the line.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING
-
-from textual.message import Message
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, TypeAlias
 
 from tuisim.app.actions import app, branch, debug, files, panel, program, robot, time_travel
 from tuisim.app.actions.files import analyse
+from tuisim.app.keys.action import Action
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import PAUSED, RUNNING, STARTING, WAITING
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
-
-ACT = "act"
-"""Key of the style metadata that names the action of a clickable word."""
-
-
-class Act(Message):
-    """Posted when a word that stands for an action was clicked."""
-
-    def __init__(self, action: str) -> None:
-        super().__init__()
-        self.action = action
-
 
 IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
 """States in which a child process runs."""
@@ -54,44 +41,8 @@ class Situation:
     """As `in_past`, and also for an earlier line of the newest tick or while such an instant is being computed."""
 
 
-@dataclass(frozen=True, slots=True)
-class Action:
-    """One line of `ACTIONS`."""
-
-    id: str
-    key: str
-    """In Textual's notation; several keys are separated by commas."""
-    title: str
-    group: str
-    do: Callable[[LabApp], None]
-    why_not: Callable[[Situation], str] = lambda _: ""
-    """Why the key is unavailable now; empty if it is available."""
-    footer: str = ""
-    """Short label for the footer; empty leaves the key out of it."""
-    shown_key: str = ""
-    """Display name of the key, if it differs from `key`."""
-    footer_key: str = ""
-    """Display name in the footer, if that entry stands for two keys."""
-
-    @property
-    def key_label(self) -> str:
-        """The display name of the key."""
-        return self.shown_key or _KEY_LABELS.get(self.key, self.key)
-
-
-_KEY_LABELS = {
-    "space": "space",
-    "full_stop": ".",
-    "left_square_bracket": "[",
-    "right_square_bracket": "]",
-    "question_mark": "?",
-    "comma": ",",
-    "equals_sign": "=",
-    "less_than_sign": "<",
-    "greater_than_sign": ">",
-    "left_parenthesis": "(",
-    "right_parenthesis": ")",
-}
+LabAction: TypeAlias = "Action[LabApp, Situation]"
+"""One line of `ACTIONS`."""
 
 
 def _can_run(now: Situation) -> str:
@@ -138,33 +89,26 @@ def _can_export(now: Situation) -> str:
     return "" if now.has_run else "No log yet: R runs the program"
 
 
-def _nudge(key: str, words: str, forward: tuple[float, float], turn_deg: float = 0.0) -> Action:
-    label = key.replace("shift+", "⇧").replace("ctrl+", "ctrl ")
-    for name, arrow in (("left", "←"), ("right", "→"), ("up", "↑"), ("down", "↓")):
-        label = label.replace(name, arrow)
-    do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=turn_deg)
-    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, shown_key=label)
+def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
+    do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=0.0)
+    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do)
 
 
-def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> Action:
+def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
     # Some terminals send ctrl and an arrow as the arrow alone.
-    action = _nudge(arrow, words, (0.0, 0.0), turn_deg)
-    shown = f"{letter}, {action.key_label}"
-    return replace(action, key=f"{letter},{arrow}", title=f"Turn the robot {words}", shown_key=shown)
+    do = partial(robot.nudge, right_mm=0.0, up_mm=0.0, turn_deg=turn_deg)
+    return Action(f"nudge-ctrl-{arrow}", f"{letter},ctrl+{arrow}", f"Turn the robot {words}", ROBOT, do)
 
 
-def _nudges() -> list[Action]:
+def _nudges() -> list[LabAction]:
     ways = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
     coarse = [_nudge(key, f"10 mm {key}", (10 * x, 10 * y)) for key, (x, y) in ways.items()]
     fine = [_nudge(f"shift+{key}", f"1 mm {key}", (x, y)) for key, (x, y) in ways.items()]
-    turns = [
-        _turn("a", "ctrl+left", "5° counter-clockwise", 5.0),
-        _turn("f", "ctrl+right", "5° clockwise", -5.0),
-    ]
+    turns = [_turn("a", "left", "5° counter-clockwise", 5.0), _turn("f", "right", "5° clockwise", -5.0)]
     return coarse + fine + turns
 
 
-def _toggles() -> list[Action]:
+def _toggles() -> list[LabAction]:
     return [
         Action(f"panel-{p.id}", p.key, f"{p.title} on or off", PANEL, partial(panel.toggle, panel=p.id), footer=p.id)
         for p in PANELS.values()
@@ -179,7 +123,7 @@ def _can_debug(now: Situation) -> str:
     return "" if now.has_program or now.has_run else "No program yet: o opens one"
 
 
-def _debugs() -> list[Action]:
+def _debugs() -> list[LabAction]:
     can = _can_debug
     return [
         Action("next-line", "n", "Next line", DEBUG, debug.next_line, can, "next"),
@@ -190,11 +134,11 @@ def _debugs() -> list[Action]:
         Action("breaks", "T", "Breakpoints: add, edit, switch, delete", DEBUG, debug.list_breaks, can),
         Action("watches", "w", "Watches: expressions to look at", DEBUG, debug.list_watches, can),
         Action("to-cursor", "L", "Run to the cursor's line", DEBUG, debug.to_cursor, can),
-        Action("ten-ticks", "colon", "Ten ticks on, while paused", TIME, debug.ten_ticks, _can_step, shown_key=":"),
+        Action("ten-ticks", "colon", "Ten ticks on, while paused", TIME, debug.ten_ticks, _can_step),
     ]
 
 
-def _travels() -> list[Action]:
+def _travels() -> list[LabAction]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
     go = time_travel
@@ -211,7 +155,7 @@ def _travels() -> list[Action]:
 
 
 # The footer shows the actions in this order, as far as they fit; `help` and `quit` always.
-ACTIONS: Mapping[str, Action] = {
+ACTIONS: Mapping[str, LabAction] = {
     action.id: action
     for action in (
         Action("run", "R", "Run the program", PROGRAM, branch.run, _can_run, "run"),
@@ -246,7 +190,7 @@ ACTIONS: Mapping[str, Action] = {
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
-        Action("enlarge", "plus", "The panel with the focus alone, and back", PANEL, panel.enlarge, shown_key="+"),
+        Action("enlarge", "plus", "The panel with the focus alone, and back", PANEL, panel.enlarge),
         Action("rays", "U", "Ultrasonic rays on or off", PANEL, panel.rays, footer="rays"),
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
@@ -267,8 +211,9 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
     return ("run", "analyse", "export", "panel-chart", "edit") if now.has_run else ("run", "open", "edit", "mats")
 
 
-def working(now: Situation) -> list[Action]:
+@lru_cache(maxsize=16)
+def working(now: Situation) -> tuple[LabAction, ...]:
     """Return the available actions: the likely next steps first, the others in the order of the table."""
     found = {action.id: action for action in ACTIONS.values() if not action.why_not(now)}
     first = [found.pop(step) for step in _next_steps(now) if step in found]
-    return [*first, *found.values()]
+    return *first, *found.values()

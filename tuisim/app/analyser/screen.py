@@ -12,7 +12,6 @@ import numpy as np
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.command import Provider
 from textual.containers import Horizontal, Vertical
 
 from tuisim.analysis.model import Model
@@ -26,28 +25,21 @@ from tuisim.app.analyser.columns import ask_if_unsure
 from tuisim.app.analyser.pane import PaneView
 from tuisim.app.analyser.panes import pane_frame
 from tuisim.app.analyser.world_pane import Beside
-from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce
+from tuisim.app.keys.action import ActionHost, key_bindings
+from tuisim.app.keys.footer import KeyFooter
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.errors import LogError, TuisimError
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_KEY, _WORD = Style(color="#ffd75f", bold=True), Style(color="#b8c4d0")
-_ALWAYS = ("help", "leave")
 _LOOK_S = 1.0
 _PATIENCE = 10.0
 """The pause between two readings of a growing log, as a multiple of the last reading time."""
 
 
-def _palette() -> type[Provider]:
-    from tuisim.app.keys.analyser_help import AnalyserActions
-
-    return AnalyserActions
-
-
-class Analyser(ClosesOnce[None]):
+class Analyser(ActionHost, ClosesOnce[None]):
     """The views of one log. Modal, so that no key of the app below it works here.
 
     Args:
@@ -57,13 +49,12 @@ class Analyser(ClosesOnce[None]):
     DEFAULT_CSS = """
     Analyser { background: #10151c; color: #d8dee6; }
     Analyser #title { height: 1; background: #1c242e; color: #ffffff; }
-    Analyser #keys { dock: bottom; height: 1; background: #1c242e; }
     Analyser #log { width: 1fr; }
     """
-    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {_palette}
+    ACTIONS = ACTIONS
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+p", "app.command_palette", "Command palette", show=False),
-        *(Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in ACTIONS.values()),
+        *key_bindings(ACTIONS.values()),
     ]
 
     def __init__(self, wanted: LogRequest) -> None:
@@ -80,8 +71,7 @@ class Analyser(ClosesOnce[None]):
         """Length of the log when it was last read."""
         self.title_line = LinesView()
         self.title_line.id = "title"
-        self.keys = LinesView()
-        self.keys.id = "keys"
+        self.key_footer = KeyFooter()
         self.chart = LogChart()
         self.pane = PaneView()
         self.beside = Beside()
@@ -94,16 +84,12 @@ class Analyser(ClosesOnce[None]):
                 yield self.chart
                 yield self.pane
             yield self.beside
-        yield self.keys
+        yield self.key_footer
 
     def on_mount(self) -> None:
         """Start to open the log."""
         self.open(self.wanted)
         self.set_interval(_LOOK_S, self.look_again)
-
-    def on_resize(self) -> None:
-        """Fit the footer to the width."""
-        self.call_after_refresh(self._show_keys)
 
     # Opening
 
@@ -180,6 +166,8 @@ class Analyser(ClosesOnce[None]):
         if model is None:
             return
         self._tell(self._progress())
+        now = self.situation()
+        self.key_footer.show([action for action in ACTIONS.values() if not action.why_not(now)])
         self.finder.look(model, self.pane.name_shown)
         self.chart.show(model)
         self.pane.show(model)
@@ -272,30 +260,11 @@ class Analyser(ClosesOnce[None]):
         told = "   ".join(word for word in (place, progress, str(self.job or "")) if word)
         self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {told}", Style())]])
 
-    def _show_keys(self) -> None:
-        shown = [action for action in ACTIONS.values() if action.footer]
-        left = self.size.width - sum(len(a.label) + len(a.footer) + 3 for a in shown if a.id in _ALWAYS)
-        line = []
-        for action in shown:
-            cells = len(action.label) + len(action.footer) + 3
-            if action.id not in _ALWAYS:
-                if cells > left:
-                    continue
-                left -= cells
-            line += [(f" {action.label}", _KEY), (f" {action.footer} ", _WORD)]
-        self.keys.set_lines([line])
-
     # User actions
 
-    def action_act(self, name: str) -> None:
-        """Run the action of a key."""
-        if is_leaving(self.app):
-            return
-        action = ACTIONS[name]
-        if action.of_rows and (self.model is None or not self.model.log.rows):
-            self.say("There are no rows yet")
-            return
-        action.do(self)
+    def situation(self) -> int:
+        """Return the number of rows."""
+        return self.model.log.rows if self.model else 0
 
     def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
         """Go to a time that was clicked."""
@@ -307,7 +276,7 @@ class Analyser(ClosesOnce[None]):
         """Select a variable, and toggle it."""
         if self.model is not None:
             self.model.selected = message.name
-            ACTIONS["tick"].do(self)
+            self.action_act("tick")
 
     def leave(self) -> None:
         """Close the screen."""
@@ -317,10 +286,6 @@ class Analyser(ClosesOnce[None]):
         """Copy a text to the clipboard of the user's terminal."""
         self.app.copy_to_clipboard(text)
         self.say(f"Copied: {what}")
-
-    def say(self, text: str) -> None:
-        """Show a short notice."""
-        self.notify(text, timeout=3, markup=False)
 
     def export(self, path: Path, pane: str) -> None:
         """Write the rows of a pane to a file; of the table, only the columns shown.
@@ -349,7 +314,3 @@ class Analyser(ClosesOnce[None]):
             self.app.call_from_thread(self.complain, error)
         else:
             self.app.call_from_thread(self.say, f"The rows as shown are in {target}")
-
-    def complain(self, error: TuisimError) -> None:
-        """Show an error."""
-        self.notify(str(error), severity="error", timeout=8, markup=False)

@@ -1,9 +1,9 @@
-"""Base of the help screens: a short introduction, then every key by group."""
+"""The help screen: a short introduction, then every key by group."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from rich.table import Table
 from rich.text import Text
@@ -14,16 +14,13 @@ from textual.containers import VerticalScroll
 from textual.widgets import Static
 
 from tuisim.app.dialogs.dialog import Dialog
-
-Keys = Iterable[tuple[str, str]]
-"""The display name of each key, and what it does."""
-
+from tuisim.app.keys.action import Action, KeyWord
 
 COLUMN_CELLS = 50
 """A column of keys is not made narrower than this to fit another one next to it."""
 
 
-def key_table(groups: Mapping[str, Keys], width: int) -> Table:
+def key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Table:
     """Return every key by group, in as many columns as fit; a group without a name has no heading."""
     rows = [(group, list(keys)) for group, keys in groups.items()]
     count = max(1, min(width // COLUMN_CELLS, len(rows)))
@@ -34,7 +31,7 @@ def key_table(groups: Mapping[str, Keys], width: int) -> Table:
     return columns
 
 
-_Group = tuple[str, list[tuple[str, str]]]
+_Group = tuple[str, list[KeyWord]]
 
 
 def _in_columns(groups: list[_Group], count: int) -> list[list[_Group]]:
@@ -73,7 +70,7 @@ def _column(groups: list[_Group]) -> Table:
 class _KeyTable(Static):
     """The table of keys, laid out for the available width."""
 
-    def __init__(self, groups: Mapping[str, Keys]) -> None:
+    def __init__(self, groups: Mapping[str, Iterable[KeyWord]]) -> None:
         super().__init__()
         self._groups = {group: list(keys) for group, keys in groups.items()}
 
@@ -82,19 +79,34 @@ class _KeyTable(Static):
         self.update(key_table(self._groups, event.size.width))
 
 
+def key_groups(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
+    """Return the keys of actions by the name of their group."""
+    groups: dict[str, list[KeyWord]] = {}
+    for action in actions:
+        groups.setdefault(action.group, []).append((action.key_label, action.title))
+    return groups
+
+
 class KeyHelp(Dialog[None]):
-    """A help screen; `?` closes it as well."""
+    """A help screen; `?` closes it as well.
+
+    Args:
+        title: Title of the dialog.
+        start: How to start.
+        groups: The keys by the name of their group.
+    """
 
     HINT: str = "↑ ↓ scroll · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("question_mark,q", "leave", "Close", show=False)]
-    START: str = ""
 
-    def groups(self) -> Mapping[str, Keys]:
-        """Return the keys by the name of their group."""
-        return {}
+    def __init__(self, title: str, start: str, groups: Mapping[str, Iterable[KeyWord]]) -> None:
+        super().__init__()
+        self.TITLE_TEXT = title
+        self._start = start
+        self._groups = groups
 
     def content(self) -> ComposeResult:
         """Return the text, scrolled if necessary."""
         with VerticalScroll():
-            yield Static(self.START, classes="start", markup=False)
-            yield _KeyTable(self.groups())
+            yield Static(self._start, classes="start", markup=False)
+            yield _KeyTable(self._groups)

@@ -1,19 +1,14 @@
-"""The command palette: every action by its title."""
+"""The command palette: the actions of the app, or of the screen above it, by title."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, cast
 
 from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
-from tuisim.app.actions.table import ACTIONS
 from tuisim.app.dialogs.dialog import ClosesOnce
-
-if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
+from tuisim.app.keys.action import ActionHost
 
 
 class Palette(CommandPalette, ClosesOnce[None]):
@@ -25,47 +20,24 @@ class Palette(CommandPalette, ClosesOnce[None]):
             super()._action_command_list(action)
 
 
-@dataclass(frozen=True, slots=True)
-class Offer:
-    """One entry of the palette."""
+class ActionProvider(Provider):
+    """Provides the actions of the screen that the palette opens above, else those of the app."""
 
-    title: str
-    group: str
-    key: str
-    """Display name of the key."""
-    do: Callable[[], None]
-
-    @property
-    def help(self) -> str:
-        """The text below the title."""
-        return f"{self.group} · key {self.key}"
-
-
-class KeyProvider(Provider):
-    """Provides actions that have a key."""
-
-    def offers(self) -> Iterator[Offer]:
-        """Yield every entry."""
-        yield from ()
+    def _offers(self) -> Iterator[tuple[str, Callable[[], None], str]]:
+        """Yield the title of each action, a call that runs it, and the text below the title."""
+        host = self.screen if isinstance(self.screen, ActionHost) else self.app
+        if isinstance(host, ActionHost):
+            for action in host.ACTIONS.values():
+                yield action.title, partial(host.action_act, action.id), f"{action.group} · key {action.key_label}"
 
     async def discover(self) -> Hits:
-        """Yield every entry, before anything is typed."""
-        for offer in self.offers():
-            yield DiscoveryHit(offer.title, offer.do, help=offer.help)
+        """Yield every action, before anything is typed."""
+        for title, do, text in self._offers():
+            yield DiscoveryHit(title, do, help=text)
 
     async def search(self, query: str) -> Hits:
-        """Yield the entries with a matching title."""
+        """Yield the actions with a matching title."""
         matcher = self.matcher(query)
-        for offer in self.offers():
-            if (score := matcher.match(offer.title)) > 0:
-                yield Hit(score, matcher.highlight(offer.title), offer.do, help=offer.help)
-
-
-class ActionProvider(KeyProvider):
-    """Provides the app's `ACTIONS`."""
-
-    def offers(self) -> Iterator[Offer]:
-        """Yield every action of the app."""
-        act = cast("LabApp", self.app).action_act
-        for action in ACTIONS.values():
-            yield Offer(action.title, action.group, action.key_label, partial(act, action.id))
+        for title, do, text in self._offers():
+            if (score := matcher.match(title)) > 0:
+                yield Hit(score, matcher.highlight(title), do, help=text)

@@ -10,7 +10,7 @@ from rich.text import Text
 from textual import events
 from textual.widget import Widget
 
-from tuisim.app.actions.table import ACT, Act
+from tuisim.app.keys.action import ACT, Act
 from tuisim.app.labels import end_label, speed_label
 from tuisim.app.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot
 

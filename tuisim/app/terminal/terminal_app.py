@@ -24,6 +24,7 @@ from textual.screen import Screen
 
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.keys.palette import ActionProvider, Palette
 from tuisim.app.terminal.driver import TerminalDriver
 from tuisim.app.terminal.frame_buffer import FrameBuffer
 from tuisim.app.terminal.sanitize import Sanitize
@@ -86,7 +87,7 @@ class TerminalApp(App[None]):
     """An app that restores the terminal, even when it is stopped or terminated from outside."""
 
     # The palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
-    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = set()
+    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
 
     def __init__(self) -> None:
         super().__init__(driver_class=TerminalDriver)
@@ -210,8 +211,6 @@ class TerminalApp(App[None]):
 
     def action_command_palette(self) -> None:
         """Open the command palette, unless it or a dialog is open: its commands would open dialogs above that one."""
-        from tuisim.app.keys.palette import Palette
-
         if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
             self.push_screen(Palette())
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from tuisim.analysis.alignment import TIME
 from tuisim.app.analyser.chart import FACETS_ROWS
 from tuisim.app.analyser.prompt import LinePrompt
 from tuisim.app.analyser.world_at import tells_places
 from tuisim.app.analyser.world_pane import NO_PLACE
+from tuisim.app.keys.help import KeyHelp, key_groups
 from tuisim.errors import LogError
 
 if TYPE_CHECKING:
     from tuisim.app.analyser.screen import Analyser
-    from tuisim.app.terminal.terminal_app import TerminalApp
 
 _SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
 _WHERE = (("120", "row 120"), ("2.5s", "the sample nearest to 2.5 seconds"), ("50%", "halfway through the table"))
@@ -243,16 +243,20 @@ def ask_runs(screen: Analyser) -> None:
     screen.app.push_screen(RunsChooser(), take)
 
 
+_START = (
+    "One cursor moves chart, table, world and source line: ← → go through the chart, ↑ ↓ through the rows. "
+    "b finds the bands: ↑ ↓ choose one, m writes a note about it. z zooms in, f shows everything again."
+)
+
+
 def show_help(screen: Analyser) -> None:
     """Show every key."""
-    from tuisim.app.keys.analyser_help import AnalyserHelp
-
-    screen.app.push_screen(AnalyserHelp())
+    screen.app.push_screen(KeyHelp("Help: the analyser", _START, key_groups(screen.ACTIONS.values())))
 
 
 def redraw(screen: Analyser) -> None:
     """Redraw the whole screen."""
-    cast("TerminalApp", screen.app).action_redraw()
+    screen.call_next(screen.run_action, "app.redraw")
 
 
 def suspend(screen: Analyser) -> None:
