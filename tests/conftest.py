@@ -16,7 +16,8 @@ from tuisim.cli import run_command
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.handle import Program, RunHandle, RunOptions, start_run
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.source import Program
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -10,7 +10,7 @@ import pytest
 from tests.conftest import ROOT, Command
 from tuisim.config.program_file import programs, read_program
 from tuisim.runs.brick_state import ROW_BYTES, BrickState, face_after
-from tuisim.runs.records import DISPLAY
+from tuisim.runs.records import Stream
 from tuisim.runs.store import load_run
 
 EXAMPLES: dict[str, dict[str, object]] = {
@@ -115,7 +115,9 @@ def test_log_of_the_greys_has_the_plateaus_in_driving_order(here: Command) -> No
 
 def test_display_shows_the_light_as_a_bar(here: Command) -> None:
     run = load_run(json.loads(here("run", "draw_light", "--json").stdout)["id"])
-    pictures = [face_after(BrickState(), [row]).picture for row in run.output.all_rows() if row.stream == DISPLAY]
+    pictures = [
+        face_after(BrickState(), [row]).picture for row in run.output.all_rows() if row.stream == Stream.DISPLAY
+    ]
     # One for each light on the mat, and those half way across an edge.
     assert len(pictures) > 5
     middle = slice(60 * ROW_BYTES, 61 * ROW_BYTES)

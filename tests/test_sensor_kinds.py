@@ -22,12 +22,13 @@ from tuisim.core.sensors import SENSORS, SensorKind, with_kinds
 from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec, from_plain, to_plain
 from tuisim.protocol import Resume
 from tuisim.runs.frames import MOTION_COLUMNS, telemetry_frame
-from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.mat import open_mat
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import instant_of
 from tuisim.shim.brick import DEVICES
+from tuisim.source import Program
 
 each_kind = pytest.mark.parametrize("kind", SENSORS.values(), ids=SENSORS)
 each_mount = pytest.mark.parametrize("mount", MOUNTS, ids=lambda mount: mount.field)
@@ -151,7 +152,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     assert last is not None
     instant, field = instant_of(last, run.spec, run.spec.world.noise), open_mat(run)
     (sensor,) = run.spec.robot.sensors
-    now = snapshot_of(instant, run.spec, field, state=ENDED, end="", line=0, speed=1.0, pen_down=False)
+    now = snapshot_of(instant, run.spec, field, state=ENDED, end=None, line=0, speed=1.0, pen_down=False)
     if mount_of(kind).usual:
         shown: dict[str, object] = {"color": now.colors, "ultrasonic": now.ultrasonic_mm, "gyro": now.spec.robot.gyro}
         assert shown[next(name for name, one in SENSORS.items() if one is kind)]

@@ -43,7 +43,7 @@ def test_a_magic_line_is_found_on_its_own_line() -> None:
 
 def test_a_magic_line_leaves_the_others_alone() -> None:
     expected = f"# {NO_ENDS}\n# %%sim_magic -R\nx = 1\n"
-    assert parse_program(f"# {NO_ENDS}\n%%sim_magic -R\nx = 1\n", "odd.py").text == expected
+    assert parse_program(f"# {NO_ENDS}\n%%sim_magic -R\nx = 1\n", "odd.py").program.text == expected
 
 
 @pytest.mark.parametrize("encoding", ["rot13", "hex", "zip", "undefined", "idna", "no-such"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +12,8 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import SWITCHES, Option, nearest, settings_of
 from tuisim.config.program_file import ProgramSource, program_of_text, read_program
 from tuisim.errors import ConfigError
-from tuisim.runs.handle import Program, RunOptions, start_run
-from tuisim.runs.records import STDOUT
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -32,7 +32,7 @@ class SimulatedRun:
     @property
     def state(self) -> str:
         """How it ended: finished, raised, stopped, time_limit …"""
-        return self.stored.state
+        return self.stored.state.value
 
     @property
     def error(self) -> str:
@@ -47,7 +47,7 @@ class SimulatedRun:
     @property
     def output(self) -> str:
         """The program's output on stdout."""
-        return "".join(row.text + "\n" for row in self.stored.output.rows() if row.stream == STDOUT)
+        return "".join(row.text + "\n" for row in self.stored.output.rows() if row.stream == Stream.STDOUT)
 
     @property
     def samples(self) -> pd.DataFrame:
@@ -161,7 +161,8 @@ def simulate(
         raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
     source = _source(program)
     settings = settings_of(source.switches, choices_of(choices))
-    started = Program(source.name, source.text, settings.preload or source.prelude, source.path, tuple(arguments))
+    prelude = settings.preload or source.program.prelude
+    started = replace(source.program, prelude=prelude, arguments=tuple(arguments))
     store = RunStore()
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
     handle = start_run(started, build_run_spec(settings), options, store)

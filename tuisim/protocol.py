@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from typing import Any, ClassVar
 
 from tuisim.breakpoints import parse_breakpoints
@@ -72,6 +73,64 @@ class ExecutedLine:
 
 PROTOCOL_VERSION = 3
 
+
+class End(StrEnum):
+    """How a run ended."""
+
+    FINISHED = "finished"
+    RAISED = "raised"
+    """By an exception of the program."""
+    STOPPED = "stopped"
+    """By the user."""
+    TIME_LIMIT = "time_limit"
+    STALLED = "stalled"
+    DEADLOCK = "deadlock"
+    OUTPUT_LIMIT = "output_limit"
+    DISK_FULL = "disk_full"
+    KILLED = "killed"
+    CRASHED = "crashed"
+
+
+class Unended(StrEnum):
+    """State of a stored run without an end."""
+
+    RUNNING = "running"
+    INTERRUPTED = "interrupted"
+    """Its process has disappeared."""
+    DAMAGED = "damaged"
+    """Its end cannot be read."""
+
+
+RunState = End | Unended
+RUN_STATES: Mapping[str, RunState] = {state.value: state for state in (*End, *Unended)}
+
+
+class PauseReason(StrEnum):
+    """Why a run pauses."""
+
+    ASKED = "asked"
+    TICKS = "ticks"
+    """The ticks of `StepTicks` are done."""
+    STEP = "step"
+    """The step of `StepLine` is done."""
+    LINE = "line"
+    """The line of `RunToLine` is reached."""
+    BREAK = "break"
+    """A breakpoint is hit."""
+    INSTANT = "instant"
+    """The instant of `RunToInstant` is reached."""
+    END = "end"
+    """The program is over before that."""
+
+
+class LineStep(StrEnum):
+    """How to step from line to line: over calls, into them, out of this function."""
+
+    OVER = "over"
+    INTO = "into"
+    OUT = "out"
+
+
 AFTER_TICK = 0
 """Ordinal of the instant right after a tick."""
 BEFORE_NEXT_TICK = -1
@@ -134,12 +193,11 @@ class StepLine(Message):
     """Run to the next line of the program, then pause; a running program pauses at its next line."""
 
     kind = "step_line"
-    how: str = "over"
-    """One of `STEPS`: over calls, into them, out of this function."""
+    how: LineStep = LineStep.OVER
 
     def __post_init__(self) -> None:
-        if self.how not in STEPS:
-            raise ValueError(f"no such step {self.how!r}")
+        # JSON gives a text.
+        object.__setattr__(self, "how", LineStep(self.how))
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,35 +338,32 @@ COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CO
 
 
 @dataclass(frozen=True, slots=True)
-class ScriptedAction:
-    """A user action that is known before the run starts: from an earlier run, or from a test."""
+class UserAction:
+    """An action of the user in a run: one that was recorded, or that is known before the run starts."""
 
     tick: int
     """It takes effect after this number of ticks, right before the next one."""
-    action: Message
+    command: Message
     """One of `ACTIONS`, or `Stop`."""
 
     def __post_init__(self) -> None:
-        if not isinstance(self.action, (*ACTIONS, Stop)):
-            raise TypeError(f"not a user action: {self.action!r}")
+        if not isinstance(self.command, (*ACTIONS, Stop)):
+            raise TypeError(f"not a user action: {self.command!r}")
 
     def to_plain(self) -> dict[str, Any]:
         """Return the form that is stored with a run."""
-        return {"tick": self.tick, "kind": self.action.kind, **asdict(self.action)}
+        return {"tick": self.tick, "kind": self.command.kind, **asdict(self.command)}
 
     @classmethod
-    def from_plain(cls, row: Mapping[str, Any]) -> ScriptedAction:
+    def from_plain(cls, row: Mapping[str, Any]) -> UserAction:
         """Rebuild an action from the output of `to_plain`.
 
         Raises:
-            KeyError, TypeError: the data is not a user action.
+            KeyError, TypeError, ValueError, ConfigError: the data is not a user action.
         """
         fields = {name: value for name, value in row.items() if name not in ("tick", "kind")}
         return cls(int(row["tick"]), COMMANDS[row["kind"]](**fields))
 
-
-STEPS = ("over", "into", "out")
-"""The ways to step from line to line."""
 
 BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 """The brick's buttons, by their names in the library."""
@@ -335,8 +390,7 @@ class Paused(Message):
     time_ns: int
     line: int
     """Line of the program that is about to run, or that spends the time; 0 if there is none."""
-    reason: str = "asked"
-    """One of `PAUSES`."""
+    reason: PauseReason = PauseReason.ASKED
     detail: str = ""
     """Text of the breakpoint that was hit."""
     value: str = ""
@@ -348,10 +402,6 @@ class Paused(Message):
     """Name of the thread that was paused."""
     file: str = ""
     """File of the line, if it is a module and not the program itself."""
-
-
-PAUSES = ("asked", "ticks", "step", "line", "break", "instant", "end")
-"""Why a run pauses: requested, ticks done, step done, line reached, breakpoint hit, instant reached, program over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -395,21 +445,19 @@ class ReplyWanted(Message):
 
 @dataclass(frozen=True, slots=True)
 class Ended(Message):
-    """The last event of a run.
-
-    `end` is one of finished, raised, stopped, time_limit, stalled, deadlock, output_limit, disk_full.
-    `error` is the program's traceback, `error_line` its last line in the program,
-    `summary` a description of what happened, in one line.
-    """
+    """The end of a run: its last event, and part of what is stored of it."""
 
     kind = "ended"
-    end: str
+    end: End
     tick: int
     time_ns: int
     exit_code: int = 0
     summary: str = ""
+    """Description of what happened, one line."""
     error: str = ""
+    """The program's traceback."""
     error_line: int = 0
+    """Its last line in the program; 0 if there is none."""
     deterministic: bool = True
 
 

@@ -1,8 +1,43 @@
-"""Program text as Python reads it: from bytes, and line by line."""
+"""A program to run, and its text as Python reads it: from bytes, and line by line."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from pathlib import Path
+
 from tuisim.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A program to run, or that of a stored run."""
+
+    name: str
+    """File name as displayed to the user."""
+    text: str
+    """The source; a magic line is commented out, which keeps the file's line numbers."""
+    prelude: str = "none"
+    """none, imports or preloaded."""
+    path: str = ""
+    """Path of its file; empty if it is in no file."""
+    arguments: tuple[str, ...] = ()
+    """Contents of `sys.argv` after the path."""
+    python_path: tuple[str, ...] = ()
+    """Folders besides its own in which it searches modules: the user's PYTHONPATH."""
+    working_directory: str = ""
+    """Initial working directory; empty means the current one, with the PYTHONPATH of this process."""
+    module_folder: str = ""
+    """Module folder of a program without a file, such as the folder of the notebook whose cell it is."""
+    modules_from: Path | None = None
+    """Folder of an earlier run: modules are read as that one recorded them; None reads them from their files."""
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the text in UTF-8, hexadecimal."""
+        # Imported here: the child process that runs a program does not need it.
+        import hashlib
+
+        return hashlib.sha256(self.text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def source_lines(text: str) -> list[str]:

@@ -14,7 +14,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.start_options import AppSettings
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.runs.handle import Program
+from tuisim.source import Program
 
 LOGS = """\
 sensor_val = colorLeft.reflected_light_intensity_pc

@@ -41,7 +41,7 @@ def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: Any) -> Snapshot:
     """A moment of a run, with some fields changed."""
     now = Snapshot(
         state=RUNNING,
-        end="",
+        end=None,
         spec=SPEC,
         field=None,
         instant=Instant(321, pose, 1234.4, -56.6, 525.0, -512.0),

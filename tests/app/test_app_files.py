@@ -18,7 +18,7 @@ from tuisim.config.options import Settings, settings_of
 from tuisim.config.worlds import load_world
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
-from tuisim.runs.handle import Program
+from tuisim.source import Program
 
 LAB = """\
 program = "mine.py"

@@ -13,6 +13,7 @@ from tuisim.app.panels.noise import Noise
 from tuisim.app.snapshot import ENDED, RUNNING
 from tuisim.app.widgets.slider import Slider
 from tuisim.core.spec import NoiseSpec
+from tuisim.protocol import SetNoise
 from tuisim.runs.run_folder import read_actions
 
 SHOWN = frozenset({"noise"})
@@ -83,7 +84,7 @@ async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -
         assert run is not None
         assert recording is not None
         actions, _ = read_actions(run.folder)
-        assert [(action.kind, dict(action.fields)) for action in actions] == [("set_noise", {"light": 10, "motor": 0})]
+        assert [action.command for action in actions] == [SetNoise(10, 0)]
         assert recording.noise_at(run.telemetry.record(0)) == NoiseSpec(0, 0)
         await until(pilot, lambda: "light ±10" in screen_text(app))
         # The run itself began without: what it was made of does not change.

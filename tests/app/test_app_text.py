@@ -8,10 +8,10 @@ from textual.widget import Widget
 
 from tuisim.app.panels.code import Code
 from tuisim.app.panels.output_lines import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
-from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
+from tuisim.runs.records import OutputRow, Stream
 
 
-def row(text: str, stream: int = STDOUT) -> OutputRow:
+def row(text: str, stream: Stream = Stream.STDOUT) -> OutputRow:
     return OutputRow(text, 0, 0, 1, stream)
 
 
@@ -32,19 +32,19 @@ def lines(app: App[None]) -> list[str]:
 @pytest.mark.parametrize(
     ("text", "stream", "width", "expected"),
     [
-        ("", STDOUT, 10, [""]),
-        ("Colour: 1", STDOUT, 10, ["Colour: 1"]),
-        ("hello there", STDOUT, 10, ["hello ", "there"]),
-        ("x" * 25, STDOUT, 10, ["x" * 10, "x" * 10, "x" * 5]),
-        ("hi", SPEECH, 20, ["says: hi"]),
-        ("[beep]", SPEECH, 20, ["[beep]"]),
-        ("42", INPUT, 20, ["> 42"]),
-        ("a\tb\x1b[31m", STDERR, 20, ["a   b·[31m"]),
-        ("漢字漢字", STDOUT, 5, ["漢字", "漢字"]),
+        ("", Stream.STDOUT, 10, [""]),
+        ("Colour: 1", Stream.STDOUT, 10, ["Colour: 1"]),
+        ("hello there", Stream.STDOUT, 10, ["hello ", "there"]),
+        ("x" * 25, Stream.STDOUT, 10, ["x" * 10, "x" * 10, "x" * 5]),
+        ("hi", Stream.SPEECH, 20, ["says: hi"]),
+        ("[beep]", Stream.SPEECH, 20, ["[beep]"]),
+        ("42", Stream.INPUT, 20, ["> 42"]),
+        ("a\tb\x1b[31m", Stream.STDERR, 20, ["a   b·[31m"]),
+        ("漢字漢字", Stream.STDOUT, 5, ["漢字", "漢字"]),
     ],
     ids=["empty", "fits", "at a blank", "cut", "speech", "sound", "answer", "controls", "wide"],
 )
-def test_a_row_as_lines(text: str, stream: int, width: int, expected: list[str]) -> None:
+def test_a_row_as_lines(text: str, stream: Stream, width: int, expected: list[str]) -> None:
     assert shown_lines(row(text, stream), width) == expected
 
 

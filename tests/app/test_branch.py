@@ -96,8 +96,8 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
         old, new = telemetry(first), branch.telemetry.array()
         assert old[:260].tobytes() == new[:260].tobytes()
         assert branch.tags == ("branch-of-1", "at-2.60s")
-        done = [(action.tick, action.kind) for action in branch.actions]
-        before = [(a.tick, a.kind) for a in RunStore().load_run(first).actions if a.tick <= 260]
+        done = [(action.tick, action.command.kind) for action in branch.actions]
+        before = [(a.tick, a.command.kind) for a in RunStore().load_run(first).actions if a.tick <= 260]
         assert done == before + ([(260, kind)] if kind else [])
         assert any("branch of run 1 at 2.60 s" in notice for notice in notices(app))
         if not kind:

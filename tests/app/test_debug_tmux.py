@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.terminals import Terminal
+from tuisim.protocol import SetNoise, UserAction
 from tuisim.runs.store import RunStore
 
 pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
@@ -97,8 +98,8 @@ def test_the_log_program_taken_apart(terminal: Terminal, home: Path) -> None:
 
     branch = RunStore(home).load_run("last")
     assert "branch-of-1" in branch.tags
-    noise = [action for action in branch.actions if action.kind == "set_noise"]
-    assert (noise[0].tick, noise[0].fields) == (67, {"light": 30, "motor": 0})
+    noise = [action for action in branch.actions if isinstance(action.command, SetNoise)]
+    assert noise[0] == UserAction(67, SetNoise(30, 0))
     printed = [row.text for row in branch.output.rows() if row.text.startswith("Colour: ")]
     assert "Colour: 86.27450980392157" in printed
     assert len(set(printed)) > 12

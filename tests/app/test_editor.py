@@ -22,7 +22,6 @@ from tuisim.app.start_options import AppSettings
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import programs, read_program
-from tuisim.runs.handle import Program
 
 pytestmark = pytest.mark.usefixtures("home")
 
@@ -33,8 +32,7 @@ def own(path: Path, text: str = TEXT) -> AppSettings:
     """The app with a program that is in a file."""
     if not path.exists():
         path.write_text(text)
-    source = read_program(path)
-    program = Program(name=source.name, text=source.text, prelude=source.prelude, path=source.path)
+    program = read_program(path).program
     spec = build_run_spec(Settings(background="Empty_Map"))
     return AppSettings(spec=spec, program=program, background="Empty_Map")
 

@@ -20,6 +20,7 @@ from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, WAITING
 from tuisim.app.widgets.slider import Slider
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle
+from tuisim.protocol import SetNoise
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.store import RunStore
 
@@ -72,7 +73,7 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         recording = app.bridge.timeline.recording
         assert recording is not None
         kinds = ["set_noise", *["set_pose"] * 3, *["set_pen"] * 3]
-        assert [(action.tick, action.kind) for action in recording.actions()] == [(tick, kind) for kind in kinds]
+        assert [(one.tick, one.command.kind) for one in recording.actions()] == [(tick, kind) for kind in kinds]
         assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         await pilot.press("S")
         await until(pilot, lambda: app.bridge.state == ENDED)
@@ -103,7 +104,7 @@ def noises(app: LabApp) -> list[int]:
     """The light noise that the user has set in the run at hand."""
     recording = app.bridge.timeline.recording
     assert recording is not None
-    return [action.fields["light"] for action in recording.actions() if action.kind == "set_noise"]
+    return [one.command.light for one in recording.actions() if isinstance(one.command, SetNoise)]
 
 
 async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:

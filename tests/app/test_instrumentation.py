@@ -11,6 +11,7 @@ from tuisim.app.panels.instrumentation import Instrumentation, lines
 from tuisim.app.snapshot import ENDED, Snapshot
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import MotorSpec
+from tuisim.protocol import End
 
 EXTREME = moment(
     Pose(-12345.67, 98765.43, -3600.5),
@@ -19,7 +20,7 @@ EXTREME = moment(
     gyro_deg=-36000,
     gyro_rate_dps=-1050,
     state=ENDED,
-    end="output_limit",
+    end=End.OUTPUT_LIMIT,
     speed=0.25,
 )
 BARE = moment(spec=replace(SPEC, robot=replace(SPEC.robot, gyro=None, ultrasonic=None)), ultrasonic_mm=None, colors={})

@@ -20,7 +20,7 @@ from tuisim.runs.diff import diff_runs
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.mat import open_mat
 from tuisim.runs.recording import ERROR, SAMPLE, Recording, RowIndex
-from tuisim.runs.records import LED, STDERR, STDOUT, OutputWriter
+from tuisim.runs.records import OutputWriter, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView
@@ -28,7 +28,7 @@ from tuisim.runs.views import OutputView
 pytestmark = pytest.mark.usefixtures("home")
 
 
-def index_of(folder: Path, rows: list[tuple[int, int, str]]) -> RowIndex:
+def index_of(folder: Path, rows: list[tuple[int, Stream, str]]) -> RowIndex:
     """Write rows (tick, stream, text) and take them all in."""
     writer = OutputWriter(folder)
     for tick, stream, text in rows:
@@ -44,7 +44,13 @@ def test_rows_are_found_by_tick(tmp_path: Path) -> None:
     leds = [led_row(dict.fromkeys(LED_NAMES, light)) for light in (0, 9)]
     index = index_of(
         tmp_path,
-        [(0, STDOUT, "a"), (5, LED, leds[0]), (5, STDOUT, "b"), (7, LED, leds[1]), (9, STDOUT, "c")],
+        [
+            (0, Stream.STDOUT, "a"),
+            (5, Stream.LED, leds[0]),
+            (5, Stream.STDOUT, "b"),
+            (7, Stream.LED, leds[1]),
+            (9, Stream.STDOUT, "c"),
+        ],
     )
     assert [index.until(tick) for tick in (0, 4, 5, 8, 9, 99)] == [1, 1, 3, 4, 5, 5]
     texts = {tick: [row.text for row in index.texts_until(tick, 2)[0]] for tick in (0, 6, 99)}
@@ -58,13 +64,13 @@ def test_rows_are_found_by_tick(tmp_path: Path) -> None:
 
 def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
     values = [100, 100, 99, 50, 50, 51, 100]
-    rows = [(10 * at, STDOUT, f"Colour: {value}") for at, value in enumerate(values)]
-    index = index_of(tmp_path, [*rows, (90, STDERR, "Traceback"), (90, STDERR, "NameError")])
+    rows = [(10 * at, Stream.STDOUT, f"Colour: {value}") for at, value in enumerate(values)]
+    index = index_of(tmp_path, [*rows, (90, Stream.STDERR, "Traceback"), (90, Stream.STDERR, "NameError")])
     assert index.marks == [(20, SAMPLE), (30, SAMPLE), (60, SAMPLE), (90, ERROR)]
 
 
 def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:
-    rows = [(tick, STDOUT, f"Flips: {tick % 2}") for tick in range(20_000)]
+    rows = [(tick, Stream.STDOUT, f"Flips: {tick % 2}") for tick in range(20_000)]
     assert len(index_of(tmp_path, rows).marks) < 4000
 
 

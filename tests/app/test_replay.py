@@ -22,7 +22,7 @@ from tuisim.app.snapshot import ENDED
 from tuisim.app.start_options import AppSettings
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.protocol import ScriptedAction, SetNoise
+from tuisim.protocol import End, SetNoise, UserAction
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.packed.compact import compact
@@ -34,7 +34,7 @@ pytestmark = pytest.mark.usefixtures("home")
 def stored(text: str = LOGS, **choices: Any) -> str:
     """Carry a program out and return the run's id."""
     spec = build_run_spec(replace(Settings(background="Grey_bands", seed=5), **choices))
-    options = RunOptions(actions=(ScriptedAction(100, SetNoise(20, 0)), ScriptedAction(200, SetNoise(0, 0))))
+    options = RunOptions(actions=(UserAction(100, SetNoise(20, 0)), UserAction(200, SetNoise(0, 0))))
     run = start_run(program(text), spec, options)
     assert run.wait(PATIENCE_S)
     return run.run_id
@@ -165,7 +165,7 @@ def test_the_command_refuses(tuisim: Command, words: list[str], said: str) -> No
 
 
 def info(number: int, **facts: Any) -> RunInfo:
-    base = RunInfo(number, f"id{number}", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, "finished")
+    base = RunInfo(number, f"id{number}", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, End.FINISHED)
     return replace(base, **facts)
 
 
@@ -174,7 +174,7 @@ def info(number: int, **facts: Any) -> RunInfo:
     [("", [3, 2, 1]), ("line", [3, 1]), ("loop error", [2]), ("best", [3]), ("2026-01", [3, 2, 1]), ("none", [])],
 )
 def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None:
-    runs = [info(1), info(2, program="maze.py", end="raised"), info(3, tags="best branch")]
+    runs = [info(1), info(2, program="maze.py", end=End.RAISED), info(3, tags="best branch")]
     assert [run.number for run in matching(runs, search)] == numbers
 
 

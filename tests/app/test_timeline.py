@@ -18,6 +18,7 @@ from tuisim.app.panels.time_bar import Moment, bar_cells, mark_cells, words
 from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, snapshot_of
 from tuisim.app.timeline import Timeline
 from tuisim.errors import ConfigError
+from tuisim.protocol import End
 from tuisim.runs.recording import SAMPLE
 from tuisim.runs.views import instant_of
 
@@ -65,7 +66,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         record = recording.telemetry.record(200)
         then = instant_of(record, recording.spec, recording.spec.world.noise)
         expected = snapshot_of(
-            then, recording.spec, mat.field, state=ENDED, end="finished", line=record.line, speed=0.0, pen_down=False
+            then, recording.spec, mat.field, state=ENDED, end=End.FINISHED, line=record.line, speed=0.0, pen_down=False
         )
         shown = app.bridge.snapshot()
         plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None)

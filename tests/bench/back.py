@@ -12,7 +12,8 @@ from tests.bench.running import LOG
 from tests.bench.terminal import Terminal
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.source import Program
 
 RUN_S = 600.0
 PANELS = ("-O", "-A", "-i", "-D", "-c")

@@ -12,7 +12,8 @@ from tests.bench.running import EMPTY
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.source import Program
 
 SIMULATED_S = 600.0
 OBSTACLES = 200

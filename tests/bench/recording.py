@@ -18,11 +18,12 @@ from tests.bench.speed import LOADS
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.spec import RunSpec
-from tuisim.runs.handle import Program, RunOptions, field_files, start_run
+from tuisim.runs.handle import RunOptions, field_files, start_run
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore, compact_run
 from tuisim.runs.views import OutputView, TelemetryView
+from tuisim.source import Program
 
 RUN_S = 600.0
 COST_RUN_S = 1800.0

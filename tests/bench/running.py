@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.runs.handle import Program, RunHandle, RunOptions, start_run
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.source import Program
 
 EMPTY = "pass\n"
 

@@ -22,9 +22,10 @@ from tuisim.config.options import Settings, settings_of
 from tuisim.config.world_writer import save_world
 from tuisim.config.worlds import load_world
 from tuisim.core.profile import PROFILES
-from tuisim.runs.handle import Program, RunHandle
+from tuisim.runs.handle import RunHandle
 from tuisim.runs.recording import Recording
 from tuisim.runs.store import RunStore
+from tuisim.source import Program
 
 SHOWS = "# %%sim_magic\nimport sys\nprint(sys.argv)\n"
 

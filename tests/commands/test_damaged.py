@@ -22,13 +22,11 @@ from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.records import (
     ACTIONS_FILE,
-    DISPLAY,
-    LED,
-    MOTORS,
     OUTPUT_FILE,
     STOP_FILE,
     TELEMETRY_FILE,
     OutputWriter,
+    Stream,
     TelemetryWriter,
 )
 from tuisim.runs.run_folder import RUN_FILE
@@ -44,7 +42,7 @@ def record(packed: bool = False) -> Path:
     run = store.new_run(PROGRAM, spec)
     telemetry = TelemetryWriter(run.folder)
     recorder = Recorder(store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry))
-    recorder.print("[[0.0, 10.0]]", stream=MOTORS)
+    recorder.print("[[0.0, 10.0]]", stream=Stream.MOTORS)
     for at in range(6):
         recorder.drive(100, 100, 20)
         recorder.print(f"a: {at}")
@@ -139,11 +137,11 @@ DAMAGES: dict[str, Damage] = {
     "an unknown stream": row(99, b"x"),
     "a row longer than the file": at(OUTPUT_FILE, 64, b"\xff\xff\xff\x7f"),
     "a row before its time": at(OUTPUT_FILE, 64 + 8, b"\xff" * 8),
-    "lights that are no JSON": row(LED, b"{"),
-    "a display that is no JSON": row(DISPLAY, b"[1]"),
-    "motors that are no JSON": row(MOTORS, b"x"),
-    "motors of another number": row(MOTORS, b"[[1, 2], [3, 4]]"),
-    "motors without numbers": row(MOTORS, b'[["a", null]]'),
+    "lights that are no JSON": row(Stream.LED, b"{"),
+    "a display that is no JSON": row(Stream.DISPLAY, b"[1]"),
+    "motors that are no JSON": row(Stream.MOTORS, b"x"),
+    "motors of another number": row(Stream.MOTORS, b"[[1, 2], [3, 4]]"),
+    "motors without numbers": row(Stream.MOTORS, b'[["a", null]]'),
     "a length of output without end": at(OUTPUT_FILE, 16, b"\xff" * 8),
     "a folder of output": folder_for(OUTPUT_FILE),
     "an action without end": text(ACTIONS_FILE, '{"tick": 1e999, "kind": "set_pen", "down": true}\n'),

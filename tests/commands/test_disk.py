@@ -27,7 +27,7 @@ from tuisim.errors import ExportError, LogError
 from tuisim.logs.export import export_samples, read_log
 from tuisim.runs import run_folder
 from tuisim.runs import store as store_module
-from tuisim.runs.handle import Program, RunOptions, field_files, start_run
+from tuisim.runs.handle import RunOptions, field_files, start_run
 from tuisim.runs.packed import packer
 from tuisim.runs.packed.compact import PACKED_SUFFIX
 from tuisim.runs.packed.packer import LOCK_FILE
@@ -35,6 +35,7 @@ from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE, Ou
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import TelemetryView
+from tuisim.source import Program
 
 ENDLESS = """
 import time

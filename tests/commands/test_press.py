@@ -6,7 +6,7 @@ import pytest
 
 from tuisim.commands.press import Press, parse_press, press_actions
 from tuisim.errors import ConfigError
-from tuisim.protocol import BUTTONS, ScriptedAction, SetButtons
+from tuisim.protocol import BUTTONS, SetButtons, UserAction
 
 GIVEN = {
     "plain": ("enter@1", Press("enter", 1.0, 1.1)),
@@ -58,7 +58,7 @@ def test_presses_become_changes_at_ticks(
     texts: tuple[str, ...], changes: tuple[tuple[int, tuple[str, ...]], ...]
 ) -> None:
     found = press_actions([parse_press(text) for text in texts], 100)
-    assert found == tuple(ScriptedAction(tick, SetButtons(pressed)) for tick, pressed in changes)
+    assert found == tuple(UserAction(tick, SetButtons(pressed)) for tick, pressed in changes)
 
 
 def test_ticks_are_those_of_the_profile() -> None:

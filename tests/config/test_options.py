@@ -122,7 +122,7 @@ def test_no_magic_line(text: str) -> None:
 @pytest.mark.parametrize("end", ["\n", ""], ids=["newline", "end of file"])
 def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_their_numbers(end: str) -> None:
     program = parse_program(f"\n%%sim_magic_preloaded -b Grey_bands -OHR{end}", "a.py")
-    assert program.text == f"\n# %%sim_magic_preloaded -b Grey_bands -OHR{end}"
+    assert program.program.text == f"\n# %%sim_magic_preloaded -b Grey_bands -OHR{end}"
     assert program.switches["background"] == "Grey_bands"
 
 
@@ -170,7 +170,7 @@ def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_thei
     ],
 )
 def test_prelude(text: str, prelude: str) -> None:
-    assert parse_program(text, "a.py").prelude == prelude
+    assert parse_program(text, "a.py").program.prelude == prelude
 
 
 @pytest.mark.parametrize(
@@ -214,4 +214,4 @@ def test_missing_program_names_its_neighbour(tmp_path: Path) -> None:
 def test_other_encodings_and_line_ends_are_read(tmp_path: Path) -> None:
     file = tmp_path / "a.py"
     file.write_bytes("# coding: latin-1\r\nx = 'ä'\r\n".encode("latin-1"))
-    assert read_program(file).text == "# coding: latin-1\nx = 'ä'\n"
+    assert read_program(file).program.text == "# coding: latin-1\nx = 'ä'\n"

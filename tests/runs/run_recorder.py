@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.runs.records import ACTIONS_FILE, STDOUT, OutputWriter, TelemetryWriter
-from tuisim.runs.run_folder import RunEnd, StoredProgram, StoredRun
+from tuisim.protocol import End, Ended
+from tuisim.runs.records import ACTIONS_FILE, OutputWriter, Stream, TelemetryWriter
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import NewRun, RunStore
+from tuisim.source import Program
 
-PROGRAM = StoredProgram("log.py", "/somewhere/log.py", "print('Colour: 100.0')\n", "preloaded")
+PROGRAM = Program("log.py", "print('Colour: 100.0')\n", "preloaded", "/somewhere/log.py")
 
 
 @dataclass
@@ -32,7 +34,7 @@ class Recorder:
         self.simulation.right.run(right_dps)
         self.simulation.advance(ticks)
 
-    def print(self, text: str, line: int = 0, stream: int = STDOUT) -> None:
+    def print(self, text: str, line: int = 0, stream: Stream = Stream.STDOUT) -> None:
         """Write a row of output at the present tick."""
         tick = self.simulation.tick
         self.output.write(text.encode(), tick, self.simulation.due_ns(tick), line, stream)
@@ -46,10 +48,10 @@ class Recorder:
         with open(self.run.folder / ACTIONS_FILE, "a", encoding="utf-8") as handle:
             handle.write(json.dumps({"tick": self.simulation.tick, "kind": kind, **fields}) + "\n")
 
-    def end(self, end: str = "finished", summary: str = "") -> StoredRun:
+    def end(self, end: End = End.FINISHED, summary: str = "") -> StoredRun:
         """Close the files, record the end and return the run as stored."""
         self.telemetry.close()
         self.output.close()
         tick = self.simulation.tick
-        self.store.finish(self.run.id, RunEnd(end, tick, self.simulation.due_ns(tick), summary=summary))
+        self.store.finish(self.run.id, Ended(end, tick, self.simulation.due_ns(tick), summary=summary))
         return self.store.load_run(self.run.id)

@@ -16,25 +16,26 @@ import pytest
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
+from tuisim.protocol import End, Ended
 from tuisim.runs.catalogue import CATALOGUE_FILE, Catalogue
-from tuisim.runs.run_folder import RunEnd
 from tuisim.runs.store import RunStore
 
-FINISHED = RunEnd("finished", 100, 1_000_000_000)
+FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
 
 MANY = """
 import sys
 from pathlib import Path
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.run_folder import RunEnd, StoredProgram
+from tuisim.protocol import End, Ended
 from tuisim.runs.store import RunStore
+from tuisim.source import Program
 store = RunStore(Path(sys.argv[1]))
 spec = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
 for _ in range(12):
-    run = store.new_run(StoredProgram("p.py", "", "", "none"), spec)
+    run = store.new_run(Program("p.py", ""), spec)
     store.runs()
-    store.finish(run.id, RunEnd("finished", 1, 1))
+    store.finish(run.id, Ended(End.FINISHED, 1, 1))
     print(run.number, flush=True)
 """
 

@@ -23,10 +23,10 @@ from tuisim.runs.packed.telemetry_codec import RobotGeometry
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
-    STDOUT,
     TELEMETRY_FILE,
     TICK_FIELDS,
     OutputWriter,
+    Stream,
     TelemetryWriter,
 )
 from tuisim.runs.views import OutputView, TelemetryView
@@ -92,7 +92,7 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
     writer.close()
     output = OutputWriter(folder)
     for row in range(300):
-        output.write(f"Größe: {row % 7}".encode() * (row % 3), row // 2, row * 7_000_000, row % 5, STDOUT)
+        output.write(f"Größe: {row % 7}".encode() * (row % 3), row // 2, row * 7_000_000, row % 5, Stream.STDOUT)
     output.close()
     return spec
 

@@ -18,10 +18,11 @@ from tuisim.errors import LogError
 from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.diff import diff_runs
-from tuisim.runs.handle import Program, RunOptions, start_run
-from tuisim.runs.records import MOTORS, STOP_FILE
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.records import STOP_FILE, Stream
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.store import RunStore
+from tuisim.source import Program
 
 LOOP = """
 import random, time
@@ -214,7 +215,7 @@ def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: P
     live = start_run(Program("arm.py", ARM), spec, RunOptions(live=True, speed=16.0))
     over(live)
     run = RunStore().load_run(live.run_id)
-    turns = [row for row in run.output.rows() if row.stream == MOTORS]
+    turns = [row for row in run.output.rows() if row.stream == Stream.MOTORS]
     ((position_deg, speed_dps),) = face_after(BrickState(), turns).turns
     assert (round(position_deg), speed_dps) == (-83, 0.0)
     again = rerun(run, RunStore())

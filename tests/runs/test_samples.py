@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow
+from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.samples import Sample, parse_sample, samples_of
 
 SAMPLES = {
@@ -63,10 +63,13 @@ def test_line_is_only_text(text: str) -> None:
 
 
 def test_only_what_was_printed_is_logged() -> None:
-    rows = [OutputRow("a: 1", 5, 50_000_000, 3, stream) for stream in (STDOUT, STDERR, SPEECH, INPUT)]
+    rows = [
+        OutputRow("a: 1", 5, 50_000_000, 3, stream)
+        for stream in (Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT)
+    ]
     assert list(samples_of(rows)) == [Sample("a", 1.0, 0.05, 50_000_000, 5, 3)]
 
 
 def test_printed_time_counts() -> None:
-    (sample,) = samples_of([OutputRow("a: 1 7.5", 5, 50_000_000, 3, STDOUT)])
+    (sample,) = samples_of([OutputRow("a: 1 7.5", 5, 50_000_000, 3, Stream.STDOUT)])
     assert (sample.time_s, sample.time_ns) == (7.5, 50_000_000)

@@ -17,13 +17,14 @@ from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.config.folders import home_folder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import LogError
+from tuisim.protocol import End, Ended, SetNoise, SetPen, Unended, UserAction
 from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.runs.lock import hold, is_held
 from tuisim.runs.records import ACTIONS_FILE, OUTPUT_FILE
-from tuisim.runs.run_folder import INTERRUPTED, RUN_FILE, RUNNING, RunEnd, StoredRun, UserAction, noise_at
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at
 from tuisim.runs.store import RunStore, load_run
 
-FINISHED = RunEnd("finished", 100, 1_000_000_000)
+FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
 
 
 def test_run_is_stored_whole(record: Callable[..., Recorder], noisy_spec: RunSpec) -> None:
@@ -31,20 +32,20 @@ def test_run_is_stored_whole(record: Callable[..., Recorder], noisy_spec: RunSpe
     recorder.drive(100, 100, 5)
     recorder.print("a: 1", line=2)
     recorder.act("set_pen", down=True)
-    run = recorder.end("raised", "NameError: x")
+    run = recorder.end(End.RAISED, "NameError: x")
     assert (run.id, run.number, run.folder) == (recorder.run.id, 1, recorder.run.folder)
     assert (run.program, run.spec) == (PROGRAM, noisy_spec)
     assert (run.live, run.options, run.field) == (True, {"speed": 2.0}, {"width_px": 3})
-    assert run.end == RunEnd("raised", 5, 50_000_000, summary="NameError: x")
+    assert run.end == Ended(End.RAISED, 5, 50_000_000, summary="NameError: x")
     assert run.state == "raised"
-    assert [(action.tick, action.kind, action.fields) for action in run.actions] == [(5, "set_pen", {"down": True})]
+    assert run.actions == (UserAction(5, SetPen(True)),)
     assert (run.telemetry.count, len(run.output.all_rows()), run.notes) == (6, 1, ())
 
 
 def test_catalogue_says_how_it_went(logged: StoredRun, store: RunStore) -> None:
     (info,) = store.runs()
     assert info == RunInfo(
-        1, logged.id, logged.created, "log.py", "Empty_Map", "robolab", 3, "finished", 17, 0.17, 4, "", ""
+        1, logged.id, logged.created, "log.py", "Empty_Map", "robolab", 3, End.FINISHED, 17, 0.17, 4, "", ""
     )
 
 
@@ -131,23 +132,23 @@ def test_run_of_a_living_process_is_running(record: Callable[..., Recorder], spe
     recorder.drive(50, 50, 3)
     recorder.print("a: 1")
     (info,) = store.runs()
-    assert (info.end, info.ticks, info.time_s, info.samples) == (RUNNING, 3, 0.03, 1)
+    assert (info.end, info.ticks, info.time_s, info.samples) == (Unended.RUNNING, 3, 0.03, 1)
     with pytest.raises(LogError, match="still running"):
         store.remove(recorder.run.id)
     os.close(lock)
-    assert store.load_run("last").state == INTERRUPTED
+    assert store.load_run("last").state == Unended.INTERRUPTED
 
 
 def test_run_that_is_just_starting_is_running(store: RunStore, spec: RunSpec) -> None:
     run = store.new_run(PROGRAM, spec)
     assert is_held(run.folder) is None
-    assert (store.runs()[0].end, store.runs()[0].ticks) == (RUNNING, 0)
+    assert (store.runs()[0].end, store.runs()[0].ticks) == (Unended.RUNNING, 0)
 
 
 def test_run_that_never_started_is_interrupted(store: RunStore, spec: RunSpec) -> None:
     run = store.new_run(PROGRAM, spec)
     os.utime(run.folder, (0, 0))
-    assert store.runs()[0].end == INTERRUPTED
+    assert store.runs()[0].end == Unended.INTERRUPTED
 
 
 def test_killed_run_keeps_its_rows(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:
@@ -157,10 +158,10 @@ def test_killed_run_keeps_its_rows(record: Callable[..., Recorder], spec: RunSpe
     recorder.print("a: 1")
     recorder.print("a: 2")
     (info,) = store.runs()
-    assert (info.end, info.ticks, info.samples) == (INTERRUPTED, 3, 2)
+    assert (info.end, info.ticks, info.samples) == (Unended.INTERRUPTED, 3, 2)
     assert store.runs() == [info]
     run = store.load_run("1")
-    assert (run.end, run.state, len(run.output.all_rows()), run.telemetry.count) == (None, INTERRUPTED, 2, 4)
+    assert (run.end, run.state, len(run.output.all_rows()), run.telemetry.count) == (None, Unended.INTERRUPTED, 2, 4)
     assert run.time_s == info.time_s
     assert run.time_s > 0
 
@@ -168,12 +169,12 @@ def test_killed_run_keeps_its_rows(record: Callable[..., Recorder], spec: RunSpe
 def test_end_that_comes_late_counts(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:
     recorder = record(spec)
     os.close(hold(recorder.run.folder))
-    assert store.runs()[0].end == INTERRUPTED
-    recorder.end("killed")
+    assert store.runs()[0].end == Unended.INTERRUPTED
+    recorder.end(End.KILLED)
     assert store.runs()[0].end == "killed"
 
 
-@pytest.mark.parametrize("listed", ["", INTERRUPTED], ids=["not listed", "listed as interrupted"])
+@pytest.mark.parametrize("listed", ["", Unended.INTERRUPTED], ids=["not listed", "listed as interrupted"])
 def test_end_that_never_reached_the_catalogue_counts(logged: StoredRun, store: RunStore, listed: str) -> None:
     (before,) = store.runs()
     _change_catalogue(store, f"UPDATE runs SET end = '{listed}', ticks = NULL, samples = NULL")
@@ -303,6 +304,6 @@ def test_noise_follows_the_user(record: Callable[..., Recorder], spec: RunSpec) 
 
 
 def test_noise_is_found_also_after_65536_actions(logged: StoredRun) -> None:
-    actions = [UserAction(tick, "set_noise", {"light": tick % 100, "motor": 0}) for tick in range(1, 70_001)]
+    actions = [UserAction(tick, SetNoise(tick % 100, 0)) for tick in range(1, 70_001)]
     record = replace(logged.telemetry.record(0), tick=69_999, actions=69_999 & 0xFFFF)
     assert noise_at(logged.spec, actions, record) == NoiseSpec(99, 0)

@@ -20,10 +20,11 @@ from tuisim.errors import LogError
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
-    STDOUT,
+    OUTPUT_ROW,
     TELEMETRY_FILE,
     TICK_FIELDS,
     OutputWriter,
+    Stream,
     TelemetryWriter,
 )
 from tuisim.runs.store import RunStore
@@ -128,7 +129,7 @@ def test_recording_that_shrinks_under_its_reader_stays_read(tmp_path: Path, size
     telemetry, output = TelemetryWriter(tmp_path), OutputWriter(tmp_path)
     put(telemetry, 20_000)
     for number in range(2000):
-        output.write(b"x" * 100, number, 0, 0, STDOUT)
+        output.write(b"x" * 100, number, 0, 0, Stream.STDOUT)
     command = [sys.executable, "-c", SHRUNK, str(tmp_path), str(size)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.stdout.split(), done.returncode) == (["199990000", "19999", "20000", "1999"], 0), done.stderr
@@ -146,12 +147,12 @@ def test_no_such_record(tmp_path: Path, index: int) -> None:
 def test_new_rows_come_once_and_in_portions(tmp_path: Path) -> None:
     writer, view = OutputWriter(tmp_path), OutputView(tmp_path)
     for number in range(5):
-        writer.write(f"line {number} é".encode(), number, number * 10, number, STDOUT)
+        writer.write(f"line {number} é".encode(), number, number * 10, number, Stream.STDOUT)
     assert [row.text for row in view.new_rows(2)] == ["line 0 é", "line 1 é"]
     assert view.new_rows(0) == []
     assert [row.tick for row in view.new_rows()] == [2, 3, 4]
     assert view.new_rows() == []
-    writer.write(b"x" * 100_000, 9, 9, 9, STDOUT)
+    writer.write(b"x" * 100_000, 9, 9, 9, Stream.STDOUT)
     assert [len(row.text) for row in view.new_rows()] == [100_000]
     writer.close()
     assert len(view.all_rows()) == 6
@@ -170,7 +171,7 @@ def test_cut_off_telemetry_keeps_whole_records(tmp_path: Path) -> None:
 def test_cut_off_output_keeps_whole_rows(tmp_path: Path) -> None:
     writer = OutputWriter(tmp_path)
     for number in range(3):
-        writer.write(b"0123456789", number, 0, 0, STDOUT)
+        writer.write(b"0123456789", number, 0, 0, Stream.STDOUT)
     writer.close()
     os.truncate(tmp_path / OUTPUT_FILE, (tmp_path / OUTPUT_FILE).stat().st_size - 4)
     view = OutputView(tmp_path)
@@ -255,3 +256,17 @@ def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
     run = store.load_run(file.parent.name)
     assert run.notes == (f"{file}: not a tuisim recording: nothing of it can be read",)
     assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)
+
+
+def test_a_stream_of_another_version_is_read_as_unknown(tmp_path: Path) -> None:
+    writer = OutputWriter(tmp_path)
+    writer.write(b"a", 0, 0, 0, Stream.MOTORS)
+    writer.write(b"b", 1, 1, 0, Stream.STDOUT)
+    writer.close()
+    path = tmp_path / OUTPUT_FILE
+    data = bytearray(path.read_bytes())
+    data[HEADER_BYTES + OUTPUT_ROW.size - 4] = 99
+    path.write_bytes(data)
+    assert [(row.text, row.stream) for row in OutputView(tmp_path).rows()] == [
+        ("a", Stream.UNKNOWN), ("b", Stream.STDOUT)
+    ]  # fmt: skip

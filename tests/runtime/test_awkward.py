@@ -7,7 +7,7 @@ import pytest
 from tests.running import PATIENCE_S, Start
 from tests.runtime.awkward import ENDLESS, ENDS, PROGRAMS, QUICK
 from tests.runtime.debugging import Driver
-from tuisim.protocol import STEPS, Ended, Paused, StepLine
+from tuisim.protocol import Ended, LineStep, Paused, StepLine
 
 MOST_STEPS = 25
 WATCHES = ("len(str(x))", "y", "r", "[v for v in range(3)]")
@@ -30,7 +30,7 @@ def check(driver: Driver, held: Paused, text: str) -> None:
     assert all(len(variable.value) <= 400 for variable in (*looked.variables, *looked.globals))
 
 
-def step_through(driver: Driver, text: str, how: str) -> Ended | None:
+def step_through(driver: Driver, text: str, how: LineStep) -> Ended | None:
     """Step to the end, at most so many steps; return how it ended."""
     event = driver.wait_for(Paused, Ended)
     for _ in range(MOST_STEPS):
@@ -48,7 +48,7 @@ def stops_at_once(driver: Driver) -> None:
     assert driver.run.wait(PATIENCE_S) is not None
 
 
-def walk(start: Start, name: str, how: str) -> None:
+def walk(start: Start, name: str, how: LineStep) -> None:
     """Step through one program."""
     text = PROGRAMS[name]
     driver = begin(start, text)
@@ -61,13 +61,13 @@ def walk(start: Start, name: str, how: str) -> None:
 
 @pytest.mark.parametrize("name", QUICK)
 def test_awkward_programs_are_stepped_into(start: Start, name: str) -> None:
-    walk(start, name, "into")
+    walk(start, name, LineStep.INTO)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("how", STEPS)
+@pytest.mark.parametrize("how", LineStep)
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_every_awkward_program_is_stepped_through(start: Start, name: str, how: str) -> None:
+def test_every_awkward_program_is_stepped_through(start: Start, name: str, how: LineStep) -> None:
     walk(start, name, how)
 
 
@@ -80,7 +80,7 @@ def test_stop_works_at_every_step(start: Start, name: str) -> None:
         for _ in range(steps):
             if isinstance(event, Ended):
                 return
-            event = driver.do_or_end(StepLine("into"))
+            event = driver.do_or_end(StepLine(LineStep.INTO))
         if isinstance(event, Ended):
             return
         stops_at_once(driver)
@@ -106,7 +106,7 @@ def test_hostile_values_are_cut_safely(start: Start, name: str, shown: tuple[str
     driver.paused()
     variable, value = shown
     assert driver.values()[variable].startswith(value)
-    ended = driver.finish(StepLine("out"))
+    ended = driver.finish(StepLine(LineStep.OUT))
     assert ended.end == "finished"
     # What was done for a look is undone.
     assert driver.run.output.all_rows()[-1].text in ("on", "0", "49995000", "10000000")
@@ -121,4 +121,4 @@ def test_values_that_never_come_do_not_hold_up_the_rest(start: Start, name: str)
     assert looked.stack
     assert looked.note.endswith("take too long")
     assert ("r", "<R, not shown: values take too long>") in [(v.name, v.value) for v in looked.variables]
-    assert driver.finish(StepLine("out")).end == "finished"
+    assert driver.finish(StepLine(LineStep.OUT)).end == "finished"

@@ -12,8 +12,10 @@ from tuisim.protocol import (
     AFTER_TICK,
     BEFORE_NEXT_TICK,
     Ended,
+    LineStep,
     Pause,
     Paused,
+    PauseReason,
     Resume,
     RunToInstant,
     RunToLine,
@@ -65,7 +67,7 @@ def debug(start: Start) -> Callable[..., Driver]:
     return begin
 
 
-def places(driver: Driver, how: str, most: int) -> list[int]:
+def places(driver: Driver, how: LineStep, most: int) -> list[int]:
     """Step until the end and return the lines."""
     lines = [driver.paused().line]
     for _ in range(most):
@@ -80,12 +82,14 @@ def places(driver: Driver, how: str, most: int) -> list[int]:
 @pytest.mark.parametrize(
     ("how", "lines"),
     [
-        pytest.param("over", [1, 2, 6, 7, 8, 9, 7, 8, 9, 7, 8, 9, 7], id="over"),
-        pytest.param("into", [1, 2, 6, *[7, 8, 3, 4, 5, 9] * 3, 7], id="into"),
-        pytest.param("out", [1], id="out"),
+        pytest.param(LineStep.OVER, [1, 2, 6, 7, 8, 9, 7, 8, 9, 7, 8, 9, 7], id="over"),
+        pytest.param(LineStep.INTO, [1, 2, 6, *[7, 8, 3, 4, 5, 9] * 3, 7], id="into"),
+        pytest.param(LineStep.OUT, [1], id="out"),
     ],
 )
-def test_steps_show_the_lines_of_the_program_only(debug: Callable[..., Driver], how: str, lines: list[int]) -> None:
+def test_steps_show_the_lines_of_the_program_only(
+    debug: Callable[..., Driver], how: LineStep, lines: list[int]
+) -> None:
     assert places(debug(CALLS, hold_at=FIRST_LINE), how, 40) == lines
 
 
@@ -94,7 +98,7 @@ def test_out_of_a_function_holds_in_its_caller(debug: Callable[..., Driver]) -> 
     held = driver.paused()
     assert (held.line, held.reason, held.detail, held.value) == (3, "break", "3 if a == 1", "is true")
     assert [(frame.function, frame.line) for frame in driver.look().stack] == [("add", 3), ("<module>", 8)]
-    assert driver.do(StepLine("out")).line == 9
+    assert driver.do(StepLine(LineStep.OUT)).line == 9
     assert driver.values() == {"total": "3", "i": "1"}
 
 
@@ -174,7 +178,7 @@ def test_conditions_are_evaluated_without_moving_anything(
 def test_every_instant_of_a_run_can_be_held_again(debug: Callable[..., Driver]) -> None:
     driver = debug(CALLS, hold_at=FIRST_LINE)
     met = [driver.paused()]
-    while not isinstance(event := driver.do_or_end(StepLine("into")), Ended):
+    while not isinstance(event := driver.do_or_end(StepLine(LineStep.INTO)), Ended):
         met.append(event)
     again = debug(CALLS, live=False, hold_at=(met[8].tick, met[8].ordinal))
     assert again.paused() == _at_instant(met[8])
@@ -183,7 +187,7 @@ def test_every_instant_of_a_run_can_be_held_again(debug: Callable[..., Driver]) 
 
 
 def _at_instant(held: Paused) -> Paused:
-    return Paused(held.tick, held.time_ns, held.line, "instant", ordinal=held.ordinal, thread=held.thread)
+    return Paused(held.tick, held.time_ns, held.line, PauseReason.INSTANT, ordinal=held.ordinal, thread=held.thread)
 
 
 BLANKS = """\
@@ -253,7 +257,7 @@ def test_stepping_breaks_and_looking_change_nothing(debug: Callable[..., Driver]
     plain = run(THREADS, noise=(20, 30), seed=4)
     driver = debug(THREADS, hold_at=FIRST_LINE, breaks=("14", "sample main"), noise=(20, 30), seed=4)
     event: Paused | Ended = driver.paused()
-    steps = iter(["over", "into", "into", "out", "over"] * 40)
+    steps = iter([LineStep.OVER, LineStep.INTO, LineStep.INTO, LineStep.OUT, LineStep.OVER] * 40)
     while isinstance(event, Paused):
         driver.look("ultrasonic.distance_centimeters", "print('no')", "i")
         event = driver.do_or_end(StepLine(next(steps)))

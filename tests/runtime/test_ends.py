@@ -9,7 +9,8 @@ import pytest
 from tests.running import PATIENCE_S, Run
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.handle import Program, RunOptions, start_run
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.source import Program
 
 ENDS = {
     "nothing to do": ("pass", "finished", 0),

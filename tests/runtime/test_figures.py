@@ -183,7 +183,8 @@ def test_driving_off_the_field(run: Run, profile: str, beyond: bool) -> None:
 
     from tuisim.core.profile import PROFILES
     from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-    from tuisim.runs.handle import Program, RunOptions, start_run
+    from tuisim.runs.handle import RunOptions, start_run
+    from tuisim.source import Program
 
     world = WorldSpec(background="Empty_Map", solid=PROFILES[profile].solid)
     spec = RunSpec(RobotSpec(), replace(world), PROFILES[profile])

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.running import Done, Run, Start, over, until
-from tuisim.protocol import Answer, Message, Reply, ScriptedAction
+from tuisim.protocol import Answer, Message, Reply, UserAction
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.store import RunStore
@@ -103,7 +103,7 @@ def test_an_answer_to_input_takes_no_time_and_comes_again(start: Start, tmp_path
     done = talk(handle, lambda: Answer("Ada", at_once=True), lambda: handle.waiting_for_input is not None)
     assert done.lines == ["Ada 0.1"]
     (row,) = map(json.loads, (handle.folder / "actions.jsonl").read_text().splitlines())
-    assert ScriptedAction.from_plain(row) == ScriptedAction(10, Answer("Ada", at_once=True))
+    assert UserAction.from_plain(row) == UserAction(10, Answer("Ada", at_once=True))
     stored, scratch = RunStore().load_run(handle.run_id), RunStore(tmp_path)
     again = over(rerun(stored, scratch))
     assert same(stored, scratch.load_run(again.run.run_id)).same

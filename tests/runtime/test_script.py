@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.running import Run, Start, over, until_tick
-from tuisim.protocol import Answer, Message, ScriptedAction, SetButtons, SetNoise, SetPen, SetPose, SetSpeed
+from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose, SetSpeed, UserAction
 
 LOGGER = """
 import time
@@ -40,9 +40,9 @@ def test_actions_come_at_their_ticks(run: Run) -> None:
     done = run(
         "import time\ntime.sleep(1)",
         actions=(
-            ScriptedAction(10, SetPose(700.0, 500.0, 90.0)),
-            ScriptedAction(10, SetPen(True)),
-            ScriptedAction(50, SetPose(300.0, 400.0, 0.0)),
+            UserAction(10, SetPose(700.0, 500.0, 90.0)),
+            UserAction(10, SetPen(True)),
+            UserAction(50, SetPose(300.0, 400.0, 0.0)),
         ),
     )
     places = done.run.telemetry.array()["x_mm"]
@@ -55,14 +55,14 @@ def test_a_button_is_held_between_its_actions(run: Run) -> None:
     done = run(
         "import time\nfrom ev3dev2.button import Button\nb = Button()\n"
         "for i in range(5):\n    print(b.buttons_pressed)\n    time.sleep(0.1)",
-        actions=(ScriptedAction(15, SetButtons(("enter",))), ScriptedAction(35, SetButtons(()))),
+        actions=(UserAction(15, SetButtons(("enter",))), UserAction(35, SetButtons(()))),
     )
     assert done.lines == ["[]", "[]", "['enter']", "['enter']", "[]"]
 
 
 def test_only_actions_may_be_scripted() -> None:
     with pytest.raises(TypeError, match="user action"):
-        ScriptedAction(0, SetSpeed(1.0))
+        UserAction(0, SetSpeed(1.0))
 
 
 SCRIPTS: dict[str, tuple[str, tuple[Message, ...]]] = {
@@ -80,8 +80,8 @@ def test_what_a_user_did_can_be_done_again(start: Start, run: Run, text: str, ac
         live.send(action)
     first = over(live)
     rows = (live.folder / "actions.jsonl").read_text().splitlines()
-    script = tuple(ScriptedAction.from_plain(row) for row in map(json.loads, rows))
-    assert [row.action for row in script] == list(actions)
+    script = tuple(UserAction.from_plain(row) for row in map(json.loads, rows))
+    assert [row.command for row in script] == list(actions)
     ways: tuple[dict[str, Any], ...] = ({}, {"live": True, "speed": 0.0})
     for options in ways:
         again = run(text, asks_user=True, noise=(5, 5), actions=script, **options)

@@ -13,7 +13,8 @@ from tuisim.core.geometry import Pose
 from tuisim.core.parts import REMOTE_CHANNELS, REMOTE_CODES, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import GyroSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
-from tuisim.runs.handle import Program, RunHandle, RunOptions, start_run
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.source import Program
 
 START = Pose(500.0, 571.5, 0.0)
 SQUARE = RobotSpec(wheel_spacing_mm=168.0)

@@ -12,9 +12,10 @@ from tests.shim.conftest import FAR_WALL, PLAIN, RunOn
 from tests.shim.table_sound import FILE
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RunSpec
-from tuisim.runs.handle import Program, RunOptions, start_run
-from tuisim.runs.records import CONSOLE, SPEECH, STDERR, STDOUT
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.records import Stream
 from tuisim.shim.shell.syntax import NotUnderstood, read_line
+from tuisim.source import Program
 
 SETUP = """
 import asyncio, concurrent.futures, contextlib, io, multiprocessing, os, subprocess, time
@@ -154,7 +155,12 @@ def seen() -> dict[str, Seen]:
     begins = [at for at, row in enumerate(rows) if row.text == "# case"]
     parts = [rows[begin + 1 : end] for begin, end in zip(begins, [*begins[1:], len(rows)], strict=True)]
     return {
-        text: Seen(*([row.text for row in part if row.stream == stream] for stream in (STDOUT, STDERR, SPEECH)))
+        text: Seen(
+            *(
+                [row.text for row in part if row.stream == stream]
+                for stream in (Stream.STDOUT, Stream.STDERR, Stream.SPEECH)
+            )
+        )
         for text, part in zip(texts, parts, strict=True)
     }
 
@@ -191,7 +197,7 @@ def test_commands_for_the_text_screen(run_on: RunOn) -> None:
         "os.system('setfont Lat15-TerminusBold14')\nprint(os.popen('stty size').read().split())\nos.system('clear')\n"
         "os.system('setfont')\nprint(os.popen('stty size').read().split())"
     )
-    rows = [json.loads(row.text) for row in done.run.output.all_rows() if row.stream == CONSOLE]
+    rows = [json.loads(row.text) for row in done.run.output.all_rows() if row.stream == Stream.CONSOLE]
     shown = [(columns, count, lines[0]) for columns, count, lines, _ in rows]
     assert shown == [(14, 5, ""), (14, 5, "Hello"), (22, 9, "Hello"), (22, 9, ""), (22, 8, "")]
     assert done.lines == ["['9', '22']", "['8', '22']"]

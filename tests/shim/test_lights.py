@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.running import Done
 from tests.shim.conftest import RunOn
 from tuisim.runs.brick_state import BrickState, face_after
-from tuisim.runs.records import LED, OutputRow
+from tuisim.runs.records import OutputRow, Stream
 
 STEPS = """\
 from ev3dev2.led import Leds
@@ -32,7 +32,7 @@ print('dark')
 
 def rows(done: Done) -> list[OutputRow]:
     """Return the rows about the lights."""
-    return [row for row in done.run.output.all_rows() if row.stream == LED]
+    return [row for row in done.run.output.all_rows() if row.stream == Stream.LED]
 
 
 def lights(row: OutputRow) -> tuple[int, ...]:

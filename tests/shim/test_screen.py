@@ -8,7 +8,7 @@ from tests.running import Done
 from tests.shim.conftest import RunOn
 from tests.shim.table_console import SCREENS
 from tuisim.runs.brick_state import BLANK, DISPLAY_WIDTH, ROW_BYTES, BrickState, face_after
-from tuisim.runs.records import CONSOLE, DISPLAY, OutputRow
+from tuisim.runs.records import OutputRow, Stream
 
 EXERCISED = {
     "ev3dev2.console:Console.text_at",
@@ -34,7 +34,7 @@ print('done')
 
 def shown(done: Done) -> list[OutputRow]:
     """Return the rows about the screen."""
-    return [row for row in done.run.output.all_rows() if row.stream in (DISPLAY, CONSOLE)]
+    return [row for row in done.run.output.all_rows() if row.stream in (Stream.DISPLAY, Stream.CONSOLE)]
 
 
 def dark(row: OutputRow) -> set[tuple[int, int]]:
@@ -76,11 +76,11 @@ def test_picture_and_text_take_turns(run_on: RunOn) -> None:
         "d = Display()\nd.update()\nc = Console()\nc.text_at('x')\nd.update()\nc.text_at('x')"
     )
     assert [(row.line, row.stream) for row in shown(done)] == [
-        (4, DISPLAY),
-        (5, CONSOLE),
-        (6, CONSOLE),
-        (7, DISPLAY),
-        (8, CONSOLE),
+        (4, Stream.DISPLAY),
+        (5, Stream.CONSOLE),
+        (6, Stream.CONSOLE),
+        (7, Stream.DISPLAY),
+        (8, Stream.CONSOLE),
     ]
 
 

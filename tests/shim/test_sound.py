@@ -11,9 +11,10 @@ from tests.shim.table_sound import FILE, HEARD
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RunSpec
 from tuisim.protocol import Spoke
-from tuisim.runs.handle import Program, RunOptions, start_run
-from tuisim.runs.records import SPEECH
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.records import Stream
 from tuisim.shim.tones import Tone, parse_beep
+from tuisim.source import Program
 
 
 def test_each_sound_in_words_and_tones() -> None:
@@ -36,7 +37,7 @@ def test_sounds_overlap(run_on: RunOn) -> None:
         "from ev3dev2.sound import Sound\nimport time\ns = Sound()\n"
         "p = s.tone(440, 2000, play_type=1)\ns.tone(880, 500)\nprint(p.poll(), p.wait(), round(time.time() % 60, 2))"
     )
-    rows = [(row.text, row.time_ns) for row in done.run.output.all_rows() if row.stream == SPEECH]
+    rows = [(row.text, row.time_ns) for row in done.run.output.all_rows() if row.stream == Stream.SPEECH]
     assert rows == [("[tone 440 Hz 2 s]", 0), ("[tone 880 Hz 0.5 s]", 0)]
     assert done.lines == ["None 0 2.0"]
 
@@ -44,7 +45,9 @@ def test_sounds_overlap(run_on: RunOn) -> None:
 def test_a_song_is_heard_up_to_its_wrong_note(run_on: RunOn) -> None:
     done = run_on("from ev3dev2.sound import Sound\nSound().play_song([('D4', 'q'), ('D4', 'z')])")
     assert done.errors[-1] == "ValueError: invalid note (z)"
-    assert [row.text for row in done.run.output.all_rows() if row.stream == SPEECH] == ["[♪ song of 1 note, 0.6 s]"]
+    assert [row.text for row in done.run.output.all_rows() if row.stream == Stream.SPEECH] == [
+        "[♪ song of 1 note, 0.6 s]"
+    ]
     assert done.ended.time_ns == 550_000_000
 
 
@@ -71,7 +74,7 @@ def test_threads_take_turns_while_a_song_plays(run_on: RunOn) -> None:
         "song.join()\nprint(round(time.time() % 60, 2))"
     )
     assert done.lines == ["1.8"]
-    heard = [row.text for row in done.run.output.all_rows() if row.stream == SPEECH]
+    heard = [row.text for row in done.run.output.all_rows() if row.stream == Stream.SPEECH]
     assert sorted(heard) == ["[tone 880 Hz 0.01 s]"] * 4 + ["[♪ song of 3 notes, 1.5 s]"]
 
 

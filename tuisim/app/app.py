@@ -37,8 +37,8 @@ from tuisim.app.speech import Voice
 from tuisim.app.start_options import AppSettings
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.errors import TuisimError
-from tuisim.protocol import Ended
-from tuisim.runs.records import CONSOLE, DISPLAY, OutputRow
+from tuisim.protocol import End, Ended
+from tuisim.runs.records import OutputRow, Stream
 
 if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
@@ -276,7 +276,7 @@ class LabApp(ActionHost, PanelMessages):
         self.debugging.ended()
         self.work.run_ended_at(ended.error_line)
         # The traceback is among the rows already.
-        known = ended.end in ("finished", "raised")
+        known = ended.end in (End.FINISHED, End.RAISED)
         self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
         self.situation_changed()
         self.loading.look()
@@ -451,7 +451,7 @@ class BrickHint:
 
     def shown(self, rows: Iterable[OutputRow]) -> None:
         """Check the rows that the program has written."""
-        if not self._told and any(row.stream in (DISPLAY, CONSOLE) for row in rows):
+        if not self._told and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in rows):
             self._tell("shows something on the brick")
 
     def _tell(self, what: str) -> None:

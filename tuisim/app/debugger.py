@@ -11,14 +11,14 @@ from tuisim.app.actions import time_travel
 from tuisim.app.snapshot import PAUSED
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.errors import TuisimError
-from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused
+from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.runs.replay_debugger import Position, ReplayDebugger
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
-    from tuisim.runs.handle import Program
+    from tuisim.source import Program
 
-SHOWS_PANELS = ("step", "line", "break")
+SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK})
 """Pause reasons that open the debug panels automatically."""
 
 
@@ -171,13 +171,13 @@ class AppDebugger:
     def _handle_pause(self, paused: Paused) -> None:
         self._paused, self._position = paused, None
         self._frame, self._thread = 0, ""
-        if self._first is not None and paused.reason != "break":
+        if self._first is not None and paused.reason is not PauseReason.BREAK:
             first, self._first = self._first, None
             self._lab.bridge.debug(first)
             return
         if paused.reason in SHOWS_PANELS:
             self._open_panels()
-        if paused.reason == "break":
+        if paused.reason is PauseReason.BREAK:
             met = f": {paused.value}" if paused.value else ""
             self._lab.say(f"Break {paused.detail}{met} at {paused.time_ns / 1e9:.2f} s")
         self._inspect_again()
@@ -326,7 +326,7 @@ class AppDebugger:
             return Position(self._paused.tick, self._paused.ordinal)
         return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
 
-    def step(self, how: str) -> None:
+    def step(self, how: protocol.LineStep) -> None:
         """Step to the next line: of the live program, or as recorded."""
         self.go_on(protocol.StepLine(how))
 

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import assert_never
 
-if TYPE_CHECKING:
-    pass
-
-
-_END_LABELS = {"raised": "error", "time_limit": "time limit", "output_limit": "output limit", "disk_full": "disk full"}
+from tuisim.protocol import End, RunState, Unended
 
 
 def speed_label(speed: float) -> str:
@@ -16,6 +12,14 @@ def speed_label(speed: float) -> str:
     return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
 
 
-def end_label(end: str) -> str:
-    """Return in words how a run ended."""
-    return _END_LABELS.get(end, end)
+def end_label(state: RunState | None) -> str:
+    """Return in words how a run ended; empty if that is not known."""
+    match state:
+        case End.RAISED:
+            return "error"
+        case End() | Unended():
+            return state.replace("_", " ")
+        case None:
+            return ""
+        case _:
+            assert_never(state)

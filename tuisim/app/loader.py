@@ -19,9 +19,8 @@ from tuisim.errors import TuisimError
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
     from tuisim.app.setup.mat import Mat
-    from tuisim.config.program_file import ProgramSource
     from tuisim.core.spec import RunSpec
-    from tuisim.runs.handle import Program
+    from tuisim.source import Program
 
 NOT_NOW = "Not during a run: S stops it"
 
@@ -289,15 +288,16 @@ class Loader:
         """
         from tuisim.config.program_file import program_of_text
 
-        self._apply_program(*_program_of(program_of_text(text, Path(path) if path else None, name)))
+        file = program_of_text(text, Path(path) if path else None, name)
+        self._apply_program(file.program, file.switches)
 
     def take_new(self, text: str, name: str) -> None:
         """Open a new program without a file and without a magic line. Not during a run."""
         from tuisim.config.program_file import program_of_text
 
-        program, said = _program_of(program_of_text(text, None, name))
-        self._note_program(program, said)
-        self._lab.bridge.program = program
+        file = program_of_text(text, None, name)
+        self._note_program(file.program, file.switches)
+        self._lab.bridge.program = file.program
         self._loaded()
 
     def _apply_program(self, new: Program, said: Mapping[str, Any]) -> None:
@@ -334,13 +334,8 @@ def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
     """Read a program. Return it with the settings of its magic line."""
     from tuisim.config.program_file import read_program
 
-    return _program_of(read_program(Path(path).expanduser()))
-
-
-def _program_of(file: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
-    from tuisim.runs.handle import Program
-
-    return Program(name=file.name, text=file.text, prelude=file.prelude, path=file.path), file.switches
+    file = read_program(Path(path).expanduser())
+    return file.program, file.switches
 
 
 def _settings_in(program: Program | None) -> Mapping[str, Any]:

@@ -18,8 +18,8 @@ from tuisim.runs.records import OutputRow
 if TYPE_CHECKING:
     from tuisim.app.actions.branch import Branch
     from tuisim.app.start_options import AppSettings
-    from tuisim.runs.handle import Program
     from tuisim.runs.run_folder import StoredRun
+    from tuisim.source import Program
 
 FIRST_LINE = (0, 1)
 """Tick and ordinal at which the first line of a program is about to run."""
@@ -63,7 +63,7 @@ class RunController(RunView):
         program = replace(self.program, arguments=self.plan.settings.arguments)
         run = start_run(program, self.plan.spec, options)
         self.close()
-        self.run, self._end = run, ""
+        self.run, self._end = run, None
         self._look_at(Recording(self.run))
 
     def branch(self, branch: Branch) -> None:
@@ -75,7 +75,7 @@ class RunController(RunView):
         noise = branch.noise
         run = branch.start(self.speed)
         self.close()
-        self.run, self._end = run, ""
+        self.run, self._end = run, None
         # The noise of the current run is that of the next one, as if chosen now.
         self.plan = plans.with_noise(self.plan, noise)
         self._look_at(Recording(run, branch.of.answers))
@@ -263,7 +263,7 @@ class RunController(RunView):
                     held.append(event)
                 case protocol.Paused() | protocol.Resumed() | protocol.Inspected():
                     held.append(event)
-                    if isinstance(event, protocol.Paused) and event.reason == "break":
+                    if isinstance(event, protocol.Paused) and event.reason is protocol.PauseReason.BREAK:
                         self.timeline.breaks.append(event.tick)
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)

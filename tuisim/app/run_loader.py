@@ -12,7 +12,8 @@ from tuisim.app.labels import end_label
 from tuisim.app.loader import NOT_NOW
 from tuisim.app.setup.next_run import plan_of_run, with_arguments
 from tuisim.errors import LogError, TuisimError
-from tuisim.runs.handle import Program, program_again
+from tuisim.runs.handle import program_again
+from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
@@ -26,7 +27,7 @@ def program_of(run: StoredRun) -> Program:
 
     stored = run.program
     try:
-        same = bool(stored.path) and read_program(Path(stored.path)).text == stored.text
+        same = bool(stored.path) and read_program(Path(stored.path)).program.text == stored.text
     except TuisimError:
         same = False
     if same:

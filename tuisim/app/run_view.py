@@ -14,13 +14,15 @@ from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import FLAG_PEN_DOWN, Instant
+from tuisim.protocol import RunState
 
 if TYPE_CHECKING:
     from tuisim.app.actions.branch import Branch
     from tuisim.app.setup.mat import Mat
     from tuisim.app.start_options import AppSettings
-    from tuisim.runs.handle import Program, RunHandle
+    from tuisim.runs.handle import RunHandle
     from tuisim.runs.views import TickRecord
+    from tuisim.source import Program
 
 
 @dataclass(slots=True)
@@ -97,7 +99,7 @@ class RunView:
         self._branch: Branch | None = None
         """The branch that the current run becomes, while the run is repeated up to its instant."""
         self._still = self._at_rest(self.home)
-        self._end = ""
+        self._end: RunState | None = None
         """How the run ended."""
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
@@ -166,7 +168,7 @@ class RunView:
                 self.spec,
                 self._field(record),
                 state=self.state,
-                end=self._end if self.state == ENDED else "",
+                end=self._end if self.state == ENDED else None,
                 line=line,
                 speed=self.speed,
                 pen_down=pen_down,

@@ -12,13 +12,14 @@ from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
+from tuisim.protocol import End, RunState
 from tuisim.runs.brick_state import BrickState
 
 IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
 """Run states: no run yet, child process is starting, time passes, paused, waits in input(), ended."""
 
-GOOD_ENDS = ("finished", "stopped")
-"""Ways to end a run that are no failure (`protocol.Ended.end`)."""
+GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
+"""Ways to end a run that are no failure."""
 
 _DARK = BrickState()
 
@@ -28,8 +29,8 @@ class Snapshot:
     """One moment as every panel sees it. Sensor values are those of `instant`."""
 
     state: str
-    end: str
-    """How the run ended (`protocol.Ended.end`), empty unless `state` is ended."""
+    end: RunState | None
+    """How the run ended; None unless `state` is ended."""
     spec: RunSpec
     field: Field | None
     """None until the mat has been prepared."""
@@ -71,7 +72,7 @@ class Snapshot:
     @property
     def failed(self) -> bool:
         """Whether the run has ended with a failure."""
-        return self.state == ENDED and bool(self.end) and self.end not in GOOD_ENDS
+        return self.state == ENDED and self.end is not None and self.end not in GOOD_ENDS
 
     @property
     def planned(self) -> RunSpec:
@@ -85,7 +86,7 @@ def snapshot_of(
     field: Field | None,
     *,
     state: str,
-    end: str,
+    end: RunState | None,
     line: int,
     speed: float,
     pen_down: bool,

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from tuisim.config.options import DEFAULT_FPS, Settings
 from tuisim.core.spec import RunSpec
-from tuisim.runs.handle import Program
 from tuisim.runs.run_folder import StoredRun
+from tuisim.source import Program
 
 
 @dataclass(frozen=True, slots=True)

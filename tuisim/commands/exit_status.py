@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, assert_never
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.errors import counted
-from tuisim.protocol import NO_ANSWER, Ended
-from tuisim.runs.records import STDERR
-from tuisim.runs.run_folder import RunEnd, StoredRun
+from tuisim.protocol import NO_ANSWER, End, Ended
+from tuisim.runs.records import Stream
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import counts_of
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
@@ -17,15 +17,19 @@ EXIT_BROKEN_PIPE = 141
 """The exit code of a program that was ended by SIGPIPE."""
 SIGNALLED = 128
 """Exit codes above this come from a signal; no further program is then run."""
-LIMIT_ENDS = frozenset({"time_limit", "stalled", "output_limit", "disk_full"})
-"""Ends of a run that are caused by a limit."""
 
 
-def exit_code_of(ended: Ended | RunEnd) -> int:
+def exit_code_of(ended: Ended) -> int:
     """Return the shell's exit code for the end of a run."""
-    if ended.end == "finished":
-        return EXIT_RAISED if ended.exit_code else 0
-    return EXIT_LIMIT if ended.end in LIMIT_ENDS else EXIT_RAISED
+    match ended.end:
+        case End.FINISHED:
+            return EXIT_RAISED if ended.exit_code else 0
+        case End.TIME_LIMIT | End.STALLED | End.OUTPUT_LIMIT | End.DISK_FULL:
+            return EXIT_LIMIT
+        case End.RAISED | End.STOPPED | End.DEADLOCK | End.KILLED | End.CRASHED:
+            return EXIT_RAISED
+        case _:
+            assert_never(ended.end)
 
 
 def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
@@ -79,7 +83,7 @@ def last_state(facts: dict[str, Any]) -> str:
 def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
     """Print the end of a run: traceback and status line on stderr, or JSON on stdout."""
     facts = describe(run)
-    if facts["error"] and not any(row.stream == STDERR for row in run.output.rows()):
+    if facts["error"] and not any(row.stream == Stream.STDERR for row in run.output.rows()):
         echo_error_lines(facts["error"].rstrip("\n"))
     if facts["error"].rstrip("\n").endswith(NO_ANSWER):
         echo_error("`tuisim run` is not interactive: give each answer with --input TEXT, or use the app.")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tuisim.config.options import nearest, number
 from tuisim.errors import ConfigError
-from tuisim.protocol import BUTTONS, ScriptedAction, SetButtons
+from tuisim.protocol import BUTTONS, SetButtons, UserAction
 
 FLAG = "--press"
 DEFAULT_PRESS_S = 0.1
@@ -46,7 +46,7 @@ def parse_press(text: str) -> Press:
     return Press(name, from_s, until_s)
 
 
-def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[ScriptedAction, ...]:
+def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[UserAction, ...]:
     """Return the changes of the button states, ordered by tick.
 
     Args:
@@ -57,12 +57,12 @@ def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[ScriptedActio
     for press in presses:
         first = round(press.from_s * tick_hz)
         held.append((press.button, first, max(first + 1, round(press.until_s * tick_hz))))
-    changes: list[ScriptedAction] = []
+    changes: list[UserAction] = []
     before: tuple[str, ...] = ()
     for tick in sorted({tick for _, first, last in held for tick in (first, last)}):
         down = {button for button, first, last in held if first <= tick < last}
         pressed = tuple(button for button in BUTTONS if button in down)
         if pressed != before:
-            changes.append(ScriptedAction(tick, SetButtons(pressed)))
+            changes.append(UserAction(tick, SetButtons(pressed)))
             before = pressed
     return tuple(changes)

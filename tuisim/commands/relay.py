@@ -14,7 +14,7 @@ from tuisim.commands.exit_status import EXIT_BROKEN_PIPE
 from tuisim.commands.progress import aside, tell
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle
-from tuisim.runs.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.runs.records import OutputRow, Stream, line_of
 
 POLL_S = 0.05
 """The interval at which printed lines are relayed."""
@@ -104,17 +104,17 @@ class Follower:
 
     def _pass_on(self, rows: Iterable[OutputRow]) -> None:
         """Write rows to stdout and stderr in their original order."""
-        for to_stdout, group in groupby(rows, key=lambda row: row.stream == STDOUT):
+        for to_stdout, group in groupby(rows, key=lambda row: row.stream == Stream.STDOUT):
             if to_stdout:
                 with aside(self._out):
                     self._write("".join(row.text + "\n" for row in group))
                 continue
             for row in group:
                 # Printed text is passed on unchanged; speech becomes a line of tuisim's own.
-                if row.stream == STDERR:
+                if row.stream == Stream.STDERR:
                     with aside(sys.stderr):
                         sys.stderr.write(row.text + "\n")
-                elif row.stream == SPEECH:
+                elif row.stream == Stream.SPEECH:
                     echo_error(line_of(row))
 
     def _write(self, text: str) -> None:

@@ -22,9 +22,10 @@ from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError
 from tuisim.notebook.cells import is_notebook
-from tuisim.runs.handle import Program, field_files
+from tuisim.runs.handle import field_files
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
+from tuisim.source import Program
 
 _OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors"})
 """Fields of `Settings` that do not affect the run."""
@@ -108,7 +109,9 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -
 
 def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
     settings = settings_of(file.switches, world.settings if world else {}, given(arguments))
-    return Prepared(_program(file, settings), settings, _spec(settings), world)
+    prelude = settings.preload or file.program.prelude
+    program = replace(file.program, prelude=prelude, arguments=settings.arguments)
+    return Prepared(program, settings, _spec(settings), world)
 
 
 def _spec(settings: Settings) -> RunSpec:
@@ -124,18 +127,7 @@ def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace)
         return _of_source(file, world, arguments)
     except ConfigError as error:
         # An error about a mat or robot must also name the cell.
-        raise ConfigError(error.message, error.hint, file="" if error.file else file.name) from None
-
-
-def _program(file: ProgramSource, settings: Settings) -> Program:
-    return Program(
-        name=file.name,
-        text=file.text,
-        prelude=settings.preload or file.prelude,
-        path=file.path,
-        arguments=settings.arguments,
-        module_folder=file.module_folder,
-    )
+        raise ConfigError(error.message, error.hint, file="" if error.file else file.program.name) from None
 
 
 def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
@@ -175,11 +167,7 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tupl
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
         raise ConfigError(f"a stored run has its own program and world: remove {what}", "name one", key="--run")
     stored = RunStore().load_run(Path(run) if "/" in run else run)
-    program = stored.program
-    opened = Program(
-        program.name, program.text, program.prelude, program.path, program.arguments,
-        module_folder=program.module_folder,
-    )  # fmt: skip
+    opened = replace(stored.program, python_path=(), working_directory="")
     return stored, Prepared(opened, settings_of(chosen), stored.spec)
 
 

@@ -21,11 +21,12 @@ from tuisim.commands.tables import table
 from tuisim.config.options import SwitchParser, nearest
 from tuisim.errors import ConfigError, LogError, counted
 from tuisim.logs.export import EXPORTERS, export_samples, export_telemetry
+from tuisim.protocol import Unended
 from tuisim.runs.frames import damage_note
 from tuisim.runs.handle import ASK_AGAIN_S
-from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.runs.records import OutputRow, Stream, line_of
 from tuisim.runs.rerun import rerun, same
-from tuisim.runs.run_folder import RUNNING, StoredRun
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 
 ACTIONS = ("list", "show", "rm", "rerun", "export", "compact")
@@ -35,7 +36,7 @@ QUICK_BYTES = 8 << 20
 _AGE = re.compile(r"(\d{1,6}(?:\.\d{1,6})?)([hdw])")
 _HOURS = {"h": 1, "d": 24, "w": 168}
 
-STREAMS = {STDOUT: "stdout", STDERR: "stderr", SPEECH: "speech", INPUT: "input"}
+STREAMS = {Stream.STDOUT: "stdout", Stream.STDERR: "stderr", Stream.SPEECH: "speech", Stream.INPUT: "input"}
 MAX_SUMMARY = 40
 """Maximum characters of a summary in the list."""
 
@@ -156,7 +157,7 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     for note in facts["notes"]:
         echo(f"note: {note}")
     for row in rows:
-        echo(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == STDERR else ''}{line_of(row)}")
+        echo(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == Stream.STDERR else ''}{line_of(row)}")
     if facts["error"]:
         echo_lines(facts["error"].rstrip("\n"))
 
@@ -171,7 +172,7 @@ def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
             f"cannot be read: {age!r}", "hours, days or weeks, such as 12h, 30d or 8w", key="--older-than"
         )
     before = datetime.now(UTC) - timedelta(hours=float(match[1]) * _HOURS[match[2]])
-    return [run.id for run in store.runs() if run.end != RUNNING and _created_before(run.created, before)]
+    return [run.id for run in store.runs() if run.end is not Unended.RUNNING and _created_before(run.created, before)]
 
 
 def _created_before(created: str, moment: datetime) -> bool:
@@ -220,7 +221,7 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
 
 def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
     """Compact the named runs, or all finished ones; return the exit code."""
-    names = words or [info.id for info in store.runs() if info.end != RUNNING]
+    names = words or [info.id for info in store.runs() if info.end is not Unended.RUNNING]
     code, before, after, ticks = 0, 0, 0, 0
     for number, name in enumerate(names):
         tell(f"compacting run {name}", number, len(names))

@@ -16,7 +16,7 @@ from tuisim.config.folders import programs_folder
 from tuisim.config.options import nearest, parse_words
 from tuisim.config.preludes import PRELUDE_TEXTS, PRELUDES
 from tuisim.errors import ConfigError
-from tuisim.source import decode_source, source_lines
+from tuisim.source import Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
 
@@ -47,17 +47,9 @@ class Magic:
 class ProgramSource:
     """A program as read from its file."""
 
-    name: str
-    """File name."""
-    path: str
-    text: str
-    """The source; a magic line is commented out, which keeps the file's line numbers."""
-    prelude: str
-    """none, imports or preloaded."""
+    program: Program
     switches: Mapping[str, Any] = field(default_factory=dict)
     """Switches of the magic line, by field of `Settings`; file names are resolved from the program's folder."""
-    module_folder: str = ""
-    """Folder of its notebook if it is a cell; empty for a program file."""
 
 
 class ProgramFile(NamedTuple):
@@ -202,12 +194,13 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     """
     magic = find_magic(text, name)
     if magic is None:
-        return ProgramSource(name, path, text, prelude_for(text))
+        return ProgramSource(Program(name, text, prelude_for(text), path))
     if not magic.comment:
         lines = source_lines(text)
         lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"
         text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
-    return ProgramSource(name, path, text, str(magic.switches.get("preload", magic.prelude)), magic.switches)
+    prelude = str(magic.switches.get("preload", magic.prelude))
+    return ProgramSource(Program(name, text, prelude, path), magic.switches)
 
 
 def read_program(path: Path) -> ProgramSource:
@@ -248,8 +241,8 @@ def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
     Raises:
         ConfigError: its magic line is wrong.
     """
-    program = parse_program(text, name, str(path) if path else "")
-    return replace(program, switches=beside(path.parent if path else Path.cwd(), program.switches))
+    source = parse_program(text, name, str(path) if path else "")
+    return replace(source, switches=beside(path.parent if path else Path.cwd(), source.switches))
 
 
 def _decode(data: bytes, shown: str) -> str:

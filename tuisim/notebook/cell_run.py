@@ -19,11 +19,12 @@ from tuisim.errors import ConfigError, counted
 from tuisim.notebook.display import Scene, Stage, start_record
 from tuisim.notebook.interrupt import Interruption
 from tuisim.protocol import Answer, Reply
-from tuisim.runs.handle import Program, RunHandle, RunOptions, start_run
-from tuisim.runs.records import SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.records import OutputRow, Stream, line_of
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import Sample, samples_of
 from tuisim.runs.store import RunStore
+from tuisim.source import Program
 
 POLL_S = 0.02
 """Interval at which printed lines appear in the cell."""
@@ -45,7 +46,7 @@ FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
 """Prefixes of lines for the responder."""
 
 Responder = Callable[[str], object]
-_SHOWN = {STDOUT, STDERR, SPEECH}
+_SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +162,7 @@ class _Follower:
         show_rows(rows, quiet=self._wanted.quiet)
         if self._wanted.responder is not None:
             for row in rows:
-                if row.stream == STDOUT and row.text.startswith(FOR_THE_NOTEBOOK):
+                if row.stream == Stream.STDOUT and row.text.startswith(FOR_THE_NOTEBOOK):
                     heard = row.text.removeprefix(FOR_THE_NOTEBOOK[0])
                     answer = self._interruption.call(partial(self._wanted.responder, heard))
                     self._said += [] if answer is None else [_message(answer)]
@@ -185,7 +186,7 @@ class _Follower:
         if self._handle.output.new_rows(1):
             print("… and more lines, which are in the log", file=sys.stderr)
         ended = self._handle.ended
-        if ended and ended.error and not any(row.stream == STDERR for row in self._handle.output.rows()):
+        if ended and ended.error and not any(row.stream == Stream.STDERR for row in self._handle.output.rows()):
             print(ended.error.rstrip("\n"), file=sys.stderr)
 
 
@@ -226,8 +227,9 @@ class _Screen:
 
 def show_rows(rows: Sequence[OutputRow], *, quiet: bool = False) -> None:
     """Print rows in order, batched by stream."""
-    shown = _SHOWN - {SPEECH} if quiet else _SHOWN
-    for is_error, group in groupby((row for row in rows if row.stream in shown), key=lambda row: row.stream == STDERR):
+    shown = _SHOWN - {Stream.SPEECH} if quiet else _SHOWN
+    printed = (row for row in rows if row.stream in shown)
+    for is_error, group in groupby(printed, key=lambda row: row.stream == Stream.STDERR):
         print("\n".join(line_of(row) for row in group), file=sys.stderr if is_error else sys.stdout)
 
 

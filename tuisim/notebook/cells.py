@@ -15,7 +15,7 @@ from tuisim.config.preludes import PRELUDES
 from tuisim.config.program_file import ProgramSource, beside
 from tuisim.errors import ConfigError
 from tuisim.notebook.magic_line import lasting_after, parse_line
-from tuisim.source import source_lines
+from tuisim.source import Program, source_lines
 
 MAX_NOTEBOOK_BYTES = 64 << 20
 SUFFIX = ".ipynb"
@@ -122,7 +122,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
                 body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
                 prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
                 switches = {**lasting, **said}
-                source = ProgramSource(f"{path.name}#{number}", "", body, prelude, switches, folder)
+                source = ProgramSource(Program(f"{path.name}#{number}", body, prelude, module_folder=folder), switches)
                 found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()
             elif words.unknown:

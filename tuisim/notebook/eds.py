@@ -54,11 +54,11 @@ def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
 
 def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, float]]:
     from tuisim.runs.mat import open_mat
-    from tuisim.runs.records import STDOUT
+    from tuisim.runs.records import Stream
 
     field: Field | None = None
     for row in run.output.rows():
-        asked = _IMAGE_LINE.fullmatch(row.text) if row.stream == STDOUT else None
+        asked = _IMAGE_LINE.fullmatch(row.text) if row.stream == Stream.STDOUT else None
         if asked is None or row.tick >= run.telemetry.count:
             continue
         field = field or open_mat(run)

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from tuisim.core.spec import RunSpec
     from tuisim.notebook.display import Scene, Stage
     from tuisim.notebook.magic_line import MagicWords
-    from tuisim.runs.handle import Program
     from tuisim.runs.run_folder import StoredRun
+    from tuisim.source import Program
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +115,7 @@ class Lab:
             "background": self.spec.world.background,
             "profile": self.spec.profile.name,
             "seed": self.spec.seed,
-            "state": self._last.state if self._last else "ready",
+            "state": self._last.state.value if self._last else "ready",
         }
 
     @property
@@ -163,7 +163,8 @@ class Lab:
         from tuisim.config.options import settings_of
         from tuisim.config.robots import choose_robot
         from tuisim.notebook.magic_line import lasting_after
-        from tuisim.runs.handle import Program, field_files
+        from tuisim.runs.handle import field_files
+        from tuisim.source import Program
 
         if isinstance(robot := words.settings.get("robot"), str):
             for note in choose_robot(robot, "-r").notes:

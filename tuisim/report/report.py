@@ -18,6 +18,7 @@ from tuisim.errors import ExportError, LogError, listed
 from tuisim.logs.export import check_place
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.statistics import QUANTILES
+from tuisim.protocol import SetNoise
 from tuisim.report.html import code, facts, page, paragraph, section, table
 from tuisim.report.world import as_source, way_picture
 from tuisim.runs.arrays import FloatArray
@@ -276,7 +277,7 @@ def _end_pose(run: StoredRun) -> str:
 
 def _noise(run: StoredRun) -> str:
     noise = run.spec.world.noise
-    changed = any(action.kind == "set_noise" for action in run.actions)
+    changed = any(isinstance(action.command, SetNoise) for action in run.actions)
     return f"light {noise.light}, motor {noise.motor}" + (", changed during the run" if changed else "")
 
 

@@ -12,8 +12,9 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import assert_never
 
-from tuisim.runs.records import CONSOLE, DISPLAY, LED, MOTORS, SPEECH, OutputRow
+from tuisim.runs.records import OutputRow, Stream
 
 DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128
 """Size of the display in pixels."""
@@ -88,17 +89,21 @@ def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
     """Return the state after more output; rows of other streams are ignored."""
     for row in rows:
         match row.stream:
-            case stream if stream == LED:
+            case Stream.LED:
                 face = replace(face, leds=json.loads(row.text))
-            case stream if stream == DISPLAY:
+            case Stream.DISPLAY:
                 face = replace(face, picture=zlib.decompress(base64.b85decode(row.text)), shows_text=False)
-            case stream if stream == CONSOLE:
+            case Stream.CONSOLE:
                 columns, count, lines, inverse = json.loads(row.text)
                 spans = tuple((line, start, end) for line, start, end in inverse)
                 face = replace(face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True)
-            case stream if stream == SPEECH:
+            case Stream.SPEECH:
                 face = replace(face, sound=row.text)
-            case stream if stream == MOTORS:
+            case Stream.MOTORS:
                 turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
                 face = replace(face, turns=turns, turns_tick=row.tick)
+            case Stream.STDOUT | Stream.STDERR | Stream.INPUT | Stream.NOTE | Stream.UNKNOWN:
+                pass
+            case _:
+                assert_never(row.stream)
     return face

@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 
 from tuisim.atomic import make_private_folder, private
 from tuisim.errors import LogError
+from tuisim.protocol import RUN_STATES, RunState
 
 CATALOGUE_FILE = "runs.db"
 LOCK_FILE = "runs.lock"
@@ -63,8 +64,8 @@ class RunInfo:
     background: str
     profile: str
     seed: int
-    end: str = ""
-    """How the run ended, `running` or `interrupted`; empty in the file while it has no end."""
+    end: RunState | None = None
+    """How the run ended, or its state without an end; None, and empty in the file, until that is known."""
     ticks: int | None = None
     time_s: float | None = None
     """Simulated time in seconds."""
@@ -271,7 +272,7 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     free = not connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
     number = info.number if info.number > 0 and free else None
     # A seed may exceed the integers of SQLite.
-    changed = {"number": number, "seed": str(info.seed)}
+    changed = {"number": number, "seed": str(info.seed), "end": info.end or ""}
     row = [changed.get(name, getattr(info, name)) for name in _NAMES]
     return int(connection.execute(_INSERT, row).lastrowid or 0)
 
@@ -281,7 +282,7 @@ def _all_rows(connection: sqlite3.Connection) -> list[RunInfo]:
     connection.text_factory = bytes
     try:
         return [_info(row) for row in connection.execute(_SELECT)]
-    except (ValueError, AttributeError, TypeError) as error:
+    except (ValueError, KeyError, AttributeError, TypeError) as error:
         raise _ForeignFile(f"a row is damaged: {error}") from error
 
 
@@ -292,6 +293,7 @@ def _info(row: tuple[Any, ...]) -> RunInfo:
             raise ValueError(f"{count!r} is no number")
     words = (text.decode() for text in (*texts, end, summary, tags))
     run_id, created, program, background, profile, end, summary, tags = words
+    state = RUN_STATES[end] if end else None
     return RunInfo(
-        number, run_id, created, program, background, profile, int(seed), end, ticks, time_s, samples, summary, tags
+        number, run_id, created, program, background, profile, int(seed), state, ticks, time_s, samples, summary, tags
     )

@@ -7,19 +7,16 @@ import shlex
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import takewhile, zip_longest
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 from tuisim.core.spec import to_plain
-from tuisim.runs.records import CONSOLE, DISPLAY, LED, MOTORS, TEXT_STREAMS, OutputRow, line_of
+from tuisim.runs.records import TEXT_STREAMS, OutputRow, Stream, line_of
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     import numpy as np
-
-_SEEN = {LED: "[lights]", DISPLAY: "[display]", CONSOLE: "[text screen]", MOTORS: "[motors]"}
-"""Text for rows without readable text, by stream."""
 
 DIFF_LINES = 20
 """Maximum number of lines of the unified diff of two programs."""
@@ -193,11 +190,26 @@ def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
     return takewhile(lambda row: until is None or row.tick < until, run.output.rows())
 
 
+def _shown(row: OutputRow) -> str:
+    """Return a row as text, also one of the brick's state."""
+    match row.stream:
+        case Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE:
+            return line_of(row)
+        case Stream.LED:
+            return "[lights]"
+        case Stream.CONSOLE:
+            return "[text screen]"
+        case Stream.DISPLAY | Stream.MOTORS | Stream.UNKNOWN:
+            return f"[{row.stream.name.lower()}]"
+        case _:
+            assert_never(row.stream)
+
+
 def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
     for row in _written(run, until):
         yield (
             row,
-            line_of(row) if row.stream in TEXT_STREAMS else _SEEN.get(row.stream, f"[stream {row.stream}]"),
+            _shown(row),
             row.time_ns / 1e9,
         )
 

@@ -13,7 +13,6 @@ import subprocess
 import time
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints
@@ -24,6 +23,7 @@ from tuisim.errors import HostError, LogError
 from tuisim.protocol import (
     PROTOCOL_VERSION,
     Answer,
+    End,
     Ended,
     InputWanted,
     Message,
@@ -31,9 +31,9 @@ from tuisim.protocol import (
     Reply,
     ReplyWanted,
     Resumed,
-    ScriptedAction,
     Started,
     Stop,
+    UserAction,
 )
 from tuisim.runs.own_modules import copy_modules
 from tuisim.runs.process import (
@@ -47,9 +47,10 @@ from tuisim.runs.process import (
     what_ended,
     write_command,
 )
-from tuisim.runs.run_folder import RunEnd, StoredRun, end_document
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView, TelemetryView
+from tuisim.source import Program
 
 STUCK_AFTER_S = 0.4
 """A child that has not ended this long after a stop is killed."""
@@ -58,30 +59,6 @@ ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
 STALL_FACTOR = 2.0
 """A headless child without progress for this many stall limits of real time is stuck in C code."""
-
-
-@dataclass(frozen=True, slots=True)
-class Program:
-    """A program to run."""
-
-    name: str
-    """File name as displayed to the user."""
-    text: str
-    prelude: str = "none"
-    """none, imports or preloaded."""
-    path: str = ""
-    """Path of its file; empty if it is in no file."""
-    arguments: tuple[str, ...] = ()
-    """Contents of `sys.argv` after the path."""
-    python_path: tuple[str, ...] = ()
-    """Folders besides its own in which it searches modules."""
-    working_directory: str = ""
-    """Initial working directory; empty means the current one, with the PYTHONPATH of this process."""
-    module_folder: str = ""
-    """Module folder of a program without a file, such as the folder of the notebook whose cell it is."""
-    modules_from: Path | None = None
-    """now.
-    now."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +82,7 @@ class RunOptions:
     """Whether simulated time stops while input() waits for the user."""
     replies: bool = False
     """Whether the host answers `pyState()`, while simulated time stops; otherwise there are no messages."""
-    actions: tuple[ScriptedAction, ...] = ()
+    actions: tuple[UserAction, ...] = ()
     """Known user actions, in the order of their ticks."""
     breaks: tuple[str, ...] = ()
     """Initial breakpoints, in the syntax of `tuisim.breakpoints`."""
@@ -121,11 +98,7 @@ class RunOptions:
 
 def program_again(run: StoredRun | RunHandle) -> Program:
     """Return the program of a run with its arguments, working directory and own modules, to be run again."""
-    was = run.program
-    return Program(
-        was.name, was.text, was.prelude, was.path, was.arguments, was.python_path, was.working_directory,
-        was.module_folder, run.folder,
-    )  # fmt: skip
+    return replace(run.program, modules_from=run.folder)
 
 
 class RunHandle:
@@ -245,12 +218,12 @@ class RunHandle:
         line = stuck_line(self.folder, self.program.path or self.program.name)
         if self._stop_at is not None:
             where = f" in line {line}, where it was stuck" if line else ""
-            return Ended("stopped", tick, time_ns, summary=f"stopped{where}", error_line=line)
+            return Ended(End.STOPPED, tick, time_ns, summary=f"stopped{where}", error_line=line)
         if self._stack_asked:
             summary = f"stuck in line {line}: no simulated time passed" if line else "stuck: no simulated time passed"
-            return Ended("stalled", tick, time_ns, 1, summary, error_line=line)
+            return Ended(End.STALLED, tick, time_ns, 1, summary, error_line=line)
         return Ended(
-            "crashed", tick, time_ns, 1, what_ended(self._process.returncode, self.folder, line), error_line=line
+            End.CRASHED, tick, time_ns, 1, what_ended(self._process.returncode, self.folder, line), error_line=line
         )
 
     def _finish(self, final: Ended) -> None:
@@ -280,7 +253,7 @@ class RunHandle:
         """
         run = self._store.load_run(self.folder)
         if run.end is None and self.ended is not None:
-            return replace(run, end=RunEnd(**end_document(self.ended)))
+            return replace(run, end=self.ended)
         return run
 
     def wait(self, timeout_s: float | None = None) -> Ended | None:

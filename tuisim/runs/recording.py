@@ -14,9 +14,10 @@ from tuisim.core.motion import STALL_MS
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.handle import program_again
-from tuisim.runs.records import CONSOLE, DISPLAY, LED, MOTORS, SPEECH, STDERR, STDOUT, TEXT_STREAMS, OutputRow
-from tuisim.runs.run_folder import UserAction, noise_at, read_actions
+from tuisim.runs.records import TEXT_STREAMS, OutputRow, Stream
+from tuisim.runs.run_folder import noise_at, read_actions
 from tuisim.runs.samples import parse_sample
 
 if TYPE_CHECKING:
@@ -89,8 +90,8 @@ class Recording:
     def pressed_at(self, tick: int) -> frozenset[str]:
         """Return the brick's buttons that were pressed when a tick was complete."""
         for action in reversed(self.actions()):
-            if action.kind == "set_buttons" and action.tick < tick:
-                return frozenset(action.fields["pressed"])
+            if isinstance(action.command, SetButtons) and action.tick < tick:
+                return frozenset(action.command.pressed)
         return frozenset()
 
     def field_at(self, tick: int, mat: Field) -> Field:
@@ -146,7 +147,7 @@ class _TimedMarks:
 SAMPLE, ERROR = "sample", "error"
 """Kinds of marks for output: a sample that has reached another level, an error text."""
 
-_FACE_STREAMS = (LED, DISPLAY, CONSOLE, MOTORS, SPEECH)
+_FACE_STREAMS = (Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MOTORS, Stream.SPEECH)
 _LEVEL_SHARE = 0.15
 """A change by this fraction of its variable's range puts a sample on another level."""
 
@@ -214,10 +215,10 @@ class RowIndex:
             self._texts.append(number)
         if row.stream in self._faces:
             self._faces[row.stream].append(number)
-        if row.stream == STDERR:
+        if row.stream == Stream.STDERR:
             if not self.marks or self.marks[-1] != (row.tick, ERROR):
                 self.marks.append((row.tick, ERROR))
-        elif row.stream == STDOUT and (sample := parse_sample(row.text)):
+        elif row.stream == Stream.STDOUT and (sample := parse_sample(row.text)):
             level = self._levels.get(sample[0])
             if level is None:
                 self._levels[sample[0]] = _Level(sample[1])

@@ -15,6 +15,7 @@ import mmap
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from enum import IntEnum
 from pathlib import Path
 from struct import Struct
 
@@ -56,17 +57,32 @@ TICK_FIELDS = (
 OUTPUT_ROW = Struct("<IIqIB3x")
 """Number of bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
 
-STDOUT, STDERR, SPEECH, INPUT = 1, 2, 3, 4
-"""Streams of an output row: printed, error text, spoken, the echo of an answer to input()."""
 
-TEXT_STREAMS = (STDOUT, STDERR, SPEECH, INPUT)
+class Stream(IntEnum):
+    """What an output row belongs to."""
+
+    NOTE = 0
+    """A line of the app itself; never recorded."""
+    STDOUT = 1
+    STDERR = 2
+    SPEECH = 3
+    """Spoken texts and, in brackets, other sounds."""
+    INPUT = 4
+    """The echo of an answer to `input()`."""
+    LED = 5
+    DISPLAY = 6
+    CONSOLE = 7
+    """The text screen of the brick."""
+    MOTORS = 8
+    """Rotation of motors that do not drive a wheel."""
+    UNKNOWN = 255
+    """A stream of another version."""
+
+
+TEXT_STREAMS = frozenset({Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT})
 """Streams with readable text."""
 
-LED, DISPLAY, CONSOLE = 5, 6, 7
-"""Streams for the state of the brick: its LEDs, its display, its text screen."""
-
-MOTORS = 8
-"""Stream for the rotation of motors that do not drive a wheel."""
+_STREAMS = {stream.value: stream for stream in Stream}
 
 TELEMETRY_FILE = "telemetry.bin"
 OUTPUT_FILE = "output.bin"
@@ -201,7 +217,7 @@ class OutputWriter:
         self._file = _GrowingMap(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
         self.length = 0
 
-    def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: int) -> None:
+    def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: Stream) -> None:
         """Append one row.
 
         Args:
@@ -209,7 +225,7 @@ class OutputWriter:
             tick: Number of completed ticks.
             time_ns: Simulated time.
             line: Source line that printed it; 0 for none.
-            stream: One of the stream constants.
+            stream: The stream.
 
         Raises:
             LogError: the output has reached MAX_OUTPUT_BYTES.
@@ -243,15 +259,15 @@ class OutputRow:
     tick: int
     time_ns: int
     line: int
-    stream: int
+    stream: Stream
 
 
 def line_of(row: OutputRow) -> str:
     """Return the display text of a row; speech and answers are marked."""
-    if row.stream == SPEECH and not row.text.startswith("["):
+    if row.stream is Stream.SPEECH and not row.text.startswith("["):
         # Sounds are in brackets already.
         return f"says: {row.text}"
-    return f"> {row.text}" if row.stream == INPUT else row.text
+    return f"> {row.text}" if row.stream is Stream.INPUT else row.text
 
 
 def published_length(data: bytes, magic: bytes, file: str) -> int:
@@ -297,4 +313,4 @@ def output_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tupl
         if start > end:
             return
         text = bytes(data[at + OUTPUT_ROW.size : at + OUTPUT_ROW.size + size]).decode("utf-8", "replace")
-        yield OutputRow(text, tick, time_ns, line, stream), start
+        yield OutputRow(text, tick, time_ns, line, _STREAMS.get(stream, Stream.UNKNOWN)), start

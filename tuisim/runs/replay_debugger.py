@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.errors import TuisimError
-from tuisim.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Paused, ScriptedAction
+from tuisim.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Paused
 
 if TYPE_CHECKING:
     from tuisim.runs.handle import RunHandle
@@ -124,9 +124,8 @@ class ReplayDebugger:
         self.close()
         self.busy = True
         self._of, self._actions, self._traced_from, self._aim = recording, len(actions), traced_from, at
-        script = tuple(ScriptedAction.from_plain({"tick": one.tick, "kind": one.kind, **one.fields}) for one in actions)
         options = RunOptions(
-            time_limit_s=0.0, stall_limit_s=0.0, answers=recording.answers, asks_user=True, actions=script,
+            time_limit_s=0.0, stall_limit_s=0.0, answers=recording.answers, asks_user=True, actions=actions,
             hold_at=(at.tick, at.ordinal), trace_from_tick=traced_from if traced_from >= 0 else None,
         )  # fmt: skip
         try:

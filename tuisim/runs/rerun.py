@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tuisim.errors import LogError
-from tuisim.protocol import ScriptedAction, Stop
+from tuisim.protocol import End, RunState, Stop, Unended, UserAction
 from tuisim.runs.diff import RunDiff, diff_runs
 from tuisim.runs.handle import RunHandle, RunOptions, program_again, start_run
 from tuisim.runs.records import STOP_FILE
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
     from tuisim.runs.store import RunStore
 
-CUT_OFF = frozenset({"stopped", "killed", "crashed", "interrupted", "running", "stalled", "disk_full"})
+CUT_OFF: frozenset[RunState] = frozenset(
+    {End.STOPPED, End.KILLED, End.CRASHED, Unended.INTERRUPTED, Unended.RUNNING, End.STALLED, End.DISK_FULL}
+)
 """Ends that do not result from the program and its limits: such a run is a prefix of its re-run."""
 
 
@@ -75,7 +77,7 @@ def _options(run: StoredRun) -> RunOptions:
     # A run that was stopped might never end by itself; any other ends before the tick after its last.
     enough_s = (last.tick + 1) / run.spec.profile.tick_hz
     stored, stop_tick = run.options, _stop_tick(run)
-    stop = () if stop_tick is None else (ScriptedAction(stop_tick, Stop()),)
+    stop = () if stop_tick is None else (UserAction(stop_tick, Stop()),)
     try:
         limit_s = float(stored.get("time_limit_s", 0.0))
         return RunOptions(
@@ -83,11 +85,7 @@ def _options(run: StoredRun) -> RunOptions:
             stall_limit_s=float(stored.get("stall_limit_s", 0.0)),
             answers=tuple(stored.get("answers", ())),
             asks_user=bool(stored.get("asks_user", False)),
-            actions=tuple(
-                ScriptedAction.from_plain({"tick": action.tick, "kind": action.kind, **action.fields})
-                for action in run.actions
-            )
-            + stop,
+            actions=run.actions + stop,
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except (TypeError, ValueError) as error:
         raise LogError(f"cannot be run again: {error}", file=str(run.folder)) from error

@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import time
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from tuisim.atomic import replacing
 from tuisim.core.profile import MotorLaw, law_of_earlier
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
 from tuisim.errors import LogError, TuisimError
+from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.runs.lock import is_held
 from tuisim.runs.records import ACTIONS_FILE
 from tuisim.runs.views import OutputView, TelemetryView, TickRecord
+from tuisim.source import Program
 
 RUN_FILE = "run.json"
 RUN_FORMAT = 1
-
-_SET_NOISE = "set_noise"
-
-RUNNING, INTERRUPTED = "running", "interrupted"
-"""States of a run without an end: its process lives, or has disappeared."""
 
 _START_GRACE_S = 10.0
 """Time after the creation of its folder during which a run may have no process."""
@@ -36,103 +32,7 @@ _ACTION_COUNTS = 1 << 16
 
 
 _Kind = TypeVar("_Kind")
-
-
-class ProgramLike(Protocol):
-    """A program for `RunStore.new_run`."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def path(self) -> str: ...
-    @property
-    def text(self) -> str: ...
-    @property
-    def prelude(self) -> str: ...
-    @property
-    def arguments(self) -> tuple[str, ...]: ...
-    @property
-    def python_path(self) -> tuple[str, ...]: ...
-    @property
-    def working_directory(self) -> str: ...
-    @property
-    def module_folder(self) -> str: ...
-
-
-class EndLike(Protocol):
-    """The end of a run for `RunStore.finish`."""
-
-    @property
-    def end(self) -> str: ...
-    @property
-    def tick(self) -> int: ...
-    @property
-    def time_ns(self) -> int: ...
-    @property
-    def exit_code(self) -> int: ...
-    @property
-    def summary(self) -> str: ...
-    @property
-    def error(self) -> str: ...
-    @property
-    def error_line(self) -> int: ...
-    @property
-    def deterministic(self) -> bool: ...
-
-
-@dataclass(frozen=True, slots=True)
-class StoredProgram:
-    """The program of a stored run."""
-
-    name: str
-    path: str
-    """Path of its file; empty if it has none."""
-    text: str
-    prelude: str
-    arguments: tuple[str, ...] = ()
-    """Contents of `sys.argv` after the path."""
-    python_path: tuple[str, ...] = ()
-    """Folders besides its own in which it searched modules: the user's PYTHONPATH."""
-    working_directory: str = ""
-    """The user's working directory; empty if unknown."""
-    module_folder: str = ""
-    """Folder of the notebook whose cell it is, for its modules; empty for a program with a file."""
-
-    @property
-    def sha256(self) -> str:
-        """Hash of the text in UTF-8, hexadecimal."""
-        return hashlib.sha256(self.text.encode("utf-8", "surrogatepass")).hexdigest()
-
-
-@dataclass(frozen=True, slots=True)
-class RunEnd:
-    """How a run ended."""
-
-    end: str
-    """finished, raised, stopped, time_limit, stalled, deadlock, output_limit, disk_full, killed or crashed."""
-    tick: int
-    time_ns: int
-    exit_code: int = 0
-    summary: str = ""
-    """Description of what happened, one line."""
-    error: str = ""
-    """The program's traceback."""
-    error_line: int = 0
-    deterministic: bool = True
-
-
-_ANY_END = RunEnd("", 0, 0)
-
-
-@dataclass(frozen=True, slots=True)
-class UserAction:
-    """An action of the user during a run."""
-
-    tick: int
-    """It was applied before this tick."""
-    kind: str
-    """Name of its command in the protocol, such as `set_noise`."""
-    fields: Mapping[str, Any]
+_ANY_END = Ended(End.FINISHED, 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,13 +46,13 @@ class StoredRun:
     created: str
     """ISO 8601, UTC."""
     live: bool
-    program: StoredProgram
+    program: Program
     spec: RunSpec
     field: Mapping[str, Any] | None
     """Files of the prepared mat, as written by the host."""
     options: Mapping[str, Any]
     tags: tuple[str, ...]
-    end: RunEnd | None
+    end: Ended | None
     """None while it runs, and if it was interrupted."""
     actions: tuple[UserAction, ...]
     notes: tuple[str, ...]
@@ -161,8 +61,8 @@ class StoredRun:
     output: OutputView
 
     @property
-    def state(self) -> str:
-        """How it ended, or `running` or `interrupted`."""
+    def state(self) -> RunState:
+        """How it ended, or its state without an end."""
         if self.end is not None:
             return self.end.end
         return state_without_end(self.folder)
@@ -180,8 +80,8 @@ class StoredRun:
         return noise_at(self.spec, self.actions, record)
 
 
-def state_without_end(folder: Path) -> str:
-    """Return RUNNING or INTERRUPTED for the folder of a run without a stored end."""
+def state_without_end(folder: Path) -> Unended:
+    """Return whether the run in a folder without a stored end is running or was interrupted."""
     alive = is_held(folder)
     if alive is None:
         # The lock was never acquired: the process is starting, or never got that far.
@@ -189,7 +89,7 @@ def state_without_end(folder: Path) -> str:
             alive = time.time() - folder.stat().st_mtime < _START_GRACE_S
         except FileNotFoundError:
             alive = False
-    return RUNNING if alive else INTERRUPTED
+    return Unended.RUNNING if alive else Unended.INTERRUPTED
 
 
 def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
@@ -204,13 +104,13 @@ def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -
     due = bisect_right(actions, record.tick, key=lambda action: action.tick)
     offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2
     for action in reversed(actions[: max(0, due + offset)]):
-        if action.kind == _SET_NOISE:
-            return _noise_of(action)
+        if isinstance(action.command, SetNoise):
+            return _noise_of(action.command)
     return spec.world.noise
 
 
-def _noise_of(action: UserAction) -> NoiseSpec:
-    return NoiseSpec(int(action.fields["light"]), int(action.fields["motor"]))
+def _noise_of(command: SetNoise) -> NoiseSpec:
+    return NoiseSpec(int(command.light), int(command.motor))
 
 
 def run_document(data: Mapping[str, Any]) -> bytes:
@@ -251,22 +151,6 @@ def read_run_file(folder: Path) -> dict[str, Any]:
     return data
 
 
-def end_document(end: EndLike) -> dict[str, Any]:
-    """Return an end in the format of `run.json`."""
-    return asdict(
-        RunEnd(
-            end.end,
-            end.tick,
-            end.time_ns,
-            end.exit_code,
-            end.summary,
-            end.error,
-            end.error_line,
-            end.deterministic,
-        )
-    )
-
-
 def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
     """Return the user's actions, and a note if the last one is incomplete, otherwise an empty string.
 
@@ -284,10 +168,9 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
     actions = []
     for row, line in enumerate(lines, 1):
         try:
-            found = json.loads(line)
-            action = UserAction(int(found.pop("tick")), str(found.pop("kind")), found)
-            if action.kind == _SET_NOISE:
-                _noise_of(action)
+            action = UserAction.from_plain(json.loads(line))
+            if isinstance(action.command, SetNoise):
+                _noise_of(action.command)
             actions.append(action)
         except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError, TuisimError) as error:
             raise LogError("not a user action", file=str(path), row=row) from error
@@ -300,9 +183,10 @@ def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
     return value
 
 
-def _end_of(data: Mapping[str, Any]) -> RunEnd:
-    kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(RunEnd)}
-    return RunEnd(**{name: _typed(value, kinds.get(name, object), name) for name, value in data.items()})
+def _end_of(data: Mapping[str, Any]) -> Ended:
+    kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(Ended)}
+    known = {**data, "end": End(data["end"])}
+    return Ended(**{name: _typed(value, kinds.get(name, object), name) for name, value in known.items()})
 
 
 def read_run(folder: Path) -> StoredRun:
@@ -331,7 +215,7 @@ def read_run(folder: Path) -> StoredRun:
             number=int(data.get("number", 0)),
             created=_typed(data["created"], str, "created"),
             live=bool(data["live"]),
-            program=StoredProgram(**program),
+            program=Program(**program),
             spec=spec,
             field=data["field"],
             options=_typed(data["options"], dict, "options"),

@@ -12,10 +12,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tuisim.runs.records import STDOUT, OutputRow
+from tuisim.runs.records import OutputRow, Stream
 
 if TYPE_CHECKING:
     from tuisim.runs.views import OutputView
+
+_STDOUT = Stream.STDOUT
+"""Runs may print millions of rows, and an attribute of an enumeration is slow to reach."""
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({_NUMBER})(?:[ \t]+({_NUMBER}))?\s*")
@@ -64,7 +67,7 @@ def counts_of(output: OutputView) -> Counts:
     """Count printed lines and samples without creating row objects: there may be a million."""
     lines = samples = 0
     for stream, text in output.raw_rows():
-        if stream == STDOUT:
+        if stream == _STDOUT:
             lines += 1
             if b":" in text and (
                 _PLAIN_SAMPLE.fullmatch(text) or parse_sample(str(text, "utf-8", "replace")) is not None
@@ -76,7 +79,7 @@ def counts_of(output: OutputView) -> Counts:
 def samples_of(rows: Iterable[OutputRow]) -> Iterator[Sample]:
     """Yield the samples among the rows that a program printed, in order."""
     for row in rows:
-        if row.stream != STDOUT:
+        if row.stream != _STDOUT:
             continue
         parsed = parse_sample(row.text)
         if parsed is not None:

@@ -17,7 +17,8 @@ from tuisim.core.sensors import SENSORS, mounted
 from tuisim.core.sensors.color import columns as color_columns
 from tuisim.core.sensors.color import disc_pixels_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
-from tuisim.runs.run_folder import UserAction, noise_at
+from tuisim.protocol import SetNoise, UserAction
+from tuisim.runs.run_folder import noise_at
 from tuisim.runs.views import TickRecord, instant_of
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def _noises(records: Array, spec: RunSpec, actions: Sequence[UserAction]) -> lis
     """Return the noise at every tick."""
     import numpy as np
 
-    if not any(action.kind == "set_noise" for action in actions):
+    if not any(isinstance(action.command, SetNoise) for action in actions):
         return [spec.world.noise] * len(records)
     noises: list[NoiseSpec] = []
     # The noise can change only where the count of actions does.

@@ -7,7 +7,7 @@ import secrets
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -17,20 +17,15 @@ from tuisim.config.folders import home_folder
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.errors import LogError
+from tuisim.protocol import RUN_STATES, Ended, Unended
 from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
 from tuisim.runs.lock import is_held
 from tuisim.runs.packed.compact import compact
 from tuisim.runs.packed.packer import pack_later
 from tuisim.runs.run_folder import (
-    INTERRUPTED,
     RUN_FILE,
     RUN_FORMAT,
-    RUNNING,
-    EndLike,
-    ProgramLike,
-    StoredProgram,
     StoredRun,
-    end_document,
     read_run,
     read_run_file,
     state_without_end,
@@ -38,6 +33,7 @@ from tuisim.runs.run_folder import (
 )
 from tuisim.runs.samples import counts_of
 from tuisim.runs.views import OutputView, TelemetryView
+from tuisim.source import Program
 
 RUNS_FOLDER = "runs"
 LAST = "last"
@@ -46,9 +42,6 @@ _COUNT_AT_ONCE_BYTES = 1 << 20
 
 _COUNT_A_LISTING_BYTES = 8 << 20
 """Bytes of output in which samples are counted on each listing; the rest waits for the next listing."""
-
-DAMAGED = "damaged"
-"""Pseudo end of a run whose `run.json` cannot be read."""
 
 COMPACT_TICKS = 6000
 """A run of at least this many ticks is packed in a separate process as soon as it is over; shorter runs gain
@@ -86,7 +79,7 @@ class RunStore:
 
     def new_run(
         self,
-        program: ProgramLike,
+        program: Program,
         spec: RunSpec,
         field: Mapping[str, Any] | None = None,
         options: Mapping[str, Any] | None = None,
@@ -107,17 +100,7 @@ class RunStore:
         now = datetime.now(UTC)
         created = now.isoformat(timespec="milliseconds")
         run_id, folder = self._new_folder(now)
-        stored = StoredProgram(
-            program.name,
-            program.path,
-            program.text,
-            program.prelude,
-            program.arguments,
-            program.python_path,
-            program.working_directory,
-            program.module_folder,
-        )
-        info = _info_of(run_id, created, stored, spec)
+        info = _info_of(run_id, created, program, spec)
         try:
             number = self._catalogue.add(info)
             write_run_file(
@@ -129,15 +112,15 @@ class RunStore:
                     "created": created,
                     "live": live,
                     "program": {
-                        "name": stored.name,
-                        "path": stored.path,
-                        "text": stored.text,
-                        "sha256": stored.sha256,
-                        "prelude": stored.prelude,
-                        "arguments": list(stored.arguments),
-                        "python_path": list(stored.python_path),
-                        "working_directory": stored.working_directory,
-                        "module_folder": stored.module_folder,
+                        "name": program.name,
+                        "path": program.path,
+                        "text": program.text,
+                        "sha256": program.sha256,
+                        "prelude": program.prelude,
+                        "arguments": list(program.arguments),
+                        "python_path": list(program.python_path),
+                        "working_directory": program.working_directory,
+                        "module_folder": program.module_folder,
                     },
                     "spec": to_plain(spec),
                     "field": None if field is None else dict(field),
@@ -151,13 +134,13 @@ class RunStore:
             raise
         return NewRun(run_id, number, folder)
 
-    def finish(self, run_id: str, end: EndLike) -> None:
+    def finish(self, run_id: str, end: Ended) -> None:
         """Record how a run ended.
 
         Raises:
             LogError: the run does not exist, or cannot be written.
         """
-        self._edit(run_id, end=end_document(end))
+        self._edit(run_id, end=asdict(end))
         output = OutputView(self.folder(run_id))
         samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
         # If the catalogue cannot be written now, it will be updated later.
@@ -209,7 +192,7 @@ class RunStore:
         folder = self.folder(run_id)
         if not folder.is_dir():
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
-        if not _has_end(folder) and state_without_end(folder) == RUNNING:
+        if not _has_end(folder) and state_without_end(folder) is Unended.RUNNING:
             raise LogError(f"run {run_id} is still running", "stop it first")
         try:
             _delete(folder)
@@ -328,9 +311,9 @@ class RunStore:
             data = read_run_file(folder)
             return _info_from(run_id, data)
         except LogError as error:
-            return RunInfo(0, run_id, "", "", "", "", 0, DAMAGED, summary=error.message)
+            return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=error.message)
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
-            return RunInfo(0, run_id, "", "", "", "", 0, DAMAGED, summary=f"{RUN_FILE} is damaged: {error!r}")
+            return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=f"{RUN_FILE} is damaged: {error!r}")
 
     def _completed(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
         """Add the data that is missing in the catalogue.
@@ -342,19 +325,19 @@ class RunStore:
         Returns:
             The run, the columns that are final and can be stored, and the number of bytes read.
         """
-        if info.end not in ("", INTERRUPTED) and info.samples is not None:
+        if info.end not in (None, Unended.INTERRUPTED) and info.samples is not None:
             return info, {}, 0
         folder = self.folder(info.id)
         known = info
-        if info.end in ("", INTERRUPTED):
+        if info.end in (None, Unended.INTERRUPTED):
             # The run file is written first: it may have an end that the catalogue does not.
             stored = self._info_in(folder)
             state = state_without_end(folder)
-            if stored is not None and stored.end == DAMAGED:
-                known = replace(info, end=DAMAGED, summary=stored.summary)
+            if stored is not None and stored.end is Unended.DAMAGED:
+                known = replace(info, end=Unended.DAMAGED, summary=stored.summary)
             elif stored is not None and stored.end:
                 known = replace(stored, number=info.number)
-            elif info.end and state == INTERRUPTED:
+            elif info.end and state is Unended.INTERRUPTED:
                 return info, {}, 0
             else:
                 known = replace(info, end=state)
@@ -363,12 +346,13 @@ class RunStore:
             output = OutputView(folder)
             if output.length <= most_bytes:
                 known, counted = replace(known, samples=counts_of(output).samples), output.length
-            if known.end in (RUNNING, INTERRUPTED):
+            if known.end in (Unended.RUNNING, Unended.INTERRUPTED):
                 known = _with_last_record(known, folder)
         except LogError as error:
             return replace(known, summary=known.summary or str(error)), {}, counted
         # Without a lock the process may be starting.
-        if known.end in (RUNNING, DAMAGED) or (known.end == INTERRUPTED and is_held(folder) is not False):
+        unlocked = is_held(folder) is False
+        if known.end in (Unended.RUNNING, Unended.DAMAGED) or (known.end is Unended.INTERRUPTED and not unlocked):
             return known, {}, counted
         names = ("end", "ticks", "time_s", "samples", "summary")
         return known, {name: getattr(known, name) for name in names}, counted
@@ -392,7 +376,7 @@ def compact_run(run: StoredRun) -> tuple[int, int]:
     Raises:
         LogError: the run is still running, damaged, or cannot be written; nothing is lost.
     """
-    if run.end is None and state_without_end(run.folder) == RUNNING:
+    if run.end is None and state_without_end(run.folder) is Unended.RUNNING:
         raise LogError(f"run {run.id} is still running", "stop it first")
     before = bytes_in(run.folder)
     compact(run.folder, run.spec)
@@ -424,7 +408,7 @@ def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
     raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
 
 
-def _info_of(run_id: str, created: str, program: StoredProgram, spec: RunSpec) -> RunInfo:
+def _info_of(run_id: str, created: str, program: Program, spec: RunSpec) -> RunInfo:
     return RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
 
 
@@ -444,7 +428,7 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     if end is None:
         return info
     time_s = int(end["time_ns"]) / NS_PER_S
-    return replace(info, end=str(end["end"]), ticks=int(end["tick"]), time_s=time_s, summary=str(end["summary"]))
+    return replace(info, end=RUN_STATES[end["end"]], ticks=int(end["tick"]), time_s=time_s, summary=str(end["summary"]))
 
 
 def _delete(folder: Path) -> None:

@@ -16,7 +16,7 @@ from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.simulation import NS_PER_S
 from tuisim.runs.brick_state import motors_row
 from tuisim.runs.lock import hold
-from tuisim.runs.records import MOTORS, OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, TelemetryWriter, is_full
+from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.clock import (
     finish_pandas,
@@ -26,7 +26,7 @@ from tuisim.runtime.clock import (
     patch_process_times,
     patch_time,
 )
-from tuisim.runtime.control import RunControl
+from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.file_waits import FileWaits
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
@@ -34,9 +34,8 @@ from tuisim.runtime.output import Output
 from tuisim.runtime.randomness import finish_random, finish_uuid, patch_urandom
 from tuisim.runtime.replacement import replace
 from tuisim.runtime.run_config import RunConfig, read_config
-from tuisim.runtime.session import ATTENTION, STOPPING, Limits, Session
+from tuisim.runtime.session import Limits, Session
 from tuisim.runtime.stack import finish_inspect, finish_traceback
-from tuisim.runtime.stop import DISK_FULL
 from tuisim.runtime.tracebacks import own_files, remember_source
 
 if TYPE_CHECKING:
@@ -63,7 +62,7 @@ def main(arguments: list[str]) -> NoReturn:
             raise
         for name in (TELEMETRY_FILE, OUTPUT_FILE):
             (folder / name).unlink(missing_ok=True)
-        channel.send(protocol.Ended(DISK_FULL, 0, 0, 1, _no_room(error)))
+        channel.send(protocol.Ended(protocol.End.DISK_FULL, 0, 0, 1, _no_room(error)))
         wallclock.exit_process(0)
     child.run()
 
@@ -94,7 +93,7 @@ class Child:
         self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)
         session = self._session
         session.replies = config.replies
-        self._telemetry.full = writer.full = lambda error: session.request_stop(DISK_FULL, _no_room(error))
+        self._telemetry.full = writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):
@@ -103,10 +102,10 @@ class Child:
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
         # Not at the session's time: in a paced run it advances in smaller steps.
-        self._output.row_at(motors_row(turns), MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
+        self._output.row_at(motors_row(turns), Stream.MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
 
     def _after_write(self) -> None:
-        if self._session.slow & (ATTENTION | STOPPING):
+        if self._session.flags & (ATTENTION | STOPPING):
             self._session.checkpoint()
 
     def run(self) -> NoReturn:
@@ -160,7 +159,7 @@ class Child:
         self._channel.send(protocol.Started(protocol.PROTOCOL_VERSION, os.getpid()))
         leave(runner.run())
 
-    def _end(self, end: str, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
+    def _end(self, end: protocol.End, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
         if wallclock.getpid() != self._pid:
             # A copy that the program has forked at a lower level: only the original records and reports.
             wallclock.exit_process(0)

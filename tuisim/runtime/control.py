@@ -11,6 +11,7 @@ import os
 from collections import deque
 from collections.abc import Iterable
 from contextlib import suppress
+from enum import IntFlag
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,19 +19,33 @@ from tuisim import protocol
 from tuisim.atomic import private
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
-from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Answer, Message, Reply, ScriptedAction
+from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Answer, End, Message, PauseReason, Reply, UserAction
 from tuisim.runs.records import ACTIONS_FILE, STOP_FILE
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.stop import DISK_FULL
 
 if TYPE_CHECKING:
     from tuisim.runtime.session import Session
 
-LIVE = 1
-"""Bit of `Session.slow`: the control is called before ticks."""
-STOPPED = "stopped"
-"""How a run ends that the user stops."""
+
+class SessionFlag(IntFlag):
+    """What keeps time from passing on the short path: the bits of `Session.flags`."""
+
+    LIVE = 1
+    """The control is called before ticks."""
+    ATTENTION = 2
+    """A command has arrived."""
+    THREADS = 4
+    """The program has several threads."""
+    STOPPING = 8
+    """The program is being unwound."""
+    DEBUG = 16
+    """Tracing has been switched."""
+
+
+LIVE, ATTENTION, THREADS, STOPPING, DEBUG = (flag.value for flag in SessionFlag)
+"""The bits as plain numbers: every reading of a sensor tests some, and an enumeration computes ten times slower."""
+
 SLICE_S = 0.02
 """Longest uninterrupted wait in real time."""
 BEHIND_S = 0.25
@@ -54,7 +69,7 @@ class RunControl:
     """
 
     def __init__(
-        self, channel: Channel, folder: Path, live: bool, speed: float, paused: bool, script: Iterable[ScriptedAction]
+        self, channel: Channel, folder: Path, live: bool, speed: float, paused: bool, script: Iterable[UserAction]
     ) -> None:
         self.live = live
         self._channel, self._folder = channel, folder
@@ -64,7 +79,7 @@ class RunControl:
         self._steps = 0
         self._anchor: tuple[float, int] | None = None
         self._waiting: deque[Message] = deque()
-        self._reason = "asked"
+        self._reason = PauseReason.ASKED
         self._rushing = False
         """Whether pacing is suspended until the run pauses."""
         self.debugged = False
@@ -87,16 +102,16 @@ class RunControl:
         for command in self._channel.receive():
             match command:
                 case protocol.Stop():
-                    session.ask_stop(STOPPED, STOPPED)
+                    session.ask_stop(End.STOPPED, "stopped")
                 case protocol.Pause():
-                    self._paused, self._steps, self._reason = True, 0, "asked"
-                    session.slow |= LIVE if self.live else 0
+                    self._paused, self._steps, self._reason = True, 0, PauseReason.ASKED
+                    session.flags |= LIVE if self.live else 0
                     if session.debugger is not None:
                         session.debugger.pause()
                 case protocol.Resume():
                     self._paused, self._steps = False, 0
                 case protocol.StepTicks(ticks=ticks):
-                    self._steps, self._reason = self._steps + max(0, ticks), "ticks"
+                    self._steps, self._reason = self._steps + max(0, ticks), PauseReason.TICKS
                     self._forget_goals(session)
                 case protocol.SetSpeed(speed=speed):
                     self._speed, self._anchor = max(0.0, speed), None
@@ -178,7 +193,7 @@ class RunControl:
             moment: Where it pauses. User actions take effect immediately only right before a tick.
         """
         # The run is live from here on, however it started.
-        self.live, session.slow = True, session.slow | LIVE
+        self.live, session.flags = True, session.flags | LIVE
         self._paused, self._steps, self._rushing = True, 0, False
         self.holding, self.between_ticks = True, moment.ordinal in (AFTER_TICK, BEFORE_NEXT_TICK)
         self._forget_goals(session)
@@ -201,7 +216,7 @@ class RunControl:
         """Apply the next known action if it has this type and was made here, while simulated time did not pass."""
         if not self._script or self._script[0].tick > session.sim.tick:
             return False
-        action = self._script[0].action
+        action = self._script[0].command
         if not isinstance(action, kind) or (isinstance(action, Answer) and not action.at_once):
             return False
         self._script.popleft()
@@ -257,7 +272,7 @@ class RunControl:
 
     def _apply_actions(self, session: Session) -> None:
         while self._script and self._script[0].tick <= session.sim.tick:
-            self.apply(session, self._script.popleft().action)
+            self.apply(session, self._script.popleft().command)
         while self._waiting:
             self.apply(session, self._waiting.popleft())
 
@@ -271,7 +286,7 @@ class RunControl:
         match action:
             case protocol.Stop():
                 # Does not change the world, and is not counted as a change.
-                session.ask_stop(STOPPED, STOPPED)
+                session.ask_stop(End.STOPPED, "stopped")
                 return
             case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
                 sim.place(Pose(x, y, heading))
@@ -293,7 +308,7 @@ class RunControl:
             self._write_down(sim.tick, action)
         except OSError as error:
             # Without this record the run could not be repeated.
-            session.ask_stop(DISK_FULL, f"what was done cannot be written down: {error.strerror}")
+            session.ask_stop(End.DISK_FULL, f"what was done cannot be written down: {error.strerror}")
 
     def write_down_stop(self, tick: int) -> None:
         """Record that the stop reaches the program right before the tick after `tick`."""
@@ -305,4 +320,4 @@ class RunControl:
         if self._actions_fd < 0:
             path = self._folder / ACTIONS_FILE
             self._actions_fd = private(str(path), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-        os.write(self._actions_fd, json.dumps(ScriptedAction(tick, action).to_plain()).encode() + b"\n")
+        os.write(self._actions_fd, json.dumps(UserAction(tick, action).to_plain()).encode() + b"\n")

@@ -11,8 +11,9 @@ from functools import partial, wraps
 from typing import Any, TypeVar
 
 from tuisim.core.simulation import NS_PER_S
+from tuisim.runtime.control import THREADS
 from tuisim.runtime.replacement import replace
-from tuisim.runtime.session import THREADS, Session
+from tuisim.runtime.session import Session
 
 Found = TypeVar("Found")
 
@@ -59,7 +60,7 @@ class FileWaits:
         until = None if timeout_ns is None else session.now + timeout_ns
         while not found and (until is None or session.now < until):
             rest = POLL_NS if until is None else until - session.now
-            session.spend(min(rest, POLL_NS) if session.slow & THREADS else rest)
+            session.spend(min(rest, POLL_NS) if session.flags & THREADS else rest)
             found = look()
         return found
 

@@ -14,8 +14,10 @@ import types
 from pathlib import Path
 
 from tuisim.atomic import private
+from tuisim.protocol import End
 from tuisim.runtime import wallclock
-from tuisim.runtime.session import ATTENTION, Session
+from tuisim.runtime.control import ATTENTION
+from tuisim.runtime.session import Session
 
 PACKAGE_FOLDER = str(Path(__file__).parent.parent) + os.sep
 RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
@@ -81,7 +83,7 @@ class Interrupts:
         session = self._session
         if self._removed:
             return
-        session.slow |= ATTENTION
+        session.flags |= ATTENTION
         if session.steering.holding:
             # The run waits for commands, maybe in another thread, which reads them from the pipe itself.
             return
@@ -108,7 +110,7 @@ class Interrupts:
         if self._stall_s < session.limits.stall_s:
             return
         line = session.program_line()
-        session.ask_stop("stalled", f"no simulated time passed in {self._stall_s:g} s of computing, in line {line}")
+        session.ask_stop(End.STALLED, f"no simulated time passed in {self._stall_s:g} s of computing, in line {line}")
         if self._may_raise(frame):
             self._raise_again_later()
             session.checkpoint()

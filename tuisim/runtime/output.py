@@ -6,7 +6,7 @@ import io
 from collections.abc import Callable
 from typing import Any
 
-from tuisim.runs.records import MAX_OUTPUT_BYTES, STDOUT, OutputWriter
+from tuisim.runs.records import MAX_OUTPUT_BYTES, OutputWriter, Stream
 
 
 class Output:
@@ -21,17 +21,17 @@ class Output:
         self.place: Callable[[], tuple[int, int, int]] = lambda: (0, 0, 0)
         """Returns tick, simulated ns and source line; set once the session exists."""
         self.after_write: Callable[[], None] = lambda: None
-        self.watch: Callable[[str, int], None] | None = None
+        self.watch: Callable[[str, Stream], None] | None = None
         """If set, called with text and stream of each written row."""
 
-    def row(self, text: str, stream: int) -> None:
+    def row(self, text: str, stream: Stream) -> None:
         """Write one row."""
         tick, now, line = self.place()
         self._writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
 
-    def row_at(self, text: str, stream: int, tick: int, time_ns: int, line: int) -> None:
+    def row_at(self, text: str, stream: Stream, tick: int, time_ns: int, line: int) -> None:
         """Write one row that belongs to a tick, not to a time between two."""
         self._writer.write(text.encode(), tick, time_ns, line, stream)
 
@@ -45,13 +45,13 @@ class LineStream(io.TextIOBase):
 
     Args:
         output: Receives whole lines.
-        stream: STDOUT or STDERR.
+        stream: `Stream.STDOUT` or `Stream.STDERR`.
     """
 
     encoding = "utf-8"
     errors = "backslashreplace"
 
-    def __init__(self, output: Output, stream: int = STDOUT) -> None:
+    def __init__(self, output: Output, stream: Stream = Stream.STDOUT) -> None:
         self._output, self._stream = output, stream
         self._part = io.StringIO()
         """Text without a newline yet; a line may be the result of any number of prints."""
@@ -59,7 +59,7 @@ class LineStream(io.TextIOBase):
     @property
     def name(self) -> str:
         """Name of the real stream."""
-        return "<stdout>" if self._stream == STDOUT else "<stderr>"
+        return "<stdout>" if self._stream == Stream.STDOUT else "<stderr>"
 
     @property
     def buffer(self) -> ByteStream:

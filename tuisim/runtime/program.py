@@ -18,8 +18,8 @@ from typing import Any, NoReturn
 
 from tuisim.core.simulation import NS_PER_S
 from tuisim.errors import LogError
-from tuisim.protocol import NO_ANSWER, Answer, InputWanted
-from tuisim.runs.records import INPUT, STDERR
+from tuisim.protocol import NO_ANSWER, Answer, End, InputWanted
+from tuisim.runs.records import Stream
 from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program, point_at_prelude
 from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, Output
@@ -36,7 +36,7 @@ from tuisim.runtime.tracebacks import point_at_namesake, report_error
 class Outcome:
     """How the program ended; fields as in `protocol.Ended`."""
 
-    end: str
+    end: End
     exit_code: int = 0
     summary: str = ""
     error: str = ""
@@ -94,7 +94,7 @@ class ProgramRunner:
         in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
         self._file = in_own_folder if self._starts_in_own_folder else session.program_file
         self._answers = list(config.answers)
-        self.stdout, self.stderr = LineStream(output), LineStream(output, STDERR)
+        self.stdout, self.stderr = LineStream(output), LineStream(output, Stream.STDERR)
         self._module = types.ModuleType("__main__")
         self.prepared: dict[str, int] = {}
         """Identities of the objects that the prelude has created, by name."""
@@ -117,7 +117,7 @@ class ProgramRunner:
             self._prepare()
             self._execute()
             self._scheduler.join_all()
-            outcome = Outcome("finished")
+            outcome = Outcome(End.FINISHED)
         except BaseException as error:  # any uncaught exception is an outcome of the program
             outcome = self._outcome_of(error)
         outcome = self._hold_at_end(outcome)
@@ -125,7 +125,7 @@ class ProgramRunner:
         self._finish_streams()
         # A stop in another thread, an exit function or a `__del__` need not have arrived here.
         stop = self._session.stop_reason
-        return outcome if stop is None or outcome.end != "finished" else Outcome(stop.end, 0, stop.summary)
+        return outcome if stop is None or outcome.end is not End.FINISHED else Outcome(stop.end, 0, stop.summary)
 
     def _hold_at_end(self, outcome: Outcome) -> Outcome:
         """Let the debugger pause a program that ended before the requested instant."""
@@ -222,7 +222,7 @@ class ProgramRunner:
             case SystemExit():
                 return self._exit_outcome(error.code)
             case LogError():
-                return Outcome("output_limit", 0, error.message)
+                return Outcome(End.OUTPUT_LIMIT, 0, error.message)
             case MemoryError():
                 return self._raised(MemoryError("the program used up the memory it may have"), error.__traceback__)
         return self._raised(error, error.__traceback__)
@@ -233,7 +233,7 @@ class ProgramRunner:
         point_at_namesake(error, self._session.program_file)
         report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
         self._write_error(report.text)
-        end = "deadlock" if isinstance(error, Deadlock) else "raised"
+        end = End.DEADLOCK if isinstance(error, Deadlock) else End.RAISED
         return Outcome(end, 1, report.summary, report.text, report.line)
 
     def _exit_outcome(self, code: object) -> Outcome:
@@ -246,7 +246,7 @@ class ProgramRunner:
         else:
             self._write_error(safe_text(str, code))
             number = 1
-        return Outcome("finished", number, f"the program ended itself with exit code {number}" if number else "")
+        return Outcome(End.FINISHED, number, f"the program ended itself with exit code {number}" if number else "")
 
     def _exit_now(self, status: int) -> NoReturn:
         self._finish_streams()
@@ -273,7 +273,7 @@ class ProgramRunner:
         """Write an error message to standard error."""
         try:
             for line in text.rstrip("\n").split("\n"):
-                self._output.row(line, STDERR)
+                self._output.row(line, Stream.STDERR)
         except LogError:
             # The file is full, and reports that itself.
             return
@@ -291,7 +291,7 @@ class ProgramRunner:
             answer = None
         else:
             answer = self._users_answer(asked)
-        self._output.row(asked + (answer or ""), INPUT)
+        self._output.row(asked + (answer or ""), Stream.INPUT)
         # Answers that exist already let no time pass: a stop is checked between them.
         self._output.after_write()
         if answer is None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec, from_plain
-from tuisim.protocol import ScriptedAction
+from tuisim.protocol import UserAction
 from tuisim.runtime import wallclock
 
 
@@ -37,7 +37,7 @@ class RunConfig:
     asks_user: bool
     time_waits: bool
     replies: bool
-    actions: tuple[ScriptedAction, ...]
+    actions: tuple[UserAction, ...]
     breaks: tuple[str, ...]
     trace_from_tick: int | None
     hold_at: tuple[int, int] | None
@@ -81,7 +81,7 @@ def read_config(folder: Path) -> RunConfig:
         asks_user=options["asks_user"],
         time_waits=options["time_waits"],
         replies=options["replies"],
-        actions=tuple(ScriptedAction.from_plain(row) for row in options["actions"]),
+        actions=tuple(UserAction.from_plain(row) for row in options["actions"]),
         breaks=tuple(options["breaks"]),
         trace_from_tick=options["trace_from_tick"],
         hold_at=None if options["hold_at"] is None else (int(options["hold_at"][0]), int(options["hold_at"][1])),

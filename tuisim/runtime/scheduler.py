@@ -14,8 +14,9 @@ from collections.abc import Callable
 from typing import Any
 
 from tuisim.runtime import wallclock
+from tuisim.runtime.control import STOPPING, THREADS
 from tuisim.runtime.limits import limit_memory
-from tuisim.runtime.session import STOPPING, THREADS, Session
+from tuisim.runtime.session import Session
 from tuisim.runtime.stop import Deadlock, StopProgram
 
 MOST_THREADS = 1000
@@ -165,7 +166,7 @@ class Scheduler:
         if me.pending is not None:
             pending, me.pending = me.pending, None
             raise pending
-        if session.slow & STOPPING:
+        if session.flags & STOPPING:
             self._leave_if_stopping(me)
 
     def give_way(self) -> None:
@@ -255,7 +256,7 @@ class Scheduler:
         count = len(self._alive) + 1
         if count > MOST_THREADS:
             raise RuntimeError(f"can't start new thread: a program may have {MOST_THREADS} at once")
-        self._session.slow |= THREADS
+        self._session.flags |= THREADS
         task = ScheduledThread(daemon)
 
         def run() -> None:

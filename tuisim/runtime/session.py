@@ -2,7 +2,7 @@
 
 Time advances only in `_advance`. In a headless run with one thread the path to it is short;
 any mode that needs more (live pacing, threads, a command, stopping) sets a bit in
-`slow`, so that it costs nothing while it is off.
+`flags`, so that it costs nothing while it is off.
 """
 
 from __future__ import annotations
@@ -16,19 +16,16 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.field import Field
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S, Simulation
-from tuisim.protocol import Reply, ReplyWanted, Spoke
-from tuisim.runs.records import SPEECH
+from tuisim.protocol import End, Reply, ReplyWanted, Spoke
+from tuisim.runs.records import Stream
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.control import LIVE, STOPPED, RunControl
+from tuisim.runtime.control import ATTENTION, DEBUG, LIVE, STOPPING, THREADS, RunControl
 from tuisim.runtime.output import Output
 from tuisim.runtime.stop import StopProgram
 
 if TYPE_CHECKING:
     from tuisim.core.pen_marks import PenMarks
     from tuisim.runtime.debugger.debugger import Debugger
-
-ATTENTION, THREADS, STOPPING, DEBUG = 2, 4, 8, 16
-"""Further bits of `Session.slow`: a command has arrived, several threads, unwinding, tracing has been switched."""
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
@@ -88,7 +85,8 @@ class Session:
         self.program_file = program_file
         self.now = 0
         self.free = 0
-        self.slow = LIVE if steering.wanted else 0
+        self.flags: int = LIVE if steering.wanted else 0
+        """Bits of `SessionFlag`."""
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that are pressed."""
         self._due = sim.due_ns(1)
@@ -98,7 +96,7 @@ class Session:
         """Length of a tick; 0 if it is not a whole number."""
         self._limit_ns = limits.time_ns or 1 << 62
         self._quick_ns = self._limit_ns
-        """Up to this time a wait needs only ticks, while `slow` has no bits."""
+        """Up to this time a wait needs only ticks, while `flags` has no bits."""
         self._commands, self._commands_at = 0, -1
         self.replies = False
         """Whether the host answers with `messages`."""
@@ -125,7 +123,7 @@ class Session:
     def spend(self, duration_ns: int) -> None:
         """Let simulated time pass, even where calls are free."""
         until = self.now + duration_ns
-        if self.slow or until > self._quick_ns:
+        if self.flags or until > self._quick_ns:
             self._pass(until, False)
         elif until < self._due:
             self.now = until
@@ -159,7 +157,7 @@ class Session:
         if self._commands >= COMMANDS_AN_INSTANT:
             self._commands = 0
             self.spend(COMMAND_BURST_NS)
-        elif self.slow & (ATTENTION | STOPPING):
+        elif self.flags & (ATTENTION | STOPPING):
             self.checkpoint()
 
     def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
@@ -169,18 +167,18 @@ class Session:
             timeout_ns: The timeout.
             again: The caller only waits again after the timeout.
         """
-        if again and not self.slow & THREADS:
+        if again and not self.flags & THREADS:
             # Nothing else can change meanwhile, so many short waits are equivalent to one long wait.
             timeout_ns *= max(1, REPEATED_WAIT_NS // max(1, timeout_ns))
         self._pass(self.now + timeout_ns, True)
 
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
         """Record a sound and block for `wait_ns`; the other arguments are as in `protocol.Spoke`."""
-        self.output.row(text, SPEECH)
+        self.output.row(text, Stream.SPEECH)
         self.channel.send(Spoke(text, self.now, tones, file))
         self.spend(wait_ns)
 
-    def show(self, row: str, stream: int) -> None:
+    def show(self, row: str, stream: Stream) -> None:
         """Record what the brick shows."""
         self.output.row(row, stream)
 
@@ -195,14 +193,14 @@ class Session:
     # Passing time
 
     def _pass(self, until: int, on_change: bool) -> None:
-        if self.slow & (ATTENTION | STOPPING):
+        if self.flags & (ATTENTION | STOPPING):
             self.checkpoint()
-        if self.slow & DEBUG:
-            self.slow &= ~DEBUG
+        if self.flags & DEBUG:
+            self.flags &= ~DEBUG
             self.debug().enter()
         if until > self.now:
             self.sim.line = self.program_line()
-        if self.slow & THREADS and self.sleep_threaded is not None:
+        if self.flags & THREADS and self.sleep_threaded is not None:
             self.sleep_threaded(until, on_change)
         else:
             self.advance(until, on_change)
@@ -222,7 +220,7 @@ class Session:
             if not changed:
                 self.now = self._limit_ns
                 limit_s = self._limit_ns / NS_PER_S
-                raise self.request_stop("time_limit", f"stopped at the limit of {limit_s:g} s simulated time")
+                raise self.request_stop(End.TIME_LIMIT, f"stopped at the limit of {limit_s:g} s simulated time")
         else:
             changed = self._run_ticks(until, on_change)
         # A wait that a motor ended is over at the tick in which the motor stopped.
@@ -234,8 +232,8 @@ class Session:
         sim = self.sim
         if until > self._quick_ns:
             self._quick_ns = self._limit_ns
-            self.slow |= LIVE
-        if self.slow & LIVE and not self.stop_reason:
+            self.flags |= LIVE
+        if self.flags & LIVE and not self.stop_reason:
             return self._run_live(until, on_change)
         sim.changed = False
         target = sim.ticks_at(until)
@@ -243,7 +241,7 @@ class Session:
             sim.advance(min(target - sim.tick, CHUNK_TICKS), on_change)
             if on_change and sim.changed:
                 return True
-            if self.slow & ATTENTION:
+            if self.flags & ATTENTION:
                 self.now = max(self.now, sim.due_ns(sim.tick))
                 self.checkpoint(before_tick=True)
         return False
@@ -253,7 +251,7 @@ class Session:
         sim.changed = False
         target = sim.ticks_at(until)
         if not steering.wanted:
-            self.slow &= ~LIVE
+            self.flags &= ~LIVE
         while sim.tick < target:
             # Never beyond the last tick of this wait: user actions take effect right before a tick.
             self.now = max(self.now, sim.due_ns(sim.tick))
@@ -267,7 +265,7 @@ class Session:
 
     def rush_to(self, tick: int) -> None:
         """Do not call the control before this tick is due."""
-        self.slow &= ~LIVE
+        self.flags &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.due_ns(tick) - 1)
 
     def debug(self) -> Debugger:
@@ -289,34 +287,34 @@ class Session:
         Raises:
             StopProgram: when a stop is requested, and again once the grace period is over.
         """
-        self.slow &= ~ATTENTION
+        self.flags &= ~ATTENTION
         self.steering.receive(self)
         reason = self.stop_reason
         if reason is None:
             return
         if self._stop_raised_at is None:
             self._stop_raised_at = self.now
-            if before_tick and reason.end == STOPPED:
+            if before_tick and reason.end is End.STOPPED:
                 self.steering.write_down_stop(self.sim.tick)
             raise reason
         if self.now - self._stop_raised_at > STOP_GRACE_NS or self.steering.grace_is_over():
             raise reason
 
-    def request_stop(self, end: str, summary: str) -> StopProgram:
+    def request_stop(self, end: End, summary: str) -> StopProgram:
         """Record that the run ends, and why; the first reason is kept. Return the exception to raise."""
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary)
             self.steering.begin_grace()
         self._stop_raised_at = self.now if self._stop_raised_at is None else self._stop_raised_at
-        self.slow |= STOPPING
+        self.flags |= STOPPING
         return self.stop_reason
 
-    def ask_stop(self, end: str, summary: str) -> None:
+    def ask_stop(self, end: End, summary: str) -> None:
         """Record that the run has to end at the next checkpoint."""
         if self.stop_reason is None:
             self.stop_reason = StopProgram(end, summary)
             self.steering.begin_grace()
-        self.slow |= STOPPING
+        self.flags |= STOPPING
 
     def stop_lost(self) -> None:
         """Raise the stop again at the next checkpoint: Python has dropped it, such as in a `__del__`."""

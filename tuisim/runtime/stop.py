@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-DISK_FULL = "disk_full"
-"""How a run ends that cannot be recorded any further."""
+from tuisim.protocol import End
 
 
 class StopProgram(BaseException):
     """Unwinds the program. Not an `Exception`, so that the program's handlers do not catch it.
 
     Args:
-        end: The reason, as in `protocol.Ended.end`.
+        end: How the run ends by it.
         summary: One line for the user.
     """
 
-    def __init__(self, end: str, summary: str) -> None:
+    def __init__(self, end: End, summary: str) -> None:
         super().__init__(summary)
         self.end = end
         self.summary = summary

@@ -7,7 +7,7 @@ import types
 from typing import Any
 
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, console_row
-from tuisim.runs.records import CONSOLE
+from tuisim.runs.records import Stream
 from tuisim.shim.method_globals import rebind
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
@@ -79,7 +79,7 @@ class Terminal:
         return f"{self._grid.rows} {self._grid.columns}\n"
 
     def _show(self) -> None:
-        self._screen.show(console_row(self._grid.screen()), CONSOLE)
+        self._screen.show(console_row(self._grid.screen()), Stream.CONSOLE)
 
 
 def patch_console_module(module: types.ModuleType, terminal: Terminal) -> None:

@@ -8,7 +8,7 @@ from functools import cache, wraps
 from typing import Any
 
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
-from tuisim.runs.records import DISPLAY
+from tuisim.runs.records import Stream
 from tuisim.shim.fonts import plain_font
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
@@ -48,7 +48,7 @@ class FrameBuffer(mmap.mmap):
         pixels = self[:]
         if pixels != self.pixels:
             self.pixels, self.row = pixels, display_row(picture_of(pixels))
-        self.screen.show(self.row, DISPLAY)
+        self.screen.show(self.row, Stream.DISPLAY)
 
 
 def picture_of(pixels: bytes) -> bytes:

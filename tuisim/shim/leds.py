@@ -18,7 +18,7 @@ from typing import Any
 from tuisim.core.profile import MS
 from tuisim.core.simulation import NS_PER_S
 from tuisim.runs.brick_state import LED_NAMES, led_row
-from tuisim.runs.records import LED
+from tuisim.runs.records import Stream
 from tuisim.shim.devices import Brick, SimDevice, refuse
 from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
@@ -63,7 +63,7 @@ class Lights:
         brightness = self._brightness()
         if brightness != self._shown:
             self._shown = brightness
-            self.session.show(led_row(brightness), LED)
+            self.session.show(led_row(brightness), Stream.LED)
 
 
 class Light:

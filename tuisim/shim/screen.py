@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tuisim.runs.records import Stream
 from tuisim.shim.session import Session
 
 
@@ -14,14 +15,14 @@ class Screen:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._shown: tuple[str, int] | None = None
+        self._shown: tuple[str, Stream] | None = None
 
-    def show(self, row: str, stream: int) -> None:
+    def show(self, row: str, stream: Stream) -> None:
         """Show an image or a text; unchanged contents are not recorded again.
 
         Args:
             row: In the format of `runs.brick_state`.
-            stream: `DISPLAY` or `CONSOLE` of `runs.records`.
+            stream: `Stream.DISPLAY` or `Stream.CONSOLE`.
         """
         if (row, stream) != self._shown:
             self._shown = (row, stream)

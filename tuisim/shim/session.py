@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from tuisim.core.field import Field
 from tuisim.core.simulation import Simulation
+from tuisim.runs.records import Stream
 
 
 class Session(Protocol):
@@ -43,8 +44,8 @@ class Session(Protocol):
     def messages(self) -> list[Any]:
         """Return all answers of the host's responder; waits for pending ones, without simulated time passing."""
 
-    def show(self, row: str, stream: int) -> None:
-        """Record what the brick shows; `stream` is one of `records`, `row` has the format of `runs.brick_state`."""
+    def show(self, row: str, stream: Stream) -> None:
+        """Record what the brick shows; `row` has the format of `runs.brick_state`."""
 
     def aside(self, work: Callable[[], None]) -> None:
         """Run `work` in the background while the program continues."""

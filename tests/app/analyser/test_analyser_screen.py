@@ -156,7 +156,7 @@ async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun)
 
 
 async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
-    text = parse_program("%%sim_magic_preloaded -b Grey_bands\nprint('Colour: 7')\n", "prog.py").text
+    text = parse_program("%%sim_magic_preloaded -b Grey_bands\nprint('Colour: 7')\n", "prog.py").program.text
     handle = start_run(program(text), build_run_spec(Settings()), RunOptions(speed=0.0))
     handle.wait()
     async with AnalyserApp(LogRequest(runs=(handle.run_id,))).run_test(size=(120, 40)) as pilot:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tuisim.app.render.debug import DebugView, debug_lines
-from tuisim.protocol import FrameState, Inspected, Paused
+from tuisim.protocol import FrameState, Inspected, Paused, PauseReason
 
 
 def text(view: DebugView, width: int) -> list[str]:
@@ -23,7 +23,7 @@ def test_all_keys_are_told_in_a_narrow_panel_too(state: str, width: int) -> None
 def test_a_module_beside_the_program_is_named() -> None:
     frames = (FrameState("drive", 4, "/lab/ann/helper.py"), FrameState("<module>", 3, ""))
     looked = Inspected(5, 50_000_000, "main", 0, "", (), frames, (), (), ())
-    paused = Paused(5, 50_000_000, 4, "step", file="/lab/ann/helper.py")
+    paused = Paused(5, 50_000_000, 4, PauseReason.STEP, file="/lab/ann/helper.py")
     rows = text(DebugView("paused", paused, looked, source="    return speed\n"), 60)
     assert rows[:2] == ["line 4 of helper.py · 0.05 s · tick 5", "  return speed"]
     assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]
@@ -31,7 +31,7 @@ def test_a_module_beside_the_program_is_named() -> None:
 
 def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> None:
     looked = Inspected(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
-    view = DebugView("ended", Paused(469, 4_690_000_000, 13, "instant"), looked, True, now=(120, 1.2))
+    view = DebugView("ended", Paused(469, 4_690_000_000, 13, PauseReason.INSTANT), looked, True, now=(120, 1.2))
     rows = text(view, 40)
     assert rows[0] == "1.20 s · tick 120 …"
     assert not any("4.69" in row or "line 13" in row for row in rows)
@@ -40,7 +40,7 @@ def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> No
 def test_why_a_condition_holds_is_told_whole() -> None:
     why = "cannot be evaluated: TypeError: '>' not supported between instances of 'str' and 'int'"
     looked = Inspected(5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), (), (), ())
-    paused = Paused(5, 50_000_000, 3, "break", "3 if name > 3", value=why)
+    paused = Paused(5, 50_000_000, 3, PauseReason.BREAK, "3 if name > 3", value=why)
     rows = text(DebugView("paused", paused, looked), 30)
     assert f"break 3 if name > 3: {why}" in " ".join(rows)
     assert max(map(len, rows)) <= 30
@@ -58,5 +58,5 @@ def test_why_a_condition_holds_is_told_whole() -> None:
 )
 def test_the_tick_is_told_whole_or_not_at_all(width: int, past: bool, head: str) -> None:
     looked = Inspected(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
-    view = DebugView("paused", Paused(469, 4_690_000_000, 13, "step"), looked, past)
+    view = DebugView("paused", Paused(469, 4_690_000_000, 13, PauseReason.STEP), looked, past)
     assert text(view, width)[0] == head

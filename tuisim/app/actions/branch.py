@@ -12,14 +12,15 @@ from tuisim import protocol
 from tuisim.app.snapshot import PAUSED
 from tuisim.core.spec import NoiseSpec
 from tuisim.errors import TuisimError
-from tuisim.protocol import BEFORE_NEXT_TICK, ScriptedAction
+from tuisim.protocol import BEFORE_NEXT_TICK, UserAction
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
-    from tuisim.runs.handle import Program, RunHandle
+    from tuisim.runs.handle import RunHandle
     from tuisim.runs.recording import Recording
+    from tuisim.source import Program
 
 BRANCH_TAG = "branch-of-"
 """Prefix of the tag that names the run from which another one branched off."""
@@ -70,13 +71,9 @@ class Branch:
             return NoiseSpec(self.then.light, self.then.motor)
         return self.of.noise_at(self.of.telemetry.record(self.tick))
 
-    def script(self) -> tuple[ScriptedAction, ...]:
+    def script(self) -> tuple[UserAction, ...]:
         """Return the user's actions until then."""
-        return tuple(
-            ScriptedAction.from_plain({"tick": action.tick, "kind": action.kind, **action.fields})
-            for action in self.of.actions()
-            if action.tick <= self.tick
-        )
+        return tuple(action for action in self.of.actions() if action.tick <= self.tick)
 
     def start(self, speed: float) -> RunHandle:
         """Start the run: it goes to the instant as fast as possible, and pauses there.

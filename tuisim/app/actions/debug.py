@@ -15,17 +15,17 @@ TICKS = 10
 
 def next_line(lab: LabApp) -> None:
     """Step to the next line, over calls."""
-    lab.debugging.step("over")
+    lab.debugging.step(protocol.LineStep.OVER)
 
 
 def step_into(lab: LabApp) -> None:
     """Step to the next line, into calls."""
-    lab.debugging.step("into")
+    lab.debugging.step(protocol.LineStep.INTO)
 
 
 def step_out(lab: LabApp) -> None:
     """Continue until the current function returns."""
-    lab.debugging.step("out")
+    lab.debugging.step(protocol.LineStep.OUT)
 
 
 def line_back(lab: LabApp) -> None:

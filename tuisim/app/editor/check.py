@@ -30,7 +30,7 @@ def mistake_in(text: str, name: str) -> Mistake | None:
         with warnings.catch_warnings():
             # Warnings are shown when the program runs.
             warnings.simplefilter("ignore")
-            compile(source.text, name, "exec", dont_inherit=True)
+            compile(source.program.text, name, "exec", dont_inherit=True)
     except TuisimError as error:
         return Mistake(0, str(error))
     except SyntaxError as error:

@@ -16,8 +16,8 @@ from tuisim.source import source_lines
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
     from tuisim.app.editor.check import Mistake
-    from tuisim.runs.handle import Program
     from tuisim.runs.recording import Recording
+    from tuisim.source import Program
 
 DRAFT_AFTER_S = 1.0
 """Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
@@ -102,7 +102,7 @@ class Document:
         from tuisim.config.program_file import parse_program
 
         try:
-            return parse_program(self._text if text is None else text, self._name).text
+            return parse_program(self._text if text is None else text, self._name).program.text
         except TuisimError:
             return None
 

@@ -12,9 +12,9 @@ from textual.containers import Vertical
 from textual.message import Message
 from textual.widgets import Input, Static
 
-from tuisim.app.panels.output_lines import NOTE, Log, plain
+from tuisim.app.panels.output_lines import Log, plain
 from tuisim.app.snapshot import Snapshot
-from tuisim.runs.records import OutputRow
+from tuisim.runs.records import OutputRow, Stream
 
 
 class Answer(Input):
@@ -79,7 +79,7 @@ class Output(Vertical):
 
     def note(self, text: str) -> None:
         """Append a line of the app itself."""
-        self._log.add([OutputRow(text, 0, 0, 0, NOTE)])
+        self._log.add([OutputRow(text, 0, 0, 0, Stream.NOTE)])
 
     def ask(self, prompt: str) -> None:
         """Show the field for an answer, with the program's prompt before it."""

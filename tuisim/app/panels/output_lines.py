@@ -15,18 +15,18 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tuisim.errors import counted
-from tuisim.runs.records import INPUT, SPEECH, STDERR, STDOUT, OutputRow, line_of
+from tuisim.runs.records import OutputRow, Stream, line_of
 
 KEPT_LINES = 2000
 MAX_LINE_CHARS = 2000
 """Longest part of a line that is shown."""
 
-NOTE = 0
-"""Stream of a line of the app itself."""
+_STYLES = {
+    Stream.STDOUT: "", Stream.STDERR: "log--error", Stream.SPEECH: "log--speech", Stream.INPUT: "log--answer",
+    Stream.NOTE: "log--note",
+}  # fmt: skip
 
-_STYLES = {STDOUT: "", STDERR: "log--error", SPEECH: "log--speech", INPUT: "log--answer", NOTE: "log--note"}
-
-Line = tuple[str, int]
+Line = tuple[str, Stream]
 """Text and stream."""
 
 
@@ -131,9 +131,9 @@ class Log(Widget, can_focus=True):
         if hidden:
             if at == 0:
                 told = f"… {counted(hidden, 'earlier line is', 'earlier lines are')} in the log"
-                return told[: self.size.width - 1], NOTE
+                return told[: self.size.width - 1], Stream.NOTE
             at -= 1
-        return self._lines[at] if 0 <= at < len(self._lines) else ("", STDOUT)
+        return self._lines[at] if 0 <= at < len(self._lines) else ("", Stream.STDOUT)
 
     def _update(self) -> None:
         height = self.size.height

@@ -7,11 +7,12 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import assert_never
 
 from rich.style import Style
 
 from tuisim.charts.text_runs import Line, cut
-from tuisim.protocol import FrameState, Inspected, Paused, Variable
+from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 
 _PLAIN = Style(color="#d8dee6")
 _NAME = Style(color="#9fd3ff")
@@ -24,12 +25,6 @@ _ERROR = Style(color="#ff6e6e")
 _CHOSEN = Style(color="#ffffff", bgcolor="#2f4a68")
 
 _NAME_COLUMN = 16
-
-REASONS = {
-    "asked": "paused", "ticks": "ticks done", "step": "step", "line": "line reached", "break": "break",
-    "instant": "recorded", "end": "end of the program",
-}  # fmt: skip
-"""Texts for `protocol.PAUSES`."""
 
 DOES = {
     "running": ("space  pauses    n  pauses at the next line",),
@@ -74,6 +69,25 @@ class DebugView:
         return self.now is not None and self.paused is not None and self.now[0] != self.paused.tick
 
 
+def reason_label(reason: PauseReason) -> str:
+    """Return in words why a run has paused."""
+    match reason:
+        case PauseReason.ASKED:
+            return "paused"
+        case PauseReason.TICKS:
+            return "ticks done"
+        case PauseReason.LINE:
+            return "line reached"
+        case PauseReason.INSTANT:
+            return "recorded"
+        case PauseReason.END:
+            return "end of the program"
+        case PauseReason.STEP | PauseReason.BREAK:
+            return reason.value
+        case _:
+            assert_never(reason)
+
+
 def debug_lines(view: DebugView, width: int) -> list[Line]:
     """Return the text for a panel of that inner width."""
     if view.paused is None or view.looked is None:
@@ -96,10 +110,10 @@ def _known(view: DebugView, paused: Paused, looked: Inspected, width: int) -> li
     lines = [_where(view, paused, width)]
     if view.source:
         lines.append([(cut(f"  {view.source.strip()}", width), _VALUE)])
-    why = REASONS.get(paused.reason, paused.reason) + (f" {paused.detail}" if paused.detail else "")
+    why = reason_label(paused.reason) + (f" {paused.detail}" if paused.detail else "")
     if paused.value:
         why += f": {paused.value}"
-    if not view.past and paused.reason not in ("asked", "instant"):
+    if not view.past and paused.reason not in (PauseReason.ASKED, PauseReason.INSTANT):
         lines += [[(text, _CHANGED)] for text in textwrap.wrap(why, width)]
     if looked.waiting:
         lines += [[(f" {text} ", _WAITS)] for text in textwrap.wrap(looked.waiting, max(width - 2, 1))]

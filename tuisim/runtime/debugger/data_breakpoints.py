@@ -22,7 +22,7 @@ from tuisim.core.sensors import SensorKind, gyro, mounted, ultrasonic
 from tuisim.core.sensors.color import COLOR_NAMES, ColorReading, reading
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
-from tuisim.runs.records import STDOUT
+from tuisim.runs.records import Stream
 from tuisim.runs.samples import parse_sample
 from tuisim.runtime.session import Session
 
@@ -99,9 +99,9 @@ class Watcher:
         """Return text and value of a breakpoint that matches after this tick."""
         return _first((text, check()) for text, check in self._after_tick.items())
 
-    def after_row(self, row: str, stream: int) -> tuple[str, str] | None:
+    def after_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
         """Return text and value of a breakpoint that matches this printed row."""
-        if stream != STDOUT:
+        if stream != Stream.STDOUT:
             return None
         return _first((text, check(row)) for text, check in self._on_row.items())
 

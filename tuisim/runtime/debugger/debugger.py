@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim import protocol
 from tuisim.breakpoints import Breakpoint, LineBreak, parse_breakpoints
-from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused
-from tuisim.runtime.control import LIVE
+from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused, PauseReason
+from tuisim.runs.records import Stream
+from tuisim.runtime.control import ATTENTION, DEBUG, LIVE
 from tuisim.runtime.debugger.code_lines import CodeLines
 from tuisim.runtime.debugger.conditions import Condition
 from tuisim.runtime.debugger.data_breakpoints import Watcher
@@ -19,7 +20,7 @@ from tuisim.runtime.debugger.inspection import Looker
 from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
 from tuisim.runtime.debugger.tracer import Tracer
 from tuisim.runtime.scheduler import Scheduler
-from tuisim.runtime.session import ATTENTION, DEBUG, Session
+from tuisim.runtime.session import Session
 from tuisim.runtime.stop import StopProgram
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ class Debugger:
         self._watcher = Watcher(session)
         self._by_line: dict[int, list[tuple[Breakpoint, Condition | None]]] = {}
         self._step: Step | None = None
-        self._step_reason = "step"
+        self._step_reason = PauseReason.STEP
         self._line = 0
         self._instant: Instant | None = None
         self._trace_from: int | None = None
@@ -74,7 +75,7 @@ class Debugger:
         self._trace(at_tick=True)
         self._update_session()
         if self._instant == (0, AFTER_TICK):
-            self._hold(Paused(0, 0, 0, "instant", ordinal=AFTER_TICK))
+            self._hold(Paused(0, 0, 0, PauseReason.INSTANT, ordinal=AFTER_TICK))
 
     # Commands
 
@@ -137,11 +138,11 @@ class Debugger:
         """Pause at the next line, if it is reached before the next tick."""
         self.forget_goals()
         if self._tracer.on and not self._session.steering.holding:
-            self._step, self._step_reason = NEXT_LINE, "asked"
+            self._step, self._step_reason = NEXT_LINE, PauseReason.ASKED
             self._trace(at_tick=False)
 
     def _forget_goals(self) -> None:
-        self._step, self._step_reason, self._line, self._instant = None, "step", 0, None
+        self._step, self._step_reason, self._line, self._instant = None, PauseReason.STEP, 0, None
 
     def _set_instant(self, tick: int, ordinal: int) -> None:
         self._instant = (tick, ordinal)
@@ -173,11 +174,11 @@ class Debugger:
         """Let the session call the debugger at ticks only when needed."""
         session, goals = self._session, self._goal_ticks()
         session.steering.debugged = self._watcher.ticks or bool(goals)
-        session.slow |= DEBUG
+        session.flags |= DEBUG
         if goals and session.steering.only_rushes and not self._watcher.ticks and min(goals) > session.sim.tick:
             session.rush_to(min(goals))
         elif session.steering.debugged:
-            session.slow |= LIVE
+            session.flags |= LIVE
 
     def _goal_ticks(self) -> list[int]:
         """Return the ticks at which the debugger has to act."""
@@ -197,7 +198,7 @@ class Debugger:
         """Pause if the goal is reached. Called right before a tick, after user actions."""
         tick = self._session.sim.tick
         if self._instant is not None and self._instant <= (tick, BEFORE_NEXT_TICK):
-            self._hold_at_tick("instant", BEFORE_NEXT_TICK)
+            self._hold_at_tick(PauseReason.INSTANT, BEFORE_NEXT_TICK)
 
     def after_ticks(self) -> None:
         """Pause if a breakpoint matches the tick that was just run."""
@@ -205,9 +206,9 @@ class Debugger:
         met = self._watcher.after_tick() if self._watcher.ticks else None
         self._trace(at_tick=True)
         if met is not None:
-            self._hold_at_tick("break", AFTER_TICK, *met)
+            self._hold_at_tick(PauseReason.BREAK, AFTER_TICK, *met)
         elif self._instant is not None and self._is_past(tick):
-            self._hold_at_tick("instant", AFTER_TICK)
+            self._hold_at_tick(PauseReason.INSTANT, AFTER_TICK)
 
     def _is_past(self, tick: int) -> bool:
         assert self._instant is not None
@@ -216,7 +217,7 @@ class Debugger:
     def at_end(self) -> None:
         """Pause at the end of the program if a requested instant was never reached."""
         if self._instant is not None:
-            self._hold_at_tick("end", self._tracer.ordinal)
+            self._hold_at_tick(PauseReason.END, self._tracer.ordinal)
 
     def enter(self) -> None:
         """Switch tracing in the current thread on or off as needed."""
@@ -227,26 +228,27 @@ class Debugger:
     def _at_line(self, frame: types.FrameType, line: int) -> None:
         """Check whether to pause at a line that is about to run."""
         session = self._session
-        if session.slow & ATTENTION:
+        if session.flags & ATTENTION:
             session.checkpoint()
         if session.stop_reason is not None:
             return
         own = frame.f_code.co_filename == session.program_file
-        reason, text, value = "", "", ""
+        reason: PauseReason | None = None
+        text = value = ""
         depth = self._tracer.depth_of(frame) if self._step is not None else 0
         if self._instant is not None and self._is_reached(self._tracer.ordinal):
-            reason = "instant"
+            reason = PauseReason.INSTANT
         elif self._step is not None and self._step.is_done(self._scheduler.current, depth):
             reason = self._step_reason
         elif own and line == self._line:
-            reason = "line"
+            reason = PauseReason.LINE
         elif own:
             for one, condition in self._by_line.get(line, ()):
                 value = condition.holds(frame, self._apart) if condition is not None else ""
                 if condition is None or value:
-                    reason, text = "break", one.text
+                    reason, text = PauseReason.BREAK, one.text
                     break
-        if reason:
+        if reason is not None:
             file = "" if own else frame.f_code.co_filename
             moment = self._moment(line, reason, text, value, self._tracer.ordinal, file)
             self._hold_in_thread(moment)
@@ -257,11 +259,11 @@ class Debugger:
         now = self._session.sim.tick
         return now > tick or (now == tick and wanted > AFTER_TICK and ordinal >= wanted)
 
-    def _after_row(self, row: str, stream: int) -> None:
+    def _after_row(self, row: str, stream: Stream) -> None:
         met = self._watcher.after_row(row, stream)
         if met is not None and self._session.stop_reason is None:
             line = self._session.program_line()
-            self._hold_in_thread(self._moment(line, "break", *met, self._tracer.ordinal))
+            self._hold_in_thread(self._moment(line, PauseReason.BREAK, *met, self._tracer.ordinal))
 
     def _apart(self, work: Callable[[], bytes]) -> bytes | None:
         return apart(self._session, self._scheduler, work, CONDITION_LIMIT_S, self._take_more)
@@ -269,13 +271,13 @@ class Debugger:
     # Pausing
 
     def _moment(
-        self, line: int, reason: str, text: str = "", value: str = "", ordinal: int = 0, file: str = ""
+        self, line: int, reason: PauseReason, text: str = "", value: str = "", ordinal: int = 0, file: str = ""
     ) -> Paused:
         session = self._session
         thread = self._looker.name_of(self._scheduler.current)
         return Paused(session.sim.tick, session.now, line, reason, text, value, ordinal, thread, file)
 
-    def _hold_at_tick(self, reason: str, ordinal: int, text: str = "", value: str = "") -> None:
+    def _hold_at_tick(self, reason: PauseReason, ordinal: int, text: str = "", value: str = "") -> None:
         session = self._session
         session.now = max(session.now, session.sim.due_ns(session.sim.tick))
         self._hold(self._moment(session.sim.line, reason, text, value, ordinal))

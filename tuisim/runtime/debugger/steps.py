@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import assert_never
 
+from tuisim.protocol import LineStep
 from tuisim.runtime.scheduler import ScheduledThread
 
 
@@ -27,17 +29,23 @@ ENDLESS_DEPTH = 1 << 30
 """Larger than the depth of any stack."""
 
 
-def step_from(how: str, task: ScheduledThread, depth: int) -> Step:
+def step_from(how: LineStep, task: ScheduledThread, depth: int) -> Step:
     """Return the step that starts at a line.
 
     Args:
-        how: One of `protocol.STEPS`.
+        how: The way to step.
         task: Thread that is paused there.
         depth: Number of open calls of the program's own code.
     """
-    if how == "into":
-        return Step(task, ENDLESS_DEPTH)
-    return Step(task, depth if how == "over" else depth - 1)
+    match how:
+        case LineStep.INTO:
+            return Step(task, ENDLESS_DEPTH)
+        case LineStep.OVER:
+            return Step(task, depth)
+        case LineStep.OUT:
+            return Step(task, depth - 1)
+        case _:
+            assert_never(how)
 
 
 NEXT_LINE = Step(None, ENDLESS_DEPTH)
