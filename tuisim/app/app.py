@@ -21,18 +21,15 @@ from tuisim.app.actions.table import ACTIONS, IN_RUN, Situation, working
 from tuisim.app.background import is_leaving
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
-from tuisim.app.feed import Feed, Series, sample_series
+from tuisim.app.feed import Feed, Lookback, Series, sample_series
 from tuisim.app.keys.action import ActionHost, KeyWord, key_bindings
 from tuisim.app.keys.footer import FIELD_KEYS, TYPING_KEYS, KeyFooter
-from tuisim.app.labels import end_label, speed_label
-from tuisim.app.loader import PERIOD_S, Loader
+from tuisim.app.loader import PERIOD_S, Loader, open_run
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
 from tuisim.app.panels import PANELS
-from tuisim.app.past_view import Lookback
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
-from tuisim.app.run_loader import open_run
-from tuisim.app.snapshot import ENDED, GOOD_ENDS, Snapshot
+from tuisim.app.snapshot import ENDED, GOOD_ENDS, Snapshot, end_label, speed_label
 from tuisim.app.speech import Voice
 from tuisim.app.start_options import AppSettings
 from tuisim.app.terminal.pacer import Pacer

@@ -2,21 +2,93 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
-from tuisim.app import breakpoint_store
 from tuisim.app.actions import time_travel
 from tuisim.app.snapshot import PAUSED
+from tuisim.atomic import make_private_folder, replacing
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
-from tuisim.errors import TuisimError
+from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.runs.replay_debugger import Position, ReplayDebugger
+from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
     from tuisim.source import Program
+
+FOLDER = "breaks"
+MAX_KEPT = 200
+"""Breakpoints and watches of one program."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The stored breakpoints and watches of one program."""
+
+    breaks: tuple[Breakpoint, ...] = ()
+    watches: tuple[str, ...] = ()
+
+
+def _file(program: str) -> Path:
+    from tuisim.config.folders import home_folder
+
+    return home_folder() / FOLDER / f"{hashlib.sha256(program.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
+
+
+def load_kept(program: str) -> Kept:
+    """Return what is stored for a program; empty if there is nothing or it cannot be read.
+
+    Args:
+        program: Its path, or its name if it is in no file.
+    """
+    try:
+        data = json.loads(_file(program).read_bytes())
+        breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
+        return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, ConfigError):
+        return Kept()
+
+
+def keep(program: str, kept: Kept) -> None:
+    """Store the breakpoints and watches of a program.
+
+    Raises:
+        ConfigError: they cannot be written.
+    """
+    file = _file(program)
+    data = {"program": program, "breaks": [one.written() for one in kept.breaks], "watches": list(kept.watches)}
+    try:
+        make_private_folder(file.parent)
+        with replacing(file, owner_only=True) as handle:
+            handle.write(json.dumps(data).encode("ascii"))
+    except OSError as error:
+        raise ConfigError(f"breakpoints cannot be kept: {error.strerror or error}", file=str(file)) from None
+
+
+def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
+    """Move breakpoints along with their lines after one edit of the text; those on deleted lines are dropped."""
+    old, new = source_lines(before), source_lines(now)
+    shift = len(new) - len(old)
+    if not shift:
+        return breaks
+    same = 0
+    while same < min(len(old), len(new)) and old[same] == new[same]:
+        same += 1
+    kept = []
+    for one in breaks:
+        line = break_line_of(one)
+        if line <= same or not line:
+            kept.append(one)
+        elif line + shift > same:
+            kept.append(moved(one, line + shift))
+    return tuple(kept)
+
 
 SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK})
 """Pause reasons that open the debug panels automatically."""
@@ -76,14 +148,14 @@ class AppDebugger:
         key = (program.path or program.name) if program else ""
         if key != self._program:
             self._program = key
-            kept = breakpoint_store.load_kept(key) if key else breakpoint_store.Kept()
+            kept = load_kept(key) if key else Kept()
             self.breaks, self.watches = kept.breaks, kept.watches
         self._text = program.text if program else ""
         self.mark()
 
     def edited(self, text: str) -> None:
         """Keep the breakpoints on their lines after an edit of the text."""
-        breaks = breakpoint_store.following(self.breaks, self._text, text)
+        breaks = following(self.breaks, self._text, text)
         self._text = text
         if breaks != self.breaks:
             self.set_breaks(breaks)
@@ -114,7 +186,7 @@ class AppDebugger:
     def _keep(self) -> None:
         if self._program:
             try:
-                breakpoint_store.keep(self._program, breakpoint_store.Kept(self.breaks, self.watches))
+                keep(self._program, Kept(self.breaks, self.watches))
             except TuisimError as error:
                 self._lab.complain(error)
 

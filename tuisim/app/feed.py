@@ -1,4 +1,4 @@
-"""The data for the chart and the pen trace: the part of a recording not yet shown, thinned."""
+"""The data for the chart and the pen trace, and what panels show of a past instant."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.timeline import Timeline
     from tuisim.runs.recording import Recording
 
 Series = dict[str, tuple[list[float], list[float]]]
@@ -152,3 +154,44 @@ def _thinned(start: int, end: int, most: int) -> list[int]:
     if span <= most:
         return list(range(start, end))
     return [start + (step + 1) * span // most - 1 for step in range(most)]
+
+
+PAST_ROWS = 200
+"""Number of output rows shown of a past instant."""
+
+
+class Lookback:
+    """Keeps panels at the instant in view.
+
+    Args:
+        desk: The panel area.
+        timeline: Provides that instant.
+    """
+
+    def __init__(self, desk: PanelArea, timeline: Timeline) -> None:
+        self._panel_area = desk
+        self._timeline = timeline
+        self._traced: object = None
+        self._printed: object = None
+
+    def show(self) -> None:
+        """Update the panels if they show another instant."""
+        desk, timeline = self._panel_area, self._timeline
+        recording, tick = timeline.recording, timeline.at
+        if world := desk.world:
+            world.time_bar.marks = timeline.marks
+            key = None if tick is None or recording is None else (recording, tick, world)
+            if key != self._traced:
+                self._traced = key
+                if tick is None or recording is None:
+                    world.show_past_trace(None)
+                else:
+                    world.show_past_trace(trace_until(recording, tick), recording.spec.robot.pen)
+        if output := desk.output:
+            count = None if tick is None or recording is None else (recording, recording.rows.until(tick), output)
+            if count != self._printed:
+                self._printed = count
+                if tick is None or recording is None:
+                    output.look_back(None)
+                else:
+                    output.look_back(*recording.rows.texts_until(tick, PAST_ROWS))

@@ -1,10 +1,11 @@
-"""What the panels show: one frozen value per frame."""
+"""What the panels show: one frozen value per frame, and how users read states and speeds."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import assert_never
 
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
@@ -12,7 +13,7 @@ from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
-from tuisim.protocol import End, RunState
+from tuisim.protocol import End, RunState, Unended
 from tuisim.runs.brick_state import BrickState
 
 IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
@@ -135,3 +136,21 @@ def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str,
         values["gyro °"] = float(gyro.angle_deg(instant))
     further = further_readings(instant, spec, field)
     return values | {column.replace("_", " "): value for column, value in further.items()}
+
+
+def speed_label(speed: float) -> str:
+    """Return a speed as users read it: ¼×, 2×, max."""
+    return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
+
+
+def end_label(state: RunState | None) -> str:
+    """Return in words how a run ended; empty if that is not known."""
+    match state:
+        case End.RAISED:
+            return "error"
+        case End() | Unended():
+            return state.replace("_", " ")
+        case None:
+            return ""
+        case _:
+            assert_never(state)

@@ -10,7 +10,7 @@ from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import notices, press_and_stand, ready, settings, until
 from tuisim.app.app import LabApp
-from tuisim.app.breakpoint_store import Kept, following, keep, load_kept
+from tuisim.app.debugger import Kept, following, keep, load_kept
 from tuisim.breakpoints import parse_breakpoints
 from tuisim.protocol import Inspected
 

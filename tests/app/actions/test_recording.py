@@ -10,7 +10,7 @@ import pytest
 
 from tests.app.app_help import program
 from tests.running import PATIENCE_S
-from tuisim.app.dialogs.differences import lines_of
+from tuisim.app.dialogs.runs import lines_of
 from tuisim.app.timeline import Timeline
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings

@@ -13,7 +13,7 @@ from tuisim.analysis.events import events_of, marks, thresholds_of
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.analyser.panes import PANES, pane_lines
-from tuisim.app.dialogs.differences import Differences
+from tuisim.app.dialogs.runs import Differences
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.errors import LogError

@@ -10,11 +10,18 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.app.editor import line_edits
-from tuisim.app.editor.check import mistake_in
-from tuisim.app.editor.drafts import FOLDER, drop_draft, find_draft, keep_draft
-from tuisim.app.editor.syntax import Colouring, spans
-from tuisim.app.editor.text_file import Form, is_protected, read_text, write_text
+from tuisim.app.editor import text_lines
+from tuisim.app.editor.syntax import Colouring, mistake_in, spans
+from tuisim.app.editor.text_file import (
+    FOLDER,
+    Form,
+    drop_draft,
+    find_draft,
+    is_protected,
+    keep_draft,
+    read_text,
+    write_text,
+)
 from tuisim.config.program_file import programs
 from tuisim.errors import ConfigError
 
@@ -75,18 +82,18 @@ def test_every_example_is_coloured_in_order_and_without_overlap(path: Path) -> N
     ],
 )
 def test_the_indentation_after_a_line(line: str, indent: str) -> None:
-    assert line_edits.indent_after(line) == indent
+    assert text_lines.indent_after(line) == indent
 
 
 @pytest.mark.parametrize(
     ("change", "before", "after"),
     [
-        (line_edits.indented, ["a", "", "  b"], ["    a", "", "      b"]),
-        (line_edits.outdented, ["    a", "  b", "      c", "\td", "e"], ["a", "b", "    c", "d", "e"]),
-        (line_edits.comment_toggled, ["  a", "", "    b"], ["  # a", "", "  #   b"]),
-        (line_edits.comment_toggled, ["  # a", "", "  #   b", "#c"], ["  a", "", "    b", "c"]),
-        (line_edits.comment_toggled, ["# a", "b"], ["# # a", "# b"]),
-        (line_edits.comment_toggled, ["", " "], ["", " "]),
+        (text_lines.indented, ["a", "", "  b"], ["    a", "", "      b"]),
+        (text_lines.outdented, ["    a", "  b", "      c", "\td", "e"], ["a", "b", "    c", "d", "e"]),
+        (text_lines.comment_toggled, ["  a", "", "    b"], ["  # a", "", "  #   b"]),
+        (text_lines.comment_toggled, ["  # a", "", "  #   b", "#c"], ["  a", "", "    b", "c"]),
+        (text_lines.comment_toggled, ["# a", "b"], ["# # a", "# b"]),
+        (text_lines.comment_toggled, ["", " "], ["", " "]),
     ],
     ids=["in", "out", "comment", "code", "mixed", "empty"],
 )
@@ -99,7 +106,7 @@ def test_lines_are_changed(change: Callable[[list[str]], list[str]], before: lis
     [("speed", [(0, 0), (1, 4)]), ("Speed", [(1, 4)]), ("(", [(1, 9)]), ("", []), ("nothing", [])],
 )
 def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
-    assert line_edits.places(["speed = 3", "x = Speed(1)"], wanted) == found
+    assert text_lines.places(["speed = 3", "x = Speed(1)"], wanted) == found
 
 
 @pytest.mark.parametrize(
@@ -108,7 +115,7 @@ def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
     ids=["same", "changed", "added", "from nothing"],
 )
 def test_how_many_lines_differ(one: str, other: str, count: int) -> None:
-    assert line_edits.differing_lines(one, other) == count
+    assert text_lines.differing_lines(one, other) == count
 
 
 @pytest.mark.parametrize(

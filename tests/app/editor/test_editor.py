@@ -15,7 +15,7 @@ from tuisim.app.dialogs.question import Question
 from tuisim.app.dialogs.save import ProgramDialog
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.document import TEMPLATE
-from tuisim.app.editor.drafts import find_draft, keep_draft
+from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
 from tuisim.app.snapshot import ENDED, IDLE, RUNNING
 from tuisim.app.start_options import AppSettings

@@ -6,7 +6,7 @@ import pytest
 
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.app.app import LabApp
-from tuisim.app.editor.line_map import MOST_COMPARED, LineMap
+from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,7 @@ from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
-from tuisim.app.panels.obstacle_drag import BoxGrip, box_at
-from tuisim.app.panels.obstacles import Obstacles
+from tuisim.app.panels.obstacles import BoxGrip, Obstacles, box_at
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import ENDED, RUNNING

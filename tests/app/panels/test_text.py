@@ -7,7 +7,7 @@ from textual.app import App, ComposeResult
 from textual.widget import Widget
 
 from tuisim.app.panels.code import Code
-from tuisim.app.panels.output_lines import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
+from tuisim.app.panels.output import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
 from tuisim.runs.records import OutputRow, Stream
 
 

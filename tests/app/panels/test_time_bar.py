@@ -14,7 +14,7 @@ from textual.widgets import Input
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.goto import find
-from tuisim.app.panels.time_bar import Moment, bar_cells, mark_cells, words
+from tuisim.app.panels.world import Moment, bar_cells, mark_cells, words
 from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, snapshot_of
 from tuisim.app.timeline import Timeline
 from tuisim.errors import ConfigError

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.render.disc import draw_discs, lay_out
+from tuisim.app.render.mat import draw_discs, lay_out
 from tuisim.core.field import disc_pixels
 
 GROUND, CORNER = (1, 1, 1), (2, 2, 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.render.colors import PALETTE_16, PALETTE_256, ColorMode, reduce_pixels, sgr_index
+from tuisim.app.render.cells import PALETTE_16, PALETTE_256, ColorMode, reduce_pixels, sgr_index
 from tuisim.app.render.mat import Pixels
 from tuisim.charts.world_image import COLORED, GREY
 

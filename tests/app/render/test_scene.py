@@ -7,10 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tuisim.app.render.field import BEACON_CORE_RGB, BEACON_RGB
 from tuisim.app.render.mat import Pixels
-from tuisim.app.render.pen_trace import PenTrace, pen_rgb
-from tuisim.app.render.scene import ScenePainter, SceneState
+from tuisim.app.render.scene import BEACON_CORE_RGB, BEACON_RGB, PenTrace, ScenePainter, SceneState, pen_rgb
 from tuisim.app.render.viewport import Viewport, whole_field
 from tuisim.charts.world_image import COLORED, draw_robot
 from tuisim.core.geometry import Pose

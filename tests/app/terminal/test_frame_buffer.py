@@ -18,9 +18,8 @@ from textual.app import App, ComposeResult
 from textual.geometry import Region
 from textual.strip import Strip
 
-from tuisim.app.terminal.cell_view import LinesView, PixelView
+from tuisim.app.terminal.cell_view import CellStrip, LinesView, PixelView
 from tuisim.app.terminal.frame_buffer import FrameBuffer
-from tuisim.app.terminal.strips import CellStrip
 
 WIDTH, ROWS = 60, 12
 STYLES = (

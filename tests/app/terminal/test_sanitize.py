@@ -15,7 +15,7 @@ from tests.app.app_help import settings
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
-from tuisim.app.terminal.sanitize import Sanitize
+from tuisim.app.terminal.terminal_app import Sanitize
 
 
 def test_controls_are_left_out_and_nothing_moves() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.style import Style
 
-from tuisim.app.terminal.strips import CellStrip
+from tuisim.app.terminal.cell_view import CellStrip
 
 
 def test_cropping_and_dividing_make_strips_of_the_same_kind() -> None:

@@ -76,7 +76,7 @@ def save_world(lab: LabApp) -> None:
 
 def export(lab: LabApp) -> None:
     """Ask for a file and write the log to it."""
-    from tuisim.app.dialogs.export import ExportDialog
+    from tuisim.app.dialogs.save import ExportDialog
 
     run_id = lab.bridge.run_id
     program = lab.bridge.program
@@ -132,7 +132,7 @@ def _diff(run_id: str, other_id: str) -> tuple[str, RunDiff]:
 
 
 def _show(lab: LabApp, recording: Recording, compared: tuple[str, RunDiff]) -> None:
-    from tuisim.app.dialogs.differences import Differences
+    from tuisim.app.dialogs.runs import Differences
 
     other, diff = compared
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tuisim.app.labels import speed_label
+from tuisim.app.snapshot import speed_label
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp

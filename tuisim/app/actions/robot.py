@@ -64,7 +64,7 @@ def saved_poses(lab: LabApp) -> None:
 
 def choose_mat(lab: LabApp) -> None:
     """Ask for a mat and set it."""
-    from tuisim.app.dialogs.mats import MatPicker
+    from tuisim.app.dialogs.chooser import MatPicker
     from tuisim.config.mats import mats
 
     folder = lab.bridge.plan.settings.mats

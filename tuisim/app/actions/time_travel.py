@@ -123,7 +123,7 @@ def beat(lab: LabApp) -> None:
 
 def ask_where(lab: LabApp) -> None:
     """Ask for an instant and go there."""
-    from tuisim.app.dialogs.goto import GoTo
+    from tuisim.app.goto import GoTo
 
     def go(tick: int | None) -> None:
         if tick is not None:
@@ -155,7 +155,7 @@ def sample_before(lab: LabApp) -> None:
 def choose_run(lab: LabApp) -> None:
     """Ask for a stored run and open it."""
     from tuisim.app.dialogs.runs import RunChooser
-    from tuisim.app.run_loader import open_run
+    from tuisim.app.loader import open_run
 
     def take(run_id: str | None) -> None:
         if run_id:

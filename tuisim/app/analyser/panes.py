@@ -15,7 +15,7 @@ from rich.style import Style
 from tuisim.analysis.events import Event
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
-from tuisim.app.labels import end_label
+from tuisim.app.snapshot import end_label
 from tuisim.charts.text_runs import Line, cut
 from tuisim.logs.bands import Band
 from tuisim.logs.statistics import QUANTILES

@@ -18,7 +18,7 @@ from textual.strip import Strip
 from textual.widgets import TextArea
 from textual.widgets.text_area import Edit, EditResult, Selection
 
-from tuisim.app.editor import line_edits
+from tuisim.app.editor import text_lines
 from tuisim.app.editor.syntax import KINDS, Colouring
 
 # A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.
@@ -250,7 +250,7 @@ class CodeArea(TextArea):
         elif event.key == "enter":
             self._done(event)
             row, column = min(self.selection)
-            self.insert_text("\n" + line_edits.indent_after(self.document.get_line(row)[:column]))
+            self.insert_text("\n" + text_lines.indent_after(self.document.get_line(row)[:column]))
         elif event.key == "backspace" and self.selection.is_empty and (blanks := self._blanks_to_delete()):
             self._done(event)
             row, column = self.cursor_location
@@ -275,13 +275,13 @@ class CodeArea(TextArea):
     def _blanks_to_delete(self) -> int:
         """Return how many blanks before the cursor backspace deletes, 0 if there is more than indentation."""
         row, column = self.cursor_location
-        return line_edits.blanks_to_delete(self.document.get_line(row)[:column])
+        return text_lines.blanks_to_delete(self.document.get_line(row)[:column])
 
     def insert_text(self, text: str) -> None:
         """Replace the selection with a text."""
         self.replace(text, *sorted(self.selection), maintain_selection_offset=False)
 
-    def _change_lines(self, change: line_edits.Change) -> None:
+    def _change_lines(self, change: text_lines.Change) -> None:
         """Change the selected lines, or the cursor's."""
         (top, left), (bottom, right) = sorted(self.selection)
         was_empty = self.selection.is_empty
@@ -310,12 +310,12 @@ class CodeArea(TextArea):
 _WHILE_TYPING = {"ctrl+n": "new", "ctrl+o": "open"}
 """Usual editor keys; while the user does not type, they are keys of the robot and the obstacles."""
 
-_CHANGES: Mapping[str, line_edits.Change] = {
-    "tab": line_edits.indented,
-    "shift+tab": line_edits.outdented,
+_CHANGES: Mapping[str, text_lines.Change] = {
+    "tab": text_lines.indented,
+    "shift+tab": text_lines.outdented,
     # What terminals send for ctrl and the slash key.
-    "ctrl+underscore": line_edits.comment_toggled,
-    "ctrl+slash": line_edits.comment_toggled,
+    "ctrl+underscore": text_lines.comment_toggled,
+    "ctrl+slash": text_lines.comment_toggled,
 }
 
 

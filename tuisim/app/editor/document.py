@@ -7,15 +7,23 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim.app.editor.drafts import Draft, drop_draft, find_draft, keep_draft
-from tuisim.app.editor.line_map import LineMap
-from tuisim.app.editor.text_file import Form, is_protected, read_text, write_text
+from tuisim.app.editor.text_file import (
+    Draft,
+    Form,
+    drop_draft,
+    find_draft,
+    is_protected,
+    keep_draft,
+    read_text,
+    write_text,
+)
+from tuisim.app.editor.text_lines import LineMap
 from tuisim.errors import ConfigError, TuisimError, counted
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.app.app import LabApp
-    from tuisim.app.editor.check import Mistake
+    from tuisim.app.editor.syntax import Mistake
     from tuisim.runs.recording import Recording
     from tuisim.source import Program
 
@@ -167,7 +175,7 @@ class Document:
 
     def _offer(self, draft: Draft) -> None:
         from tuisim.app.dialogs.question import Question
-        from tuisim.app.editor.line_edits import differing_lines
+        from tuisim.app.editor.text_lines import differing_lines
 
         name = self._name or NEW_NAME
         when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))
@@ -231,7 +239,7 @@ class Document:
 
     def _mistake(self) -> Mistake | None:
         """Return the syntax error of the text, and mark its line."""
-        from tuisim.app.editor.check import mistake_in
+        from tuisim.app.editor.syntax import mistake_in
 
         mistake = mistake_in(self._text, self._name)
         if code := self._lab.desk.code:

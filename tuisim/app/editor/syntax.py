@@ -9,7 +9,12 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
+import warnings
 from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tuisim.config.program_file import parse_program
+from tuisim.errors import TuisimError
 
 Span = tuple[int, int, str]
 """Start and end in characters, and one of `KINDS`."""
@@ -85,3 +90,34 @@ class Colouring:
             plain = '"""' not in above and "'''" not in above
             before.append(before[-1] if plain else spans(above, before[-1])[1])
         return spans(lines[line], before[line])[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """A syntax error."""
+
+    line: int
+    """From 1; 0 if unknown."""
+    message: str
+
+
+def mistake_in(text: str, name: str) -> Mistake | None:
+    """Return the syntax error of a program, None if it can be compiled.
+
+    Args:
+        text: The text of the file; a magic line is allowed.
+        name: Name of the file, for the message.
+    """
+    try:
+        source = parse_program(text, name)
+        with warnings.catch_warnings():
+            # Warnings are shown when the program runs.
+            warnings.simplefilter("ignore")
+            compile(source.program.text, name, "exec", dont_inherit=True)
+    except TuisimError as error:
+        return Mistake(0, str(error))
+    except SyntaxError as error:
+        return Mistake(error.lineno or 0, f"line {error.lineno}: {error.msg}")
+    except (ValueError, RecursionError, MemoryError) as error:
+        return Mistake(0, str(error) or "too deeply nested")
+    return None

@@ -8,8 +8,8 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from tuisim.app.render.colors import PALETTE_16
-from tuisim.app.render.disc import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
+from tuisim.app.render.cells import PALETTE_16
+from tuisim.app.render.mat import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
 from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.app.terminal.pacer import Throttle

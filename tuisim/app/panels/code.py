@@ -16,8 +16,7 @@ from textual.widgets.text_area import Selection
 
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.find_bar import FIND, LINE, FindBar
-from tuisim.app.editor.line_edits import places
-from tuisim.app.editor.line_map import LineMap
+from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.snapshot import ENDED, IDLE, RUNNING, Snapshot
 from tuisim.source import source_lines
 

@@ -11,8 +11,7 @@ from textual import events
 from textual.widget import Widget
 
 from tuisim.app.keys.action import ACT, Act
-from tuisim.app.labels import end_label, speed_label
-from tuisim.app.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot
+from tuisim.app.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot, end_label, speed_label
 
 _STATES = {IDLE: "ready", STARTING: "starting", RUNNING: "running", PAUSED: "paused", WAITING: "waits for input"}
 _LABEL_CELLS = 9

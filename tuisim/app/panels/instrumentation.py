@@ -10,8 +10,7 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from tuisim.app.labels import end_label
-from tuisim.app.snapshot import ENDED, Snapshot
+from tuisim.app.snapshot import ENDED, Snapshot, end_label
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.charts.text_runs import Line, Run, cut

@@ -12,7 +12,7 @@ from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.app.snapshot import Snapshot
-from tuisim.app.widgets.number_input import NumberInput
+from tuisim.app.widgets.form import NumberInput
 from tuisim.app.widgets.slider import Slider
 from tuisim.config.options import MAX_SEED, whole
 from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec

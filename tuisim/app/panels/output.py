@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Iterable, Sequence
 from typing import ClassVar
 
-from textual import on
+from rich.cells import cell_len, chop_cells
+from rich.segment import Segment
+from textual import events, on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
+from textual.geometry import Region
 from textual.message import Message
+from textual.strip import Strip
+from textual.widget import Widget
 from textual.widgets import Input, Static
 
-from tuisim.app.panels.output_lines import Log, plain
 from tuisim.app.snapshot import Snapshot
-from tuisim.runs.records import OutputRow, Stream
+from tuisim.errors import counted
+from tuisim.runs.records import OutputRow, Stream, line_of
 
 
 class Answer(Input):
@@ -110,3 +116,179 @@ class Output(Vertical):
 
     def show(self, snapshot: Snapshot) -> None:
         """Do nothing: rows arrive through `add`."""
+
+
+KEPT_LINES = 2000
+MAX_LINE_CHARS = 2000
+"""Longest part of a line that is shown."""
+
+_STYLES = {
+    Stream.STDOUT: "", Stream.STDERR: "log--error", Stream.SPEECH: "log--speech", Stream.INPUT: "log--answer",
+    Stream.NOTE: "log--note",
+}  # fmt: skip
+
+Line = tuple[str, Stream]
+"""Text and stream."""
+
+
+def plain(text: str) -> str:
+    """Return a text without control characters: tabs become spaces, others a dot."""
+    if text.isprintable():
+        return text
+    return "".join(char if char.isprintable() else "·" for char in text.expandtabs(4))
+
+
+def shown_lines(row: OutputRow, width: int) -> list[str]:
+    """Return a row as lines of at most `width` cells, at least one."""
+    text = line_of(row)
+    if len(text) > MAX_LINE_CHARS:
+        text = f"{text[:MAX_LINE_CHARS]} … ({counted(len(text) - MAX_LINE_CHARS, 'more character')})"
+    text = plain(text)
+    if not text.isascii():
+        return chop_cells(text, max(width, 2)) or [""]
+    lines = []
+    while len(text) > width:
+        # A break at a blank reads better, unless it leaves half of the row empty.
+        cut = text.rfind(" ", width // 2, width) + 1 or width
+        lines.append(text[:cut])
+        text = text[cut:]
+    return [*lines, text]
+
+
+class Log(Widget, can_focus=True):
+    """The lines; follows the newest unless scrolled up."""
+
+    # A ScrollView repaints all rows for each new line; this widget does not resend unchanged rows.
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"log--error", "log--speech", "log--answer", "log--note", "log--thumb"}
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up", "scroll_lines(-1)", "Up", show=False),
+        Binding("down", "scroll_lines(1)", "Down", show=False),
+        Binding("pageup", "scroll_pages(-1)", "Page up", show=False),
+        Binding("pagedown", "scroll_pages(1)", "Page down", show=False),
+        Binding("home", f"scroll_lines(-{KEPT_LINES * MAX_LINE_CHARS})", "First", show=False),
+        Binding("end", f"scroll_lines({KEPT_LINES * MAX_LINE_CHARS})", "Newest", show=False),
+    ]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._rows: deque[OutputRow] = deque(maxlen=KEPT_LINES)
+        self._count = 0
+        """Number of rows ever added."""
+        self._lines: list[Line] = []
+        self._top: int | None = None
+        """First visible line; None follows the newest."""
+        self._shown: list[tuple[Line, bool]] = []
+        """For each row of the screen: its line, and whether the scroll thumb covers it."""
+
+    # Content
+
+    def clear(self) -> None:
+        """Remove every line."""
+        self._rows.clear()
+        self._lines.clear()
+        self._count = 0
+        self._top = None
+        self._update()
+
+    def add(self, rows: Sequence[OutputRow], skipped: int = 0) -> None:
+        """Append rows; `skipped` rows before them are only counted. Rows that are not text are ignored."""
+        texts = [row for row in rows if row.stream in _STYLES]
+        self._count += len(texts) + skipped
+        newest = texts[-KEPT_LINES:]
+        self._rows.extend(newest)
+        self._wrap(newest)
+        self._update()
+
+    def _wrap(self, rows: Iterable[OutputRow]) -> None:
+        # The last column belongs to the scroll thumb.
+        width = self.size.width - 1
+        if width < 1:
+            return
+        for row in rows:
+            self._lines.extend((line, row.stream) for line in shown_lines(row, width))
+        too_many = len(self._lines) - KEPT_LINES
+        if too_many > 0:
+            del self._lines[:too_many]
+            if self._top is not None:
+                self._top = max(0, self._top - too_many)
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Wrap the lines for the new width."""
+        self._lines.clear()
+        self._wrap(self._rows)
+        self._shown.clear()
+        self._update()
+
+    # View
+
+    @property
+    def _all(self) -> int:
+        """Return the number of lines to scroll through; the first one may stand for rows no longer kept."""
+        return len(self._lines) + (1 if self._count > len(self._rows) else 0)
+
+    def _line(self, at: int) -> Line:
+        hidden = self._count - len(self._rows)
+        if hidden:
+            if at == 0:
+                told = f"… {counted(hidden, 'earlier line is', 'earlier lines are')} in the log"
+                return told[: self.size.width - 1], Stream.NOTE
+            at -= 1
+        return self._lines[at] if 0 <= at < len(self._lines) else ("", Stream.STDOUT)
+
+    def _update(self) -> None:
+        height = self.size.height
+        if not height:
+            return
+        last_top = max(0, self._all - height)
+        top = last_top if self._top is None else min(self._top, last_top)
+        thumb = range(0)
+        if last_top:
+            size = max(1, height * height // self._all)
+            at = round((height - size) * top / last_top)
+            thumb = range(at, at + size)
+        shown = [(self._line(top + y), y in thumb) for y in range(height)]
+        before, self._shown = self._shown, shown
+        if len(before) != height:
+            self.refresh()
+            return
+        changed = [Region(0, y, self.size.width, 1) for y in range(height) if shown[y] != before[y]]
+        if changed:
+            self.refresh(*changed)
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row of the screen."""
+        width = self.size.width
+        base = self.rich_style
+        if y >= len(self._shown) or width < 2:
+            return Strip.blank(width, base)
+        (text, stream), thumb = self._shown[y]
+        name = _STYLES[stream]
+        style = base + self.get_component_rich_style(name, partial=True) if name else base
+        strip = Strip([Segment(text, style)], cell_len(text)).adjust_cell_length(width - 1, base)
+        end = base + self.get_component_rich_style("log--thumb", partial=True) if thumb else base
+        return Strip([*strip, Segment(" ", end)], width)
+
+    # Scrolling
+
+    def action_scroll_lines(self, lines: int) -> None:
+        """Scroll down by a number of lines; negative scrolls up."""
+        last_top = max(0, self._all - self.size.height)
+        top = (last_top if self._top is None else self._top) + lines
+        # Scrolled to the end, the view follows the newest line again.
+        self._top = None if top >= last_top else max(0, top)
+        self._update()
+
+    def action_scroll_pages(self, pages: int) -> None:
+        """Scroll by a number of pages."""
+        self.action_scroll_lines(pages * max(1, self.size.height - 1))
+
+    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+        """Scroll up."""
+        event.stop()
+        self.action_scroll_lines(-3)
+
+    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
+        """Scroll down."""
+        event.stop()
+        self.action_scroll_lines(3)

@@ -12,7 +12,7 @@ from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.app.snapshot import Snapshot
-from tuisim.app.widgets.number_input import NumberInput
+from tuisim.app.widgets.form import NumberInput
 from tuisim.config.options import MAX_ANGLE_DEG, MAX_POSITION_MM
 from tuisim.core.geometry import Pose, shown_heading_deg
 

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
-from tuisim.app.render.field import draw_beacon, draw_obstacles, draw_rays, trace_pixels
+import numpy as np
+
 from tuisim.app.render.mat import MatPictures, Pixels
-from tuisim.app.render.pen_trace import PenTrace
 from tuisim.app.render.viewport import Viewport
 from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, draw_robot
-from tuisim.core.css_colors import Rgb
+from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.parts import BeaconSpec
-from tuisim.core.spec import Obstacle, RobotSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec, RobotSpec
+from tuisim.runs.arrays import FloatArray
 
 _GHOST_OPACITY = 0.75
 
@@ -87,3 +91,203 @@ class ScenePainter:
             self._ground[rows, cols] = piece.rgb
         self._pieces_drawn = len(self.trace)
         return self._ground
+
+
+OBSTACLE_RGB = (175, 95, 0)
+OBSTACLE_EDGE_RGB = (135, 0, 0)
+MARKED_RGB = (255, 215, 0)
+"""Edge of the selected obstacle."""
+RAY_RGB = (0, 175, 175)
+_RAY_OPACITY = 0.55
+BEACON_RGB = (215, 0, 135)
+BEACON_CORE_RGB = (255, 255, 255)
+_BEACON_MM = 25.0
+"""Radius of a beacon."""
+
+_LONGEST_STEP_MM = 250.0
+"""Two trace points further apart are not joined: the robot was placed elsewhere."""
+
+
+def trace_pixels(view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm: float) -> tuple[FloatArray, ...]:
+    """Return the picture pixels that a trace covers.
+
+    Args:
+        view: The visible part of the field.
+        xs_mm: World x of the points in order, shape (n,); NaN lifts the pen.
+        ys_mm: World y of the points, shape (n,).
+        width_mm: Width of the pen; at least one pixel is drawn.
+
+    Returns:
+        Rows and columns, each shape (m,), whole numbers inside the picture, possibly repeated.
+    """
+    xs, ys = _joined(xs_mm, ys_mm, view.mm_per_px / 2)
+    cols = (xs - view.left_mm) / view.mm_per_px
+    rows = (view.top_mm - ys) / view.mm_per_px
+    across = max(1, round(width_mm / view.mm_per_px))
+    spread = np.arange(across) - (across - 1) / 2
+    cols = np.floor(cols[:, None, None] + spread[None, :, None] + 0 * spread[None, None, :]).ravel()
+    rows = np.floor(rows[:, None, None] + 0 * spread[None, :, None] + spread[None, None, :]).ravel()
+    inside = (cols >= 0) & (cols < view.width_px) & (rows >= 0) & (rows < view.height_px)
+    return rows[inside].astype(np.intp), cols[inside].astype(np.intp)
+
+
+def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
+    """Return points no further apart than a step along the trace, NaN dropped."""
+    good = np.isfinite(xs) & np.isfinite(ys)
+    if len(xs) < 2:
+        return xs[good], ys[good]
+    lengths = np.hypot(np.diff(xs), np.diff(ys))
+    drawn = np.isfinite(lengths) & (lengths <= _LONGEST_STEP_MM) & (lengths > step_mm)
+    starts = np.flatnonzero(drawn)
+    counts = np.ceil(lengths[starts] / step_mm).astype(np.intp)
+    if not len(starts):
+        return xs[good], ys[good]
+    which = np.repeat(starts, counts)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(len(which)) - first) / np.repeat(counts, counts)
+    between_x = xs[which] + share * (xs[which + 1] - xs[which])
+    between_y = ys[which] + share * (ys[which + 1] - ys[which])
+    return np.concatenate((xs[good], between_x)), np.concatenate((ys[good], between_y))
+
+
+def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: Sequence[tuple[float, float]]) -> None:
+    """Paint rays from one point of the world, as far as they are on the field.
+
+    Args:
+        picture: Modified in place.
+        view: The visible part of the field.
+        x_mm: World x of the sensor.
+        y_mm: World y of the sensor.
+        rays: (world angle in degrees, length in mm) each.
+    """
+    col, row = view.to_px(x_mm, y_mm)
+    low_col, low_row = (round(edge) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
+    high_col, high_row = (round(edge) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
+    low_col, low_row = max(low_col, 0), max(low_row, 0)
+    high_col, high_row = min(high_col, view.width_px), min(high_row, view.height_px)
+    covered = np.zeros(picture.shape[:2], bool)
+    for angle_deg, length_mm in rays:
+        angle = math.radians(angle_deg)
+        cos, sin = math.cos(angle), math.sin(angle)
+        # One sample for each step along the longer axis: an even line without doubled pixels.
+        longer = max(abs(cos), abs(sin))
+        along = np.arange(0, length_mm / view.mm_per_px * longer) / longer
+        cols = np.floor(col + along * cos).astype(np.intp)
+        rows = np.floor(row - along * sin).astype(np.intp)
+        inside = (cols >= low_col) & (cols < high_col) & (rows >= low_row) & (rows < high_row)
+        covered[rows[inside], cols[inside]] = True
+    mixed = picture[covered] * (1 - _RAY_OPACITY) + np.array(RAY_RGB) * _RAY_OPACITY
+    picture[covered] = np.rint(mixed).astype(np.uint8)
+
+
+def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None) -> None:
+    """Paint the obstacles, each at least one pixel wide and high.
+
+    Args:
+        picture: Modified in place.
+        view: The visible part of the field.
+        obstacles: The boxes.
+        marked: Index of the selected one.
+    """
+    for index, box in enumerate(obstacles):
+        left, bottom = view.to_px(box.x_mm, box.y_mm)
+        right, top = view.to_px(box.x_mm + box.width_mm, box.y_mm + box.height_mm)
+        rows = _span(top, bottom, view.height_px)
+        cols = _span(left, right, view.width_px)
+        picture[rows, cols] = MARKED_RGB if index == marked else OBSTACLE_EDGE_RGB
+        if rows.stop - rows.start > 2 and cols.stop - cols.start > 2:
+            picture[rows.start + 1 : rows.stop - 1, cols.start + 1 : cols.stop - 1] = OBSTACLE_RGB
+
+
+def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> None:
+    """Paint an infrared beacon, a disc with a light core at least three pixels wide.
+
+    Args:
+        picture: Modified in place.
+        view: The visible part of the field.
+        x_mm: World x of its centre.
+        y_mm: World y of its centre.
+    """
+    col, row = (math.floor(at) for at in view.to_px(x_mm, y_mm))
+    radius = max(1, round(_BEACON_MM / view.mm_per_px))
+    aside = np.arange(-radius, radius + 1)
+    rows, cols = np.nonzero(np.hypot(aside[:, None], aside[None, :]) <= radius + 0.5)
+    light = np.hypot(rows - radius, cols - radius) <= radius / 3
+    rows, cols = rows + row - radius, cols + col - radius
+    inside = (rows >= 0) & (rows < view.height_px) & (cols >= 0) & (cols < view.width_px)
+    shades = np.where(light[:, None], np.array(BEACON_CORE_RGB, np.uint8), np.array(BEACON_RGB, np.uint8))
+    picture[rows[inside], cols[inside]] = shades[inside]
+
+
+def _span(low: float, high: float, size_px: int) -> slice:
+    first = round(low)
+    return slice(min(max(first, 0), size_px), min(max(round(high), first + 1, 0), size_px))
+
+
+_FALLBACK = "red"
+
+
+def pen_rgb(color: str) -> Rgb:
+    """Return the colour of a pen: a CSS name or `#rrggbb`; red for anything else."""
+    found = css_rgb(color) or css_rgb(_FALLBACK)
+    assert found is not None
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of the trace, drawn with one pen."""
+
+    xs_mm: FloatArray
+    """Shape (n,); NaN lifts the pen."""
+    ys_mm: FloatArray
+    rgb: Rgb
+    width_mm: float
+
+    @property
+    def pen(self) -> tuple[Rgb, float]:
+        """The colour and width of the pen."""
+        return self.rgb, self.width_mm
+
+
+class PenTrace:
+    """Everything that the pen has drawn since the trace was last cleared."""
+
+    def __init__(self) -> None:
+        self._pieces: list[Piece] = []
+        self.count = 0
+        """Number of points ever added; grows with every change but clearing."""
+        self.wiped = 0
+        """How often the trace was cleared."""
+
+    def add(self, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> None:
+        """Add points, joined to the last ones if the pen is the same; NaN lifts it."""
+        if not len(xs_mm):
+            return
+        self.count += len(xs_mm)
+        rgb, width_mm = pen_rgb(pen.color), pen.width_mm
+        if self._pieces and self._pieces[-1].pen == (rgb, width_mm):
+            last = self._pieces[-1]
+            xs_mm, ys_mm = np.concatenate((last.xs_mm[-1:], xs_mm)), np.concatenate((last.ys_mm[-1:], ys_mm))
+        self._pieces.append(Piece(xs_mm, ys_mm, rgb, width_mm))
+
+    def wipe(self) -> None:
+        """Clear the trace."""
+        self._pieces.clear()
+        self.wiped += 1
+
+    def pieces(self, first: int) -> Iterator[Piece]:
+        """Return the pieces from index `first` on."""
+        return iter(self._pieces[first:])
+
+    def __len__(self) -> int:
+        return len(self._pieces)
+
+    def join(self) -> None:
+        """Merge consecutive pieces of the same pen, so that they are drawn in one step."""
+        joined = []
+        for (rgb, width_mm), alike in groupby(self._pieces, key=lambda piece: piece.pen):
+            pieces = list(alike)
+            xs_mm, ys_mm = (np.concatenate(parts) for parts in zip(*((p.xs_mm, p.ys_mm) for p in pieces), strict=True))
+            joined.append(Piece(xs_mm, ys_mm, rgb, width_mm))
+        self._pieces = joined

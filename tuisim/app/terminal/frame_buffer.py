@@ -18,8 +18,8 @@ from rich.style import Style
 from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
 from textual.strip import SGR_STYLES, Strip
 
-from tuisim.app.render.colors import PALETTE_256, TRUECOLOR, sgr_index
-from tuisim.app.terminal.strips import UPPER_HALF, CellStrip, color_depth
+from tuisim.app.render.cells import PALETTE_256, TRUECOLOR, sgr_index
+from tuisim.app.terminal.cell_view import UPPER_HALF, CellStrip, color_depth
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
 """Attributes that are visible on a blank: underline, reverse, strike, frame, overline."""

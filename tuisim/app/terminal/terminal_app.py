@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import signal
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -10,11 +11,14 @@ from functools import partial
 from textwrap import wrap
 from typing import Any, ClassVar, cast
 
+from rich.cells import cell_len
 from rich.console import Console, ConsoleRenderable, RichCast
 from rich.control import Control
+from rich.segment import Segment
 from textual import events, on
 from textual._compositor import CompositorUpdate
 from textual.app import App
+from textual.color import Color
 from textual.command import Provider
 from textual.css.query import NoMatches
 from textual.driver import Driver
@@ -27,7 +31,26 @@ from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.keys.palette import ActionProvider, Palette
 from tuisim.app.terminal.driver import TerminalDriver
 from tuisim.app.terminal.frame_buffer import FrameBuffer
-from tuisim.app.terminal.sanitize import Sanitize
+
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
+
+
+class Sanitize(LineFilter):
+    """Removes control characters from everything that is drawn."""
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return the segments, with the same width as before."""
+        if all(segment.text.isprintable() or segment.control for segment in segments):
+            return segments
+        return [
+            segment if segment.control else Segment(_CONTROLS.sub(_blank, segment.text), segment.style)
+            for segment in segments
+        ]
+
+
+def _blank(match: re.Match[str]) -> str:
+    return " " * cell_len(match[0])
+
 
 MINIMUM = Size(60, 18)
 """Minimum size of the terminal: panels and dialogs are unreadable below it."""

@@ -52,7 +52,7 @@ def _compare(screen: Analyser, model: Model, first: StoredRun, second: StoredRun
 
 
 def _tell(screen: Analyser, model: Model, first: StoredRun, second: StoredRun, diff: RunDiff) -> None:
-    from tuisim.app.dialogs.differences import Differences
+    from tuisim.app.dialogs.runs import Differences
 
     def answered(wished: bool | None) -> None:
         ticks = (diff.tick.time_s,) if diff.tick else ()
