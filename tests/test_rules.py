@@ -6,17 +6,13 @@ import ast
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache, cached_property
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGE = ROOT / "tuisim"
-SOURCES = sorted(PACKAGE.rglob("*.py"))
-TESTS = [path for path in sorted((ROOT / "tests").rglob("*.py")) if "brick_programs" not in path.parts]
-CODE = [*SOURCES, *TESTS, *sorted((ROOT / "backgrounds").rglob("*.py"))]
-PROSE = [ROOT / "README.md", ROOT / "pyproject.toml", ROOT / ".ci" / "run"]
 
 MAX_FILE_LINES = 600
 MAX_BODY_LINES = 50
@@ -25,21 +21,53 @@ REASON = re.compile(r"# (?!noqa|type:|pragma|fmt:)\w")
 # Reading these would make the same run come out differently.
 WALL_CLOCK = {"time", "datetime", "random", "secrets", "uuid"}
 CHILD_MAY_NOT_LOAD = ("numpy", "pandas", "pyarrow", "PIL", "plotext", "textual", "platformdirs", "msgspec")
-
-
-def name_of(path: Path) -> str:
-    return str(path.relative_to(ROOT))
-
-
-def tree_of(path: Path) -> ast.Module:
-    return ast.parse(path.read_text(encoding="utf-8"))
-
+PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
+"""Files of the commands that may write to the terminal by themselves."""
+UNFINISHED = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" + "Error"))
+PLACES = "|".join(f"/{place}/" for place in ("work", "farm", "root", "home"))
+LEFT_OPEN = re.compile(rf"\b({UNFINISHED})\b|(?<![\w.$])({PLACES})")
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
-def functions(tree: ast.AST) -> Iterator[Function]:
-    return (node for node in ast.walk(tree) if isinstance(node, Function))
+class Source:
+    """A file of the project, read and parsed once for all rules."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.text = path.read_text(encoding="utf-8")
+        self.lines = self.text.splitlines()
+
+    @cached_property
+    def tree(self) -> ast.Module:
+        return ast.parse(self.text)
+
+    @cached_property
+    def nodes(self) -> list[ast.AST]:
+        return list(ast.walk(self.tree))
+
+    @property
+    def attributes(self) -> Iterator[ast.Attribute]:
+        return (node for node in self.nodes if isinstance(node, ast.Attribute))
+
+
+@cache
+def source(path: Path) -> Source:
+    return Source(path)
+
+
+def python_files(folder: str) -> list[Path]:
+    return [path for path in sorted((ROOT / folder).rglob("*.py")) if "brick_programs" not in path.parts]
+
+
+PACKAGE = python_files("tuisim")
+TESTS = python_files("tests")
+CODE = [*PACKAGE, *TESTS, *python_files("backgrounds")]
+PROSE = [ROOT / "README.md", ROOT / "pyproject.toml", ROOT / ".ci" / "run"]
+
+
+def too_many_lines(source: Source) -> Iterable[object]:
+    return [len(source.lines)] if len(source.lines) > MAX_FILE_LINES else []
 
 
 def body_lines(function: Function) -> int:
@@ -48,33 +76,21 @@ def body_lines(function: Function) -> int:
     return (body[-1].end_lineno or 0) - body[0].lineno + 1 if body else 0
 
 
-@pytest.mark.parametrize("path", CODE, ids=name_of)
-def test_file_is_small(path: Path) -> None:
-    assert len(path.read_text(encoding="utf-8").splitlines()) <= MAX_FILE_LINES
-
-
-@pytest.mark.parametrize("path", CODE, ids=name_of)
-def test_functions_are_small(path: Path) -> None:
-    long = {f.name: body_lines(f) for f in functions(tree_of(path)) if body_lines(f) > MAX_BODY_LINES}
-    assert not long
-
-
-PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
-"""Files of the commands that may write to the terminal by themselves."""
-
-
-@pytest.mark.parametrize("path", [*sorted((PACKAGE / "commands").rglob("*.py"))], ids=name_of)
-def test_commands_print_by_echo(path: Path) -> None:
-    if path.name in PRINTS:
-        return
-    tree = tree_of(path)
-    prints = [node.lineno for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id == "print"]
-    writes = [
-        node.lineno
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Attribute) and node.attr == "write" and ast.unparse(node.value).startswith("sys.")
+def long_functions(source: Source) -> Iterable[object]:
+    return [
+        f"{node.name}: {body_lines(node)} lines"
+        for node in source.nodes
+        if isinstance(node, Function) and body_lines(node) > MAX_BODY_LINES
     ]
-    assert not prints + writes
+
+
+def prints(source: Source) -> Iterable[object]:
+    if source.path.name in PRINTS:
+        return []
+    calls = [node.lineno for node in source.nodes if isinstance(node, ast.Name) and node.id == "print"]
+    return calls + [
+        node.lineno for node in source.attributes if node.attr == "write" and ast.unparse(node.value).startswith("sys.")
+    ]
 
 
 def caught(handler: ast.ExceptHandler) -> set[str]:
@@ -85,28 +101,24 @@ def caught(handler: ast.ExceptHandler) -> set[str]:
     return {part.id for part in parts if isinstance(part, ast.Name)} or {"?"}
 
 
-@pytest.mark.parametrize("path", CODE, ids=name_of)
-def test_broad_excepts_say_why(path: Path) -> None:
-    lines = path.read_text(encoding="utf-8").splitlines()
-    unexplained = [
+def unexplained_broad_excepts(source: Source) -> Iterable[object]:
+    return [
         handler.lineno
-        for handler in ast.walk(tree_of(path))
+        for handler in source.nodes
         if isinstance(handler, ast.ExceptHandler)
         and (not caught(handler) or caught(handler) & BROAD)
-        and not any(REASON.search(line) for line in lines[handler.lineno - 2 : handler.lineno])
+        and not any(REASON.search(line) for line in source.lines[handler.lineno - 2 : handler.lineno])
     ]
-    assert not unexplained
 
 
-@pytest.mark.parametrize("path", sorted((PACKAGE / "core").rglob("*.py")), ids=name_of)
-def test_core_has_no_clock_and_no_global_random(path: Path) -> None:
+def clocks_and_global_random(source: Source) -> Iterable[object]:
     imported = set()
-    for node in ast.walk(tree_of(path)):
+    for node in source.nodes:
         if isinstance(node, ast.Import):
             imported |= {alias.name.split(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
             imported.add(node.module.split(".")[0])
-    assert not imported & WALL_CLOCK
+    return imported & WALL_CLOCK
 
 
 def public(body: list[ast.stmt], prefix: str = "") -> Iterator[tuple[str, Function | ast.ClassDef]]:
@@ -128,35 +140,47 @@ def explained_elsewhere(node: ast.stmt) -> bool:
     return False
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_public_names_have_docstrings(path: Path) -> None:
-    tree = tree_of(path)
-    bare = [
-        name for name, node in public(tree.body) if ast.get_docstring(node) is None and not explained_elsewhere(node)
+def bare_names(source: Source) -> Iterable[object]:
+    module = [] if ast.get_docstring(source.tree) else ["the module itself"]
+    return module + [
+        name
+        for name, node in public(source.tree.body)
+        if ast.get_docstring(node) is None and not explained_elsewhere(node)
     ]
-    assert ast.get_docstring(tree), "the module itself"
-    assert not bare
 
 
-@pytest.mark.parametrize("path", [*CODE, *PROSE], ids=name_of)
-def test_nothing_is_left_open_and_no_machine_is_named(path: Path) -> None:
-    text = path.read_text(encoding="utf-8")
-    words = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" + "Error"))
-    places = "|".join(f"/{place}/" for place in ("work", "farm", "root", "home"))
-    found = [line for line in text.splitlines() if re.search(rf"\b({words})\b|(?<![\w.$])({places})", line)]
-    assert not found
+def open_ends_and_machines(source: Source) -> Iterable[object]:
+    return [line for line in source.lines if LEFT_OPEN.search(line)]
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_lines_are_split_as_python_counts_them(path: Path) -> None:
-    calls = {node.attr for node in ast.walk(tree_of(path)) if isinstance(node, ast.Attribute)}
-    assert "splitlines" not in calls, "source_lines"
+def other_line_splits(source: Source) -> Iterable[object]:
+    """Lines are split as Python counts them: by `source_lines`."""
+    return [node.lineno for node in source.attributes if node.attr == "splitlines"]
 
 
-@pytest.mark.parametrize("path", TESTS, ids=name_of)
-def test_no_test_is_skipped(path: Path) -> None:
-    marks = {node.attr for node in ast.walk(tree_of(path)) if isinstance(node, ast.Attribute)}
-    assert not marks & {"skip", "xfail"}
+def skipped_tests(source: Source) -> Iterable[object]:
+    return [node.lineno for node in source.attributes if node.attr in ("skip", "xfail")]
+
+
+RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
+    "files are small": (too_many_lines, CODE),
+    "functions are small": (long_functions, CODE),
+    "broad excepts say why": (unexplained_broad_excepts, CODE),
+    "public names have docstrings": (bare_names, PACKAGE),
+    "nothing is left open and no machine is named": (open_ends_and_machines, [*CODE, *PROSE]),
+    "lines are split by source_lines": (other_line_splits, PACKAGE),
+    "commands print by echo": (prints, python_files("tuisim/commands")),
+    "core has no clock and no global random": (clocks_and_global_random, python_files("tuisim/core")),
+    "no test is skipped": (skipped_tests, TESTS),
+}
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_rule(rule: str) -> None:
+    find, paths = RULES[rule]
+    found = {str(path.relative_to(ROOT)): list(find(source(path))) for path in paths}
+    assert paths
+    assert {name: places for name, places in found.items() if places} == {}
 
 
 def tool(*words: str) -> str:

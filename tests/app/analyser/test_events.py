@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
-from tests.app.analyser.test_analyser_screen import opened, text_of, typed
+from tests.app.analyser.test_screen import opened, text_of, typed
 from tests.app.app_help import LOGS, program, until
 from tuisim.analysis.events import events_of, marks, thresholds_of
 from tuisim.analysis.source import LogRequest

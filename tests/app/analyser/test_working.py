@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
-from tests.app.analyser.test_analyser_screen import opened, text_of, typed
+from tests.app.analyser.test_screen import opened, text_of, typed
 from tests.app.app_help import until
 from tuisim.analysis import table as rows_module
 from tuisim.analysis.model import Model

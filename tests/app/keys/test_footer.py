@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.app.analyser.test_analyser_screen import text_of
+from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import LOGS, program, ready, settings, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.actions.table import Situation, working
