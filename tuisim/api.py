@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -65,23 +64,9 @@ class SimulatedRun:
 
     def picture(self) -> Image:
         """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
+        from tuisim.charts.world_image import world_at_end
+
         return world_at_end(self.stored)
-
-
-def world_at_end(run: StoredRun) -> Image:
-    """Return the world at the end of a run, or at the latest tick of a running one, as a Pillow image.
-
-    Raises:
-        LogError: the recording is damaged, or the mat no longer exists.
-    """
-    from tuisim.charts.world_image import pen_trace, world_picture
-    from tuisim.config.mat_cache import mat_pixels
-    from tuisim.runs.mat import mat_files
-
-    last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
-    # A damaged record may have no valid pose: the robot is then omitted.
-    pose = last.pose if last and math.isfinite(last.x_mm + last.y_mm + last.heading_deg) else None
-    return world_picture(run.spec, mat_pixels(mat_files(run)), pose, (trace,))
 
 
 def _by_name() -> dict[str, Option]:

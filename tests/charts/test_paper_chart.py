@@ -11,11 +11,10 @@ import pytest
 from rich.cells import cell_len
 
 from tests.app.analyser.logs import long_log, model_of
+from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
-from tuisim.charts.figure import View, chart_of
+from tuisim.charts.files import image_of, svg_of
 from tuisim.charts.layout import COLORS, Rule, Stroke, laid_out
-from tuisim.charts.png import image_of
-from tuisim.charts.svg import svg_of
 from tuisim.charts.text import text_of
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log

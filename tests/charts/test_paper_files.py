@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
+from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.source import LogRequest, OpenedLog
-from tuisim.charts.figure import View
 from tuisim.charts.files import CHART_FORMATS, save_chart
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.log import Log
@@ -27,7 +28,7 @@ def test_every_format_has_a_size_of_its_own(tmp_path: Path, suffix: str, facets:
     written = []
     for name, size in (("own", None), ("least", kind.least), ("least_again", kind.least)):
         target = tmp_path / f"{name}{suffix.upper()}"
-        save_chart(model_of(long_log()), View(facets=facets), target, size)
+        save_chart(partial(chart_of, model_of(long_log()), View(facets=facets)), target, size)
         written.append(target.read_bytes())
     assert len(written[0]) > len(written[1]) > 50
     assert written[1] == written[2]
@@ -43,7 +44,7 @@ def test_a_failed_chart_leaves_what_was_there(tmp_path: Path, suffix: str, monke
     target.write_text("old")
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(ExportError, match=f"cannot write .*x{suffix}: No space left on device"):
-        save_chart(model_of(long_log()), View(), target)
+        save_chart(partial(chart_of, model_of(long_log()), View()), target)
     assert (target.read_text(), list(tmp_path.iterdir())) == ("old", [target])
 
 

@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import atan2, degrees, hypot
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from tests.charts.test_paper_chart import log_of
 from tests.running import Run
+from tuisim.analysis.chart import View
+from tuisim.analysis.chart import chart_of as plotted
 from tuisim.app.render.viewport import whole_field
+from tuisim.charts.files import svg_of
+from tuisim.charts.layout import Chart, Stroke, Words, laid_out
 from tuisim.charts.world_image import (
-    CHART_SIZE,
     COLORED,
-    chart_picture,
     draw_robot,
     pen_points_mm,
     pen_trace,
@@ -29,25 +32,33 @@ from tuisim.config.presets import ROBOTS
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
+from tuisim.notebook.display import CHART_SIZE, chart_of
 from tuisim.runs.samples import Sample
 
-BLUE = (31, 119, 180)
+Kind = TypeVar("Kind", Stroke, Words)
 
 
 def samples(count: int, peak: float) -> list[Sample]:
     return [Sample("Grey", peak if at == count // 3 else at % 7, at / count, at, at, 1) for at in range(count)]
 
 
-def blue_rows(count: int, peak: float) -> set[int]:
-    pixels = np.asarray(chart_picture(samples(count, peak)))[30:]
-    return set(np.flatnonzero((pixels == BLUE).all(axis=2).any(axis=1)).tolist())
+def drawn(chart: Chart, kind: type[Kind]) -> list[Kind]:
+    return [shape for shape in laid_out(chart, *CHART_SIZE, titled=False).shapes if isinstance(shape, kind)]
 
 
 def test_a_single_peak_among_many_samples_is_seen() -> None:
-    # From the frame's upper edge to its lower one, as of few samples.
-    rows = blue_rows(50_000, 100.0)
-    assert rows == blue_rows(900, 100.0)
-    assert len(rows) > CHART_SIZE[1] / 2
+    few, many = (drawn(chart_of(samples(count, 100.0)), Stroke)[-1].points[:, 1] for count in (900, 50_000))
+    assert [many.min(), many.max()] == [few.min(), few.max()]
+    assert many.max() - many.min() > CHART_SIZE[1] / 2
+
+
+def test_samples_are_drawn_as_log_plot_draws_them() -> None:
+    times, values = np.arange(5000) / 100, np.sin(np.arange(5000)) * 90
+    here = chart_of([Sample("Gyro", v, t, 0, 0, 1) for t, v in zip(times, values, strict=True)])
+    model = log_of({"time": times.tolist(), "Gyro": values.tolist()})
+    there = plotted(model, View(), *CHART_SIZE)
+    drawings = [laid_out(chart, *CHART_SIZE, titled=False) for chart in (here, there)]
+    assert svg_of(replace(drawings[0], title="")) == svg_of(replace(drawings[1], title=""))
 
 
 def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
@@ -148,23 +159,19 @@ def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
         assert len(np.unique(border, axis=0)) == 1
 
 
-def rows_of_labels(values: list[float]) -> int:
-    """How many labels a chart of values has on its left."""
-    rows = [Sample("Grey", value, at / 10, at, at, 1) for at, value in enumerate(values)]
-    left = np.asarray(chart_picture(rows))[:, :56]
-    inked = np.flatnonzero((left < 200).any(axis=(1, 2)))
-    return 1 + int((np.diff(inked) > 2).sum())
-
-
 @pytest.mark.parametrize(
-    ("values", "count"),
+    "values",
     [
-        pytest.param([100.0] * 5, 1, id="constant"),
-        pytest.param([0.0] * 5, 1, id="nothing"),
-        pytest.param([1e300], 1, id="huge"),
-        pytest.param([0.0, 100.0], 6, id="percent"),
-        pytest.param([-1e308, 1e308], 5, id="everything"),
+        pytest.param([100.0] * 5, id="constant"),
+        pytest.param([0.0] * 5, id="nothing"),
+        pytest.param([1e300], id="huge"),
+        pytest.param([0.0, 100.0], id="percent"),
+        pytest.param([-1e308, 1e308], id="everything"),
+        pytest.param([-1e149, 1e149], id="almost everything"),
     ],
 )
-def test_each_label_of_a_chart_stands_for_another_value(values: list[float], count: int) -> None:
-    assert rows_of_labels(values) == count
+def test_each_label_of_a_chart_stands_for_another_value(values: list[float]) -> None:
+    rows = [Sample("Grey", value, at / 10, at, at, 1) for at, value in enumerate(values)]
+    labels = [words.text for words in drawn(chart_of(rows), Words) if words.anchor == "end"]
+    assert len(labels) == len(set(labels)) >= 3
+    assert max(map(len, labels)) < 12

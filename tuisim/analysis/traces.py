@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.charts.axes import Limits
-from tuisim.charts.decimation import Pyramid
-from tuisim.charts.traces import Trace, Traces
+from tuisim.charts.traces import Pyramid, Trace, Traces
 from tuisim.logs.signals import value_at
 from tuisim.runs.arrays import FloatArray
 

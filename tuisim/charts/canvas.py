@@ -14,8 +14,8 @@ from rich.style import Style
 
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
-from tuisim.charts.decimation import min_max
 from tuisim.charts.text_runs import Run
+from tuisim.charts.traces import min_max
 from tuisim.core.css_colors import Rgb
 from tuisim.runs.arrays import FloatArray
 

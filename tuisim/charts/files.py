@@ -1,21 +1,26 @@
-"""Charts as files; the suffix selects the format."""
+"""Charts as files: SVG, PNG and text; the suffix selects the format."""
 
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.atomic import replacing
-from tuisim.charts.figure import Chart, View, chart_of
-from tuisim.charts.layout import laid_out
+from tuisim.charts.layout import FONT_PX, Chart, Drawing, Rule, Shade, Shape, Stroke, Words, laid_out
+from tuisim.core.css_colors import Rgb
 from tuisim.errors import ExportError
 from tuisim.logs.export import check_place
 
 if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+    from PIL.ImageFont import FreeTypeFont
+    from PIL.ImageFont import ImageFont as BitmapFont
 
 Size = tuple[int, int]
 
@@ -36,14 +41,10 @@ class ChartFormat:
 
 
 def _svg(chart: Chart, size: Size) -> bytes:
-    from tuisim.charts.svg import svg_of
-
     return svg_of(laid_out(chart, *size)).encode()
 
 
 def _png(chart: Chart, size: Size) -> bytes:
-    from tuisim.charts.png import image_of
-
     content = io.BytesIO()
     image_of(laid_out(chart, *size)).save(content, "png")
     return content.getvalue()
@@ -80,12 +81,11 @@ def format_of(path: Path) -> ChartFormat:
     return found
 
 
-def save_chart(model: Model, view: View, path: Path, size: Size | None = None) -> None:
-    """Write a model's chart to a file; one that is there is replaced.
+def save_chart(chart_of: Callable[[int, int], Chart], path: Path, size: Size | None = None) -> None:
+    """Write a chart to a file; one that is there is replaced.
 
     Args:
-        model: The log.
-        view: How it is looked at.
+        chart_of: Returns the chart for a width and a height, in pixels or in parts of characters.
         path: The suffix says the format, one of `CHART_FORMATS`.
         size: Width and height in the format's unit; None for its own.
 
@@ -95,7 +95,7 @@ def save_chart(model: Model, view: View, path: Path, size: Size | None = None) -
     """
     kind = format_of(path)
     width, height = size or kind.size
-    chart = chart_of(model, view, width * kind.finer[0], height * kind.finer[1])
+    chart = chart_of(width * kind.finer[0], height * kind.finer[1])
     if chart.facets and size is None and kind.unit == "pixels":
         height = max(height, 80 + FACET_PX * len(chart.lines))
     write_whole(path, kind.write(chart, (width, height)))
@@ -112,3 +112,103 @@ def write_whole(path: Path, content: bytes) -> None:
             handle.write(content)
     except OSError as error:
         raise ExportError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+_SVG_INK, _SVG_PAPER = "#222", "#fff"
+_FONT = "system-ui, sans-serif"
+_NOWHERE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
+"""Control characters, halves of surrogate pairs, and what is no character at all."""
+
+
+def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
+    """Return a picture as SVG.
+
+    Args:
+        drawing: The picture.
+        inside: Whether it becomes a part of a page, whose colours it then takes, instead of a file.
+    """
+    size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'
+    look = f'font-family="{_FONT}" font-size="{FONT_PX}" role="img"'
+    ink = "" if inside else f' color="{_SVG_INK}"'
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} {look}{ink}>',
+        f"<title>{clean(drawing.title)}</title>",
+    ]
+    if not inside:
+        parts.append(f'<rect width="100%" height="100%" fill="{_SVG_PAPER}"/>')
+    parts += [_svg_shape(shape) for shape in drawing.shapes]
+    return "\n".join([*parts, "</svg>", ""])
+
+
+def clean(text: str) -> str:
+    """Return a text as XML and HTML take it; characters that have no place in either become a question mark."""
+    return escape(_NOWHERE.sub("\ufffd", text))
+
+
+def _hex(rgb: Rgb) -> str:
+    return f"#{bytes(rgb).hex()}"
+
+
+def _svg_shape(shape: Shape) -> str:
+    match shape:
+        case Rule():
+            ends = f'x1="{shape.x1:.1f}" y1="{shape.y1:.1f}" x2="{shape.x2:.1f}" y2="{shape.y2:.1f}"'
+            faint = ' stroke-opacity="0.15"' if shape.faint else ""
+            return f'<line {ends} stroke="currentColor"{faint}/>'
+        case Words():
+            place = f'x="{shape.x:.1f}" y="{shape.y:.1f}" dy="0.35em" text-anchor="{shape.anchor}"'
+            color = _hex(shape.rgb) if shape.rgb else "currentColor"
+            strong = ' font-weight="bold"' if shape.strong else ""
+            return f'<text {place} fill="{color}"{strong}>{clean(shape.text)}</text>'
+        case Shade():
+            place = f'x="{shape.x:.1f}" y="{shape.y:.1f}" width="{shape.width:.1f}" height="{shape.height:.1f}"'
+            return f'<rect {place} fill="currentColor" fill-opacity="0.08"/>'
+        case Stroke():
+            points = [f"{x:.1f} {y:.1f}" for x, y in shape.points.tolist()]
+            color = _hex(shape.rgb)
+            if shape.dots:
+                # A line of no length with round ends is a point, and a few letters long.
+                path = "".join(f"M{point}h0" for point in points)
+                return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="5" stroke-linecap="round"/>'
+            path = "M" + "L".join(points)
+            return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.8" stroke-linejoin="round"/>'
+
+
+_INK, _FAINT, _SHADE = (34, 34, 34), (222, 222, 222), (238, 238, 238)
+_FINE = 2
+"""Times as large it is drawn and then reduced, for smooth lines."""
+_ANCHORS = {"start": "lm", "middle": "mm", "end": "rm"}
+
+
+def image_of(drawing: Drawing) -> Image:
+    """Return a picture as a Pillow image, on white."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    image = Image.new("RGB", (drawing.width * _FINE, drawing.height * _FINE), "white")
+    draw = ImageDraw.Draw(image)
+    font = ImageFont.load_default(FONT_PX * _FINE)
+    for shape in drawing.shapes:
+        _paint(draw, shape, font)
+    return image.resize((drawing.width, drawing.height), Image.Resampling.LANCZOS)
+
+
+def _paint(draw: ImageDraw, shape: Shape, font: FreeTypeFont | BitmapFont) -> None:
+    match shape:
+        case Rule():
+            ends = [end * _FINE for end in (shape.x1, shape.y1, shape.x2, shape.y2)]
+            draw.line(ends, fill=_FAINT if shape.faint else _INK, width=_FINE)
+        case Words():
+            x, y = shape.x * _FINE, shape.y * _FINE
+            # The font has one weight: what is strong is written once more, half a pixel beside.
+            for place in ((x, y), (x + 1, y))[: 1 + shape.strong]:
+                draw.text(place, shape.text, fill=shape.rgb or _INK, font=font, anchor=_ANCHORS[shape.anchor])
+        case Shade():
+            corners = (shape.x, shape.y, shape.x + shape.width, shape.y + shape.height)
+            draw.rectangle([corner * _FINE for corner in corners], fill=_SHADE)
+        case Stroke():
+            points = [(x * _FINE, y * _FINE) for x, y in shape.points.tolist()]
+            if not shape.dots:
+                draw.line(points, fill=shape.rgb, width=2 * _FINE, joint="curve")
+            for x, y in points if shape.dots else ():
+                reach = 2.5 * _FINE
+                draw.ellipse((x - reach, y - reach, x + reach, y + reach), fill=shape.rgb)

@@ -1,4 +1,4 @@
-"""Layout of a chart image in pixels; `svg` and `png` only draw it."""
+"""A chart as data, and its layout in pixels, which `charts.files` writes as SVG and PNG."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TypeAlias
 import numpy as np
 
 from tuisim.charts.axes import Limits, label, ticks, value_limits
-from tuisim.charts.figure import Chart, Line, unit_of
 from tuisim.core.css_colors import Rgb
-from tuisim.logs.units import begins_at_zero
+from tuisim.errors import printable
+from tuisim.logs import units
 from tuisim.runs.arrays import FloatArray
 
 COLORS: tuple[Rgb, ...] = (
@@ -28,6 +28,65 @@ _PAD, _LINE_PX = 10, 20
 _FACET_GAP_PX = 12
 _LONG = 9
 """Labels with more characters than that are written with a power of ten."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One variable."""
+
+    name: str
+    xs: FloatArray
+    """Shape (n,), finite; increasing except for a path."""
+    ys: FloatArray
+    """Shape (n,), finite."""
+    number: int
+    """Index that selects colour and marker."""
+    other_scale: bool = False
+    """Whether it uses the right scale."""
+
+    @property
+    def label(self) -> str:
+        """Its name, with the unit if the name has one."""
+        return with_unit(self.name)
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A highlighted range of the x axis, with a label."""
+
+    start: float
+    stop: float
+    text: str
+    name: str
+    """Variable that it is about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """The data of a whole chart."""
+
+    title: str
+    lines: tuple[Line, ...]
+    x_limits: Limits
+    x_label: str
+    facets: bool = False
+    marks: bool = False
+    path: bool = False
+    """Whether one variable is drawn against another."""
+    spans: tuple[Span, ...] = ()
+    zoomed: bool = False
+    """Whether the time range is zoomed: the vertical axis then fits the visible data."""
+
+
+def with_unit(name: str) -> str:
+    """Return a variable's name as it is written beside a chart."""
+    unit = unit_of(name)
+    return printable(f"{name} ({unit})" if unit else name)
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of a variable from its name, empty if there is none."""
+    return units.unit_of(name.partition(" #")[0]).sign
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +268,7 @@ def _limits(lines: Sequence[Line], zoomed: bool) -> Limits:
     ends = [(line.name, float(line.ys.min()), float(line.ys.max())) for line in lines if len(line.ys)]
     if not ends:
         return 0.0, 1.0
-    from_zero = not zoomed and any(begins_at_zero(*one) for one in ends)
+    from_zero = not zoomed and any(units.begins_at_zero(*one) for one in ends)
     return value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
 
 

@@ -6,8 +6,7 @@ from rich.style import Style
 from rich.text import Text
 
 from tuisim.charts.canvas import BRAILLE, xy_lines
-from tuisim.charts.figure import Chart, Line
-from tuisim.charts.layout import COLORS, color_of
+from tuisim.charts.layout import COLORS, Chart, Line, color_of
 from tuisim.charts.text_chart import ChartPainter, ChartState
 from tuisim.charts.text_runs import Run
 from tuisim.charts.traces import Trace, Traces

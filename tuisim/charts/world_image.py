@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.charts.axes import Limits, label, ticks, value_limits
 from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
@@ -19,11 +17,12 @@ from tuisim.core.sensors.ultrasonic import rays_mm
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
 from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.runs.arrays import FloatArray
-from tuisim.runs.samples import Sample
 
 if TYPE_CHECKING:
     from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
+
+    from tuisim.runs.run_folder import StoredRun
 
 Pixels = npt.NDArray[np.uint8]
 """Shape (height, width, 3): red, green, blue."""
@@ -199,23 +198,12 @@ def _blend(target: Pixels, parts: npt.NDArray[np.intp], colors: RobotColors, opa
 MM_PER_PX = 3
 """Scale of the world's picture."""
 
-CHART_SIZE = (760, 300)
-"""Width and height of the chart in pixels."""
-
 ARRAY_PX = 6
 """Side of one sensor pixel in the arrays' picture."""
 
-_TRACE_COLORS = ((31, 119, 180), (255, 127, 14), (44, 160, 44), (214, 39, 40), (148, 103, 189), (140, 86, 75))
 _OBSTACLE, _OBSTACLE_EDGE, _RAY = (150, 150, 160), (20, 20, 20), (230, 120, 0)
 _RIM, _FRAME = (232, 234, 238), (70, 74, 82)
 _FRAME_PX = 2
-_MARGIN_LEFT, _MARGIN = 64, 24
-_LETTERS_PX = 12
-_MOST = 1e150
-"""Larger values are clipped to this limit: the difference of two such numbers may overflow."""
-_LONG = 8
-"""Labels with more characters than that are written with a power of ten."""
-
 _FIELD_PX = (FIELD_WIDTH_MM // MM_PER_PX, FIELD_HEIGHT_MM // MM_PER_PX)
 
 Point = tuple[float, float]
@@ -347,6 +335,21 @@ def world_picture(
     return Image.fromarray(pixels)
 
 
+def world_at_end(run: StoredRun) -> Image:
+    """Return the world at the end of a run, or at the latest tick of a running one, as a Pillow image.
+
+    Raises:
+        LogError: the recording is damaged, or the mat no longer exists.
+    """
+    from tuisim.config.mat_cache import mat_pixels
+    from tuisim.runs.mat import mat_files
+
+    last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
+    # A damaged record may have no valid pose: the robot is then omitted.
+    pose = last.pose if last and math.isfinite(last.x_mm + last.y_mm + last.heading_deg) else None
+    return world_picture(run.spec, mat_pixels(mat_files(run)), pose, (trace,))
+
+
 def _draw_rays(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:
     sensor = spec.robot.ultrasonic
     assert sensor is not None
@@ -379,102 +382,3 @@ def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:
         whole.paste(tile, (left, 0))
         left += tile.width + 12
     return whole
-
-
-def chart_picture(samples: Iterable[Sample]) -> Image:
-    """Return the samples over simulated time, one line a name."""
-    from PIL import Image, ImageDraw, ImageFont
-
-    traces: dict[str, list[Point]] = {}
-    for sample in samples:
-        traces.setdefault(sample.name, []).append((sample.time_s, sample.value))
-    picture = Image.new("RGB", CHART_SIZE, "white")
-    draw = ImageDraw.Draw(picture)
-    draw.font = ImageFont.load_default(_LETTERS_PX)
-    width, height = CHART_SIZE
-    draw.rectangle((_MARGIN_LEFT, _MARGIN, width - _MARGIN, height - _MARGIN), outline="black")
-    if not traces:
-        draw.text((_MARGIN_LEFT + 8, _MARGIN + 8), "no samples", fill="black")
-        return picture
-    traces = {name: _drawable(_thinned(trace)) for name, trace in traces.items()}
-    points = [point for trace in traces.values() for point in trace]
-    lows, highs = [min(axis) for axis in zip(*points, strict=True)], [max(axis) for axis in zip(*points, strict=True)]
-    frame = _ChartFrame.around((lows[0], highs[0]), (lows[1], highs[1]))
-    _draw_axes(draw, frame)
-    _draw_traces(draw, traces, frame)
-    return picture
-
-
-@dataclass(frozen=True, slots=True)
-class _ChartFrame:
-    """The rectangle that the samples are drawn in, and which values its edges stand for."""
-
-    x: Limits
-    y: Limits
-    x_ticks: tuple[float, ...]
-    y_ticks: tuple[float, ...]
-
-    @classmethod
-    def around(cls, x: Limits, y: Limits) -> _ChartFrame:
-        """The frame of samples in these limits."""
-        # A single moment stands at the left; values that are all the same have one label, in the middle.
-        end = x[1] if x[1] > x[0] else x[0] + 1.0
-        limits, constant = value_limits(*y), y[0] == y[1]
-        if constant:
-            half = y[0] - limits[0]
-            limits = (y[0] - half, y[0] + half)
-        y_ticks = (y[0],) if constant else tuple(ticks(limits, 5))
-        return cls((x[0], end), limits, tuple(ticks((x[0], end), 8)), y_ticks)
-
-    def to_px(self, x: float, y: float) -> Point:
-        """Return where a sample is in the picture."""
-        width, height = CHART_SIZE
-        share_x, share_y = (x - self.x[0]) / (self.x[1] - self.x[0]), (y - self.y[0]) / (self.y[1] - self.y[0])
-        return (_MARGIN_LEFT + share_x * (width - _MARGIN - _MARGIN_LEFT),
-                height - _MARGIN - share_y * (height - 2 * _MARGIN))  # fmt: skip
-
-
-def _draw_axes(draw: ImageDraw, frame: _ChartFrame) -> None:
-    """Write what the ticks stand for: values at the left, simulated seconds below."""
-    for value in frame.y_ticks:
-        y_px = frame.to_px(frame.x[0], value)[1]
-        draw.line((_MARGIN_LEFT - 4, y_px, _MARGIN_LEFT, y_px), fill="black")
-        draw.text((_MARGIN_LEFT - 8, y_px), _tick_label(value, frame.y_ticks), fill="black", anchor="rm")
-    for second in frame.x_ticks:
-        x_px, y_px = frame.to_px(second, frame.y[0])
-        unit = " s" if second == frame.x_ticks[-1] else ""
-        draw.line((x_px, y_px, x_px, y_px + 4), fill="black")
-        draw.text((x_px, y_px + 6), _tick_label(second, frame.x_ticks) + unit, fill="black", anchor="mt")
-
-
-def _tick_label(value: float, places: Sequence[float]) -> str:
-    text = label(value, places[1] - places[0]) if len(places) > 1 else f"{value:.6g}"
-    return text if len(text) <= _LONG else f"{value:.2e}"
-
-
-def _thinned(trace: list[Point]) -> list[Point]:
-    """Return what there is to see of a trace: of each stretch narrower than a pixel its lowest and highest point."""
-    step = len(trace) // (2 * CHART_SIZE[0])
-    if step < 2:
-        return trace
-    kept = trace[:1]
-    for at in range(0, len(trace), step):
-        stretch = sorted(trace[at : at + step], key=itemgetter(1))
-        kept += sorted((stretch[0], stretch[-1]))
-    return [*kept, trace[-1]]
-
-
-def _drawable(trace: list[Point]) -> list[Point]:
-    return [(x, min(max(y, -_MOST), _MOST)) for x, y in trace]
-
-
-def _draw_traces(draw: ImageDraw, traces: Mapping[str, list[Point]], frame: _ChartFrame) -> None:
-    left_px = _MARGIN_LEFT + 8.0
-    for order, (name, trace) in enumerate(traces.items()):
-        color = _TRACE_COLORS[order % len(_TRACE_COLORS)]
-        line = [frame.to_px(x, y) for x, y in trace]
-        draw.line(line, fill=color, width=2)
-        for x_px, y_px in line[:: max(1, len(line) // 200)]:
-            draw.ellipse((x_px - 2, y_px - 2, x_px + 2, y_px + 2), fill=color)
-        draw.text((left_px, 4), name, fill=color)
-        left_px += draw.textlength(name) + 20

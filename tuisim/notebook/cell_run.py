@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import json
+import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby, islice
-from typing import Any
+from types import FrameType, TracebackType
+from typing import Any, TypeVar
 
 from tuisim.charts.world_image import PenTrace, pen_trace
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, counted
 from tuisim.notebook.display import Scene, Stage, start_record
-from tuisim.notebook.interrupt import Interruption
 from tuisim.protocol import Answer, Reply
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.records import OutputRow, Stream, line_of
@@ -46,6 +48,7 @@ FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
 """Prefixes of lines for the responder."""
 
 Responder = Callable[[str], object]
+Result = TypeVar("Result")
 _SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
 
 
@@ -116,6 +119,48 @@ def told_end(run: StoredRun, *, hurry: bool = False) -> str:
         return status
     samples = sum(1 for _ in samples_of(run.output.rows()))
     return f"{status} · {counted(samples, 'sample')}"
+
+
+class Interruption:
+    """Counts interrupts instead of raising at any point, such as between starting and storing a child.
+
+    Only where the code of others runs are they what they always are, see `call`.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        """Number of interrupts."""
+        self._allowed = False
+        self._before: Any = None
+
+    def __enter__(self) -> Interruption:
+        # Python lets signals come to the main thread only.
+        if threading.current_thread() is threading.main_thread():
+            self._before = signal.signal(signal.SIGINT, self._strike)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _strike(self, _number: int, _frame: FrameType | None) -> None:
+        self.count += 1
+        if self._allowed:
+            raise KeyboardInterrupt
+
+    def call(self, act: Callable[[], Result]) -> Result | None:
+        """Call a user's function, which an interrupt ends at once. Return its result, None if interrupted."""
+        self._allowed = True
+        try:
+            return None if self.count else act()
+        except KeyboardInterrupt:
+            # It may also have raised one by itself.
+            self.count = max(1, self.count)
+            return None
+        finally:
+            self._allowed = False
 
 
 class _Follower:

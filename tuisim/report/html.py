@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tuisim.charts.svg import clean
+from tuisim.charts.files import clean
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2329; --soft: #5c6670; --paper: #fff; --rule: #d5dade; --area: #f4f6f8; }

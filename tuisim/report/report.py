@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import math
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim.charts.figure import Chart, Span, View, chart_of
-from tuisim.charts.files import FACET_PX, write_whole
-from tuisim.charts.layout import laid_out
-from tuisim.charts.svg import clean, svg_of
+from tuisim.analysis.chart import View, chart_of
+from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
+from tuisim.charts.layout import Chart, Span, laid_out
+from tuisim.charts.world_image import world_at_end, world_view
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.simulation import NS_PER_S
+from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
 from tuisim.logs.export import check_place
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.statistics import QUANTILES
 from tuisim.protocol import SetNoise
 from tuisim.report.html import code, facts, page, paragraph, section, table
-from tuisim.report.world import as_source, way_picture
 from tuisim.runs.arrays import FloatArray
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
+    from PIL.Image import Image
+
     from tuisim.analysis.model import Model
     from tuisim.analysis.source import OpenedLog
     from tuisim.logs.log import Log
@@ -35,6 +39,7 @@ SUFFIXES = (".html", ".htm")
 MOST_BANDS = 300
 """Rows of the table of bands; what has more of them has none that a reader could use."""
 _WIDTH_PX = 960
+_WAY, _HALO = (230, 90, 0), (255, 255, 255)
 
 
 def default_name(subject: OpenedLog) -> str:
@@ -123,14 +128,44 @@ def _error(run: StoredRun) -> str:
 
 def _world(run: StoredRun, *, many: bool) -> str:
     try:
-        picture = way_picture(run)
+        picture = _way_picture(run)
     except LogError as error:
         return paragraph(f"No picture: {error}", soft=True)
     mat = run.spec.world.background
     said = f"run {run.number}: " if many else ""
     text = clean(f"{said}the mat {mat} and the robot where it stood at the end; its way in orange, from the ring")
     size = f'width="{picture.width}" height="{picture.height}"'
-    return f'<figure><img src="{as_source(picture)}" {size} alt="{text}"><figcaption>{text}</figcaption></figure>'
+    return f'<figure><img src="{_as_source(picture)}" {size} alt="{text}"><figcaption>{text}</figcaption></figure>'
+
+
+def _way_picture(run: StoredRun) -> Image:
+    """Draw mat, obstacles, pen trace, robot, and the path of the axle's midpoint; a ring marks the start.
+
+    Raises:
+        LogError: the recording is damaged, or the mat cannot be found any more.
+    """
+    from PIL import ImageDraw
+
+    picture = world_at_end(run)
+    records = run.telemetry.array()
+    view = world_view(run.spec.robot)
+    way = [view.to_px(x, y) for x, y in zip(records["x_mm"].tolist(), records["y_mm"].tolist(), strict=True)]
+    draw = ImageDraw.Draw(picture)
+    drawn = bool((records["flags"] & FLAG_PEN_DOWN).any())
+    # The halo makes it seen on bright and dark mats alike, but would cover what a pen drew along it.
+    for color, width in ((_HALO, 5), (_WAY, 2))[drawn:]:
+        if len(way) > 1:
+            draw.line(way, fill=color, width=width, joint="curve")
+        for x, y in way[:1]:
+            draw.ellipse((x - 6, y - 6, x + 6, y + 6), outline=color, width=width)
+    return picture
+
+
+def _as_source(picture: Image) -> str:
+    """Return an image as a data URL."""
+    content = io.BytesIO()
+    picture.save(content, "png", optimize=True)
+    return f"data:image/png;base64,{base64.b64encode(content.getvalue()).decode()}"
 
 
 def _chart(model: Model) -> list[str]:

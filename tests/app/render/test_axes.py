@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tuisim.charts import axes
-from tuisim.charts.decimation import min_max
+from tuisim.charts.traces import min_max
 
 
 @pytest.mark.parametrize(

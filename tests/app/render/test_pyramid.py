@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tuisim.charts.canvas import seen_points, xy_lines
-from tuisim.charts.decimation import Pyramid
+from tuisim.charts.traces import Pyramid
 from tuisim.logs.statistics import summary_of
 
 TIMES = np.arange(200_000) / 1000.0

@@ -7,10 +7,11 @@ import re
 import shutil
 import sys
 from argparse import Namespace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim.charts.figure import View, chart_of
+from tuisim.analysis.chart import View, chart_of
 from tuisim.charts.files import CHART_FORMATS, Size, format_of, save_chart
 from tuisim.commands.echo import echo_chart, echo_error
 from tuisim.commands.logs.sources import names_of, the_source
@@ -43,7 +44,7 @@ def plot(arguments: Namespace) -> int:
     view = View(arguments.facets, arguments.marks, against=_against(log, model, arguments))
     _check_visible(model)
     if target:
-        save_chart(model, view, target, size)
+        save_chart(partial(chart_of, model, view), target, size)
     else:
         _show(model, view, size)
     hidden = [trace.name for trace in model.traces if not trace.on]

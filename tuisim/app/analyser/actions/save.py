@@ -26,7 +26,7 @@ _REPORTS = (("run-report.html", "program, world, chart, bands, statistics and no
 
 def ask_chart(screen: Analyser) -> None:
     """Ask for the file to save the chart to: with the time range and the variables as shown."""
-    from tuisim.charts.figure import View
+    from tuisim.analysis.chart import View, chart_of
     from tuisim.charts.files import save_chart
 
     model, look = screen.model, screen.chart.look
@@ -38,7 +38,8 @@ def ask_chart(screen: Analyser) -> None:
         # Text gets the size of the chart on the screen, if visible; images have their own size.
         shown = screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
         size = (shown.width, shown.height) if shown else None
-        save_chart(model, View(look.facets, look.marks, look.hold, look.against), target, size)
+        view = View(look.facets, look.marks, look.hold, look.against)
+        save_chart(partial(chart_of, model, view), target, size)
         screen.say(f"The chart is in {target}")
         screen.redraw_chart()
 

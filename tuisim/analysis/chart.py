@@ -1,26 +1,21 @@
-"""A chart as data: which points of which variables, and how they are to be drawn."""
+"""The chart of an analysis as data: which points of which variables, and how they are to be drawn."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.analysis.alignment import DISTANCE
+from tuisim.analysis.model import Model
+from tuisim.analysis.traces import LogTrace, held
 from tuisim.charts.axes import Limits, value_limits
 from tuisim.charts.canvas import seen_points
-from tuisim.charts.decimation import min_max
+from tuisim.charts.layout import Chart, Line, with_unit
+from tuisim.charts.traces import LARGEST, min_max
 from tuisim.errors import LogError, printable
-from tuisim.logs import units
 from tuisim.runs.arrays import FloatArray
 
-if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
-    from tuisim.analysis.traces import LogTrace
-
-_MOST = 1e150
-"""Values beyond this limit are dropped: the difference of two such numbers may overflow."""
 _DOTS_X, _DOTS_Y = 2, 4
 """Parts of a character cell that `seen_points` tells apart."""
 
@@ -37,65 +32,6 @@ class View:
     """Step lines."""
     against: tuple[str, str] | None = None
     """Pair of x and y to draw against each other, instead of all variables over time."""
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """One variable."""
-
-    name: str
-    xs: FloatArray
-    """Shape (n,), finite; increasing except for a path."""
-    ys: FloatArray
-    """Shape (n,), finite."""
-    number: int
-    """Index that selects colour and marker."""
-    other_scale: bool = False
-    """Whether it uses the right scale."""
-
-    @property
-    def label(self) -> str:
-        """Its name, with the unit if the name has one."""
-        return with_unit(self.name)
-
-
-@dataclass(frozen=True, slots=True)
-class Span:
-    """A highlighted range of the x axis, with a label."""
-
-    start: float
-    stop: float
-    text: str
-    name: str
-    """Variable that it is about."""
-
-
-@dataclass(frozen=True, slots=True)
-class Chart:
-    """The data of a whole chart."""
-
-    title: str
-    lines: tuple[Line, ...]
-    x_limits: Limits
-    x_label: str
-    facets: bool = False
-    marks: bool = False
-    path: bool = False
-    """Whether one variable is drawn against another."""
-    spans: tuple[Span, ...] = ()
-    zoomed: bool = False
-    """Whether the time range is zoomed: the vertical axis then fits the visible data."""
-
-
-def with_unit(name: str) -> str:
-    """Return a variable's name as it is written beside a chart."""
-    unit = unit_of(name)
-    return printable(f"{name} ({unit})" if unit else name)
-
-
-def unit_of(name: str) -> str:
-    """Return the unit of a variable from its name, empty if there is none."""
-    return units.unit_of(name.partition(" #")[0]).sign
 
 
 def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
@@ -132,8 +68,6 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
 
 
 def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
-    from tuisim.analysis.traces import held
-
     xs, ys = min_max(trace.times_s, trace.values, x_limits, columns)
     xs, ys = _clipped(*(held(xs, ys) if hold else (xs, ys)), x_limits)
     return Line(trace.name, xs, ys, number, trace.other_scale)
@@ -153,7 +87,7 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
     xs, ys = (model.along(name) for name in names)
     places = model.trace.places
     with np.errstate(invalid="ignore"):
-        good = (np.abs(xs) < _MOST) & (np.abs(ys) < _MOST)
+        good = (np.abs(xs) < LARGEST) & (np.abs(ys) < LARGEST)
         if model.limits:
             good &= (places >= model.limits[0]) & (places <= model.limits[1])
     if not good.any():
