@@ -19,8 +19,7 @@ from tuisim.app.setup.fields import find
 from tuisim.app.start_options import AppSettings
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings, settings_of
-from tuisim.config.world_writer import save_world
-from tuisim.config.worlds import load_world
+from tuisim.config.worlds import load_world, save_world
 from tuisim.core.profile import PROFILES
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.recording import Recording

@@ -10,8 +10,8 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.config.build import build_run_spec
+from tuisim.config.files import MAX_FILE_BYTES
 from tuisim.config.options import parse_words, settings_of
-from tuisim.config.reader import MAX_FILE_BYTES
 from tuisim.config.worlds import load_world
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
@@ -120,6 +120,21 @@ WRONG: dict[str, tuple[str, str]] = {
     "robot: gyro": ("gyro = 3", "gyro: must be a table of keys and values, got 3"),
     "robot: pen": ("[pen]\ncolor = 'reed'", "pen.color: no such colour 'reed' (did you mean red"),
     "robot: wide pen": ("[pen]\nwidth_mm = 201", "pen.width_mm: must be from 0.1 to 200, got 201.0"),
+    "robot: huge whole number": ("back_mm = -1" + "0" * 400, "back_mm: must be a number, got -10000"),
+    "robot: huge diameter": (EYE + "diameter_mm = " + "9" * 400, "color_sensors.left.diameter_mm: must be a whole num"),
+    "robot: date": ("back_mm = 2026-11-22", "back_mm: must be a number, got datetime.date(2026, 11, 22)"),
+    "robot: truth as a diameter": (EYE + "diameter_mm = true", "color_sensors.left.diameter_mm: must be a whole num"),
+    "robot: eye renamed": (EYE + "name = 'x'", "color_sensors.left.name: no such key (one of port, x_mm"),
+    "robot: eye without a table": ("color_sensors.left = 3", "color_sensors.left: must be a table of keys and values"),
+    "robot: gyro on": ("gyro = true", "gyro: must be a table of keys and values, got true"),
+    "robot: escape in a key": ('"a\\u001b[31m" = 1', "a\\x1b[31m: no such key (one of base, name"),
+    "robot: motor taken from a wheel": ("[motors]\noutB = false", "motors.outB: drives a wheel (it cannot be removed;"),
+    "robot: kind of motor": ("[motors]\noutA = 'huge'", "motors.outA: no such value 'huge' (one of large, medium)"),
+    "json robot: half a surrogate pair": ('{"back": "\\ud800"}', r"back: must be a number, got '\ud800'"),
+    "json robot: null": ('{"wheeldiameter": null}', "wheeldiameter: must be a number, got None"),
+    "json robot: 1e999": ('{"back": 1e999}', "back: must be a number, got inf"),
+    "json robot: colour": ('{"pen": {"color": "reed"}}', "pen.color: no such colour 'reed' (did you mean red"),
+    "json robot: not text": ('{"sensorNoise": "3"}', "sensorNoise: must be a whole number from 0 to 128, got '3'"),
     "robot: deep value": ("back_mm = " + "[" * 90 + "]" * 90, "back_mm: must be a number, got [[[[[[[...]]]]]]]"),
     "json robot: type": ('{"sensor1": {"x": "3"}}', "sensor1.x: must be a number, got '3'"),
     "json robot: range": ('{"wheelSpacing": -1}', "wheelSpacing: must be from 1 to 1000, got -1.0"),
@@ -143,9 +158,9 @@ WRONG: dict[str, tuple[str, str]] = {
     "profile: name": ("name = 'ev3'", "name: 'ev3' is the name of a built-in profile (choose another"),
     "profile: base": ("base = 'ev4'", "base: no such value 'ev4' (one of robolab, nbev3devsim, ev3)"),
     "profile: no ticks": ("tick_hz = 0", "tick_hz: must be a whole number from 1 to 1000, got 0"),
-    "profile: half ticks": ("tick_hz = 30.5", "tick_hz: must be a whole number, got 30.5"),
+    "profile: half ticks": ("tick_hz = 30.5", "tick_hz: must be a whole number from 1 to 1000, got 30.5"),
     "profile: negative": ("color_read_ms = -1", "color_read_ms: must be a number from 0 to 60000, got -1"),
-    "profile: NaN": ("max_speed_dps = nan", "max_speed_dps: must be a number, got nan"),
+    "profile: NaN": ("max_speed_dps = nan", "max_speed_dps: must be a number from 1 to 100000, got nan"),
     "profile: flag": ("solid = 'no'", "solid: must be true or false, got 'no'"),
     "profile: both": ("gyro_read_ms = 1\ngyro_read_ns = 1", "gyro_read_ms: is given together with gyro_read_ns"),
     "world: mat": ("background = 'Grey_band'", "background: no such mat 'Grey_band' (did you mean Grey_bands"),
@@ -158,13 +173,27 @@ WRONG: dict[str, tuple[str, str]] = {
     "world: obstacle inside": (BOX + "height_mm = 'a'", "obstacle[1].height_mm: must be a number, got 'a'"),
     "world: two sets": ("obstacles = 'Wall'\nobstacle = []", "obstacle: is given together with obstacles (give"),
     "world: profile": ("profile = 'ev4'", "profile: no such profile 'ev4' (did you mean ev3?"),
-    "world: profile inside": ("[profile]\ntick_hz = '30'", "profile.tick_hz: must be a whole number, got '30'"),
+    "world: profile inside": ("[profile]\ntick_hz = '30'", "profile.tick_hz: must be a whole number from 1 to 1000"),
     "world: noise": ("[noise]\nlight = 129", "noise.light: must be a whole number from 0 to 128, got 129"),
     "world: start": ("[start]\nx_mm = 1e9", "start.x_mm: must be a number from -10000 to 10000"),
     "world: seed": ("seed = -1", "seed: must be a whole number from 0 to 9223372036854775807, got -1"),
     "world: colour": ("[pen]\ncolor = '#12345'", "pen.color: no such colour '#12345' (any CSS colour name"),
     "world: walls": ("walls = 'on'", "walls: must be true or false, got 'on'"),
     "world: panel": ("panels = ['chart', 'char']", "panels[2]: no such value 'char' (one of output"),
+    "world: robot's type": ("robot = 3", "robot: must be text or a table of keys and values, got 3"),
+    "world: no text": ("robot = ''", "robot: must be one line of text, got ''"),
+    "world: argument": ("arguments = [5]", 'arguments[1]: must be text, got 5 (in quotes, such as "5")'),
+    "world: beacon": ("[beacon]\nx_mm = 1", "beacon.y_mm: is missing"),
+    "world: channel": ("[beacon]\nx_mm = 1\ny_mm = 1\nchannel = 5", "beacon.channel: must be a whole number from 1"),
+    "world: no button": ("[[remote]]\nbuttons = []", "remote[1].buttons: the sensor cannot tell no button (one or"),
+    "world: button": ("[[remote]]\nbuttons = ['x']", "remote[1].buttons[1]: no such value 'x' (one of top_left"),
+    "world: press ends": (
+        "[[remote]]\nbuttons = ['beacon']\nfrom_s = 3\nuntil_s = 1", "remote[1].until_s: ends before it begins",
+    ),
+    "world: endless press": (
+        "[[remote]]\nbuttons = ['beacon']\nuntil_s = inf", "remote[1].until_s: must be a number from 0 to 1e+09",
+    ),
+    "world: presses": ("remote = [" + "{buttons = []},\n" * 10_001 + "]", "remote: has 10001 presses (at most 10000)"),
     "json profile: at all": ("{}", "is not a .toml file"),
     "json world: at all": ("{}", "is not a .toml file (a world file is TOML)"),
 }

@@ -6,8 +6,9 @@ import pytest
 
 from tuisim.config.build import build_run_spec
 from tuisim.config.mats import backgrounds
+from tuisim.config.obstacles import OBSTACLES
 from tuisim.config.options import Settings, parse_words, settings_of
-from tuisim.config.presets import OBSTACLES, ROBOTS
+from tuisim.config.robots import ROBOTS
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec, from_plain, to_plain

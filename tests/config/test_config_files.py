@@ -15,13 +15,11 @@ from hypothesis import strategies as st
 
 from tests.config.makers import boxes, mm, presses, robots
 from tuisim.config.build import build_run_spec
-from tuisim.config.obstacles import load_obstacles, save_obstacles
+from tuisim.config.obstacles import OBSTACLES, load_obstacles, save_obstacles
 from tuisim.config.options import RobotChoice, Settings, parse_words, settings_of
-from tuisim.config.presets import OBSTACLES, ROBOTS
 from tuisim.config.profiles import SOURCES, load_profile
-from tuisim.config.robots import choose_robot, load_robot, save_robot
-from tuisim.config.world_writer import save_world
-from tuisim.config.worlds import load_world
+from tuisim.config.robots import ROBOTS, choose_robot, load_robot, save_robot
+from tuisim.config.worlds import load_world, save_world
 from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.profile import PROFILES, MotorLaw, ProfileSpec
 from tuisim.core.spec import GyroSpec, Obstacle, PenSpec, RobotSpec, RunSpec, UltrasonicSpec

@@ -9,11 +9,10 @@ import pytest
 from PIL import Image
 
 from tests.conftest import Command
-from tuisim.config.build import build_run_spec
+from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.mats import find_mat, mats
 from tuisim.config.options import Settings, settings_of
-from tuisim.config.world_writer import save_world, settings_from
-from tuisim.config.worlds import load_world
+from tuisim.config.worlds import load_world, save_world
 from tuisim.core.geometry import Pose
 
 FIELD = (2362, 1143)

@@ -11,8 +11,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import Command
-from tuisim.config.presets import ROBOTS
-from tuisim.config.robots import choose_robot
+from tuisim.config.robots import ROBOTS, choose_robot
 from tuisim.core.spec import ColorSensorSpec, PenSpec, UltrasonicSpec
 
 

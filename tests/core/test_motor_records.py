@@ -13,9 +13,8 @@ import pytest
 from tests.core.motor_lab import Course, Job, courses
 from tests.core.motor_programs import PROGRAMS
 from tests.core.tick_model import Lab
-from tuisim.config.presets import ROBOTS
-from tuisim.config.reader import Section
-from tuisim.config.robot_json import robot_from_json
+from tuisim.config.files import Location
+from tuisim.config.robots import ROBOTS, robot_from_json
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec, WorldSpec
 from tuisim.errors import RobotError
@@ -29,7 +28,7 @@ START = (1000.0, 500.0, 0.0)
 def _robot(described: str | dict[str, Any]) -> RobotSpec:
     if isinstance(described, str):
         return ROBOTS[described]
-    return robot_from_json(Section(described, "robot.json", RobotError), "recorded").spec
+    return robot_from_json(described, "recorded", Location("robot.json", RobotError)).spec
 
 
 @pytest.fixture(scope="module")

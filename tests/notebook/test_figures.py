@@ -28,7 +28,7 @@ from tuisim.charts.world_image import (
 )
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.config.presets import ROBOTS
+from tuisim.config.robots import ROBOTS
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec

@@ -371,7 +371,7 @@ def _panels_in(said: Mapping[str, Any]) -> dict[str, bool]:
 
 
 def _is_file_word(word: str) -> bool:
-    from tuisim.config.reader import means_file
+    from tuisim.config.files import means_file
 
     return means_file(word)
 

@@ -7,9 +7,8 @@ from dataclasses import asdict
 
 from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
-from tuisim.config.obstacles import load_obstacles, obstacle_file
+from tuisim.config.obstacles import OBSTACLES, load_obstacles, obstacle_file
 from tuisim.config.options import SwitchParser
-from tuisim.config.presets import OBSTACLES
 
 
 def add_arguments(parser: SwitchParser) -> None:

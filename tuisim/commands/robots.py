@@ -8,8 +8,7 @@ from dataclasses import asdict
 from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.config.options import SwitchParser
-from tuisim.config.presets import ROBOTS
-from tuisim.config.robots import load_robot, robot_file
+from tuisim.config.robots import ROBOTS, load_robot, robot_file
 from tuisim.core.spec import RobotSpec
 
 

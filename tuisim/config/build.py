@@ -1,4 +1,4 @@
-"""Build the frozen specification of a run from settings."""
+"""Build the frozen specification of a run from settings, and the settings that give a specification."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ import os
 from dataclasses import replace
 from typing import Any
 
-from tuisim.config.mats import Background, find_mat, spec_name
-from tuisim.config.obstacles import load_obstacles
+from tuisim.config.files import errors_at
+from tuisim.config.mats import Background, find_mat, mat_of_spec, spec_name
+from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.config.options import RobotChoice, Settings
 from tuisim.config.profiles import load_profile
-from tuisim.config.reader import errors_at
-from tuisim.config.robots import choose_robot
+from tuisim.config.robots import ROBOTS, choose_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
-from tuisim.core.profile import ProfileSpec
+from tuisim.core.profile import PROFILES, ProfileSpec
 from tuisim.core.spec import (
     BACKGROUND_FITS,
     FIELD_HEIGHT_MM,
@@ -112,3 +112,46 @@ def build_run_spec(settings: Settings) -> RunSpec:
         profile=profile,
         seed=settings.seed,
     )
+
+
+def settings_from(spec: RunSpec) -> dict[str, Any]:
+    """Return the settings that give this run, keyed by field of `Settings`; presets are given by name.
+
+    `solid` is None where it equals the profile's default.
+
+    Raises:
+        ConfigError: its mat no longer exists.
+    """
+    world, pen = spec.world, spec.robot.pen
+    word, mat = mat_of_spec(world.background)
+    return {
+        "background": word,
+        "background_fit": world.background_fit,
+        "robot": _robot(spec.robot, mat),
+        "obstacles": next((name for name, boxes in OBSTACLES.items() if boxes == world.obstacles), world.obstacles),
+        "walls": world.walls,
+        "solid": None if world.solid == spec.profile.solid else world.solid,
+        "x_mm": world.start.x_mm,
+        "y_mm": world.start.y_mm,
+        "heading_deg": world.start.heading_deg,
+        "light_noise": world.noise.light,
+        "motor_noise": world.noise.motor,
+        "pen_down": pen.down,
+        "pen_color": pen.color,
+        "pen_width_mm": pen.width_mm,
+        "pen_marks": world.pen_marks,
+        "profile": spec.profile.name if PROFILES.get(spec.profile.name) == spec.profile else spec.profile,
+        "seed": spec.seed,
+        "beacon": world.beacon,
+        "remote": world.remote,
+    }
+
+
+def _robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
+    """Return the name of the preset that equals the robot except for its pen, else the robot itself."""
+    for preset in ROBOTS.values():
+        on_mat = robot_on_mat(RobotChoice(preset, own_places=False), mat)
+        place = replace(robot.pen, x_mm=on_mat.pen.x_mm, y_mm=on_mat.pen.y_mm)
+        if replace(on_mat, pen=place) == robot:
+            return preset.name
+    return RobotChoice(robot)

@@ -16,16 +16,18 @@ from types import MappingProxyType
 from typing import Any
 
 from tuisim.atomic import make_private_folder, replacing
+from tuisim.config.files import Location, convert, read_file, table
 from tuisim.config.folders import backgrounds_folder, home_folder
-from tuisim.config.mat_image import check_file, decode, read_file, size_of
+from tuisim.config.mat_image import check_file, decode, size_of
+from tuisim.config.mat_image import read_file as read_image
+from tuisim.config.obstacles import obstacles_from_sides
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
-from tuisim.errors import BackgroundError, ObstacleError
+from tuisim.errors import BackgroundError
 
 CATALOG = "catalog.toml"
 OWN_START = Pose(200.0, 800.0, 0.0)
 """The robot's start pose on a user's own image."""
-_KEYS = {"title", "original", "shipped", "start", "obstacles", "sensor_x_mm"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,60 +52,32 @@ class Background:
     """The default fit of its image, one of `core.spec.BACKGROUND_FITS`; None is the first."""
 
 
-def _number(value: object, key: str, file: Path) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise BackgroundError(f"must be a number, got {value!r}", file=str(file), key=key)
-    return float(value)
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """A mat in the catalogue; its name is the key."""
+
+    title: str
+    start: Pose
+    original: str = ""
+    shipped: bool = True
+    obstacles: list[Any] = field(default_factory=list)
+    """Each as [x, y, width, height] in mm."""
+    sensor_x_mm: dict[str, Any] = field(default_factory=dict)
 
 
-def _numbers(table: object, keys: tuple[str, ...], key: str, file: Path) -> list[float]:
-    """Return the values of a table that must have exactly these keys."""
-    if not isinstance(table, dict) or set(table) != set(keys):
-        raise BackgroundError(f"must have {', '.join(keys)}, got {table!r}", file=str(file), key=key)
-    return [_number(table[each], f"{key}.{each}", file) for each in keys]
-
-
-def _obstacle(sides: object, key: str, file: Path) -> Obstacle:
-    if not isinstance(sides, list) or len(sides) != 4:
-        message = f"must be [x_mm, y_mm, width_mm, height_mm], got {sides!r}"
-        raise BackgroundError(message, file=str(file), key=key)
-    x_mm, y_mm, width_mm, height_mm = (_number(side, key, file) for side in sides)
-    try:
-        return Obstacle(x_mm, y_mm, width_mm, height_mm)
-    except ObstacleError as error:
-        raise BackgroundError(error.message, error.hint, file=str(file), key=key) from error
-
-
-def _background(name: str, entry: object, file: Path) -> Background:
+def _background(name: str, data: object, file: Path) -> Background:
     """Return one mat from its table in the catalogue."""
-    if not isinstance(entry, dict):
-        raise BackgroundError(f"must be a table, got {entry!r}", file=str(file), key=name)
-    if unknown := sorted(set(entry) - _KEYS):
-        hint = f"allowed are {', '.join(sorted(_KEYS))}"
-        raise BackgroundError("no such key", hint, file=str(file), key=f"{name}.{unknown[0]}")
-    title = entry.get("title")
-    if not isinstance(title, str) or not title:
-        raise BackgroundError(f"must be a line of text, got {title!r}", file=str(file), key=f"{name}.title")
-    start = _numbers(entry.get("start"), ("x_mm", "y_mm", "heading_deg"), f"{name}.start", file)
-    original, shipped = entry.get("original", ""), entry.get("shipped", True)
-    if not isinstance(original, str):
-        raise BackgroundError(f"must be a file name, got {original!r}", file=str(file), key=f"{name}.original")
-    if not isinstance(shipped, bool):
-        raise BackgroundError(f"must be true or false, got {shipped!r}", file=str(file), key=f"{name}.shipped")
-    boxes, sensors = entry.get("obstacles", []), entry.get("sensor_x_mm", {})
-    if not isinstance(boxes, list):
-        raise BackgroundError(f"must be a list, got {boxes!r}", file=str(file), key=f"{name}.obstacles")
-    if not isinstance(sensors, dict):
-        raise BackgroundError(f"must be a table, got {sensors!r}", file=str(file), key=f"{name}.sensor_x_mm")
+    at = Location(str(file), BackgroundError, name)
+    entry = convert(data, _Entry, at)
     return Background(
         name=name,
-        title=title,
-        start=Pose(*start),
+        title=entry.title,
+        start=entry.start,
         image=file.parent / f"{name}.png",
-        obstacles=tuple(_obstacle(box, f"{name}.obstacles", file) for box in boxes),
-        sensor_x_mm={sensor: _number(x, f"{name}.sensor_x_mm.{sensor}", file) for sensor, x in sensors.items()},
-        original=original,
-        shipped=shipped,
+        obstacles=obstacles_from_sides(entry.obstacles, at.at("obstacles")),
+        sensor_x_mm={eye: convert(x_mm, float, at.at(f"sensor_x_mm.{eye}")) for eye, x_mm in entry.sensor_x_mm.items()},
+        original=entry.original,
+        shipped=entry.shipped,
     )
 
 
@@ -134,14 +108,7 @@ def catalogue() -> Mapping[str, Background]:
 @lru_cache(maxsize=1)
 def _read_catalogue(file: Path, _mtime_ns: int, _size: int) -> Mapping[str, Background]:
     # Choosing a mat needs the catalogue several times; an edited file has another time or size.
-    import tomllib
-
-    try:
-        entries: dict[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BackgroundError(f"cannot be read: {error.strerror or error}", file=str(file)) from error
-    except ValueError as error:
-        raise BackgroundError(f"is not TOML: {error}", file=str(file)) from error
+    entries = table(read_file(file, BackgroundError), Location(str(file), BackgroundError))
     return MappingProxyType({name: _background(name, entry, file) for name, entry in entries.items()})
 
 
@@ -313,7 +280,7 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
     contents: dict[str, bytes] = {}
     taken: list[Taken] = []
     for name in (name for name in known if name in found):
-        content = contents[name] = read_file(found[name])
+        content = contents[name] = read_image(found[name])
         # All are checked before the first is written.
         decode(content, found[name], AS_THERE)
         taken.append(Taken(name, found[name].name, size_of(content)))

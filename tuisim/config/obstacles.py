@@ -1,20 +1,43 @@
-"""Sets of obstacles by name or from a file: TOML, or a JSON list of [x, y, width, height]."""
+"""Sets of obstacles by name or from a file: TOML, or a JSON list of [x, y, width, height].
+
+To add a set: add an entry to `OBSTACLES`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from tuisim.config.files import (
+    Location,
+    convert,
+    entries,
+    keys_of,
+    means_file,
+    read_file,
+    required,
+    shown,
+    table,
+    toml_lines,
+    write_toml,
+)
 from tuisim.config.options import nearest
-from tuisim.config.presets import OBSTACLES
-from tuisim.config.reader import Section, means_file, read_file, shown
-from tuisim.config.toml_writer import toml_lines, write_toml
 from tuisim.core.spec import Obstacle
 from tuisim.errors import ObstacleError
 
-MAX_OBSTACLES = 1000
-OBSTACLE_KEYS = ("x_mm", "y_mm", "width_mm", "height_mm")
+NO_OBSTACLES = "None"
 
+OBSTACLES: Mapping[str, tuple[Obstacle, ...]] = {
+    NO_OBSTACLES: (),
+    "Central_post": (Obstacle(900, 500, 200, 200),),
+    "Square_posts": tuple(Obstacle(x_mm, y_mm, 100, 100) for x_mm in (500, 1500) for y_mm in (200, 700)),
+    "Wall": (Obstacle(1500, 200, 200, 800),),
+}
+"""Every set of obstacles by name."""
+
+MAX_OBSTACLES = 1000
+
+_KEYS = keys_of(Obstacle)
 _HEAD = "# Obstacles for tuisim: lower left corner and size in mm; x from the field's left edge, y from its bottom."
 
 
@@ -34,46 +57,34 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
         hint = f"{nearest(word, OBSTACLES)}; or a .toml or .json file"
         raise ObstacleError(f"no such obstacles {word!r}", hint, key=key)
     path = Path(word).expanduser()
-    data = read_file(path, ObstacleError)
-    if path.suffix.lower() == ".json":
-        return _from_json(data, str(path))
-    table = Section(data, str(path), ObstacleError)
-    table.allow(("obstacle",))
-    return obstacles_from_table(table)
+    data, at = read_file(path, ObstacleError), Location(str(path), ObstacleError)
+    if path.suffix.lower() != ".json":
+        boxes = required(table(data, at, ("obstacle",)), "obstacle", at)
+        return obstacles_from_list(boxes, at.at("obstacle"))
+    return obstacles_from_sides(data, at)
 
 
-def obstacles_from_table(table: Section) -> tuple[Obstacle, ...]:
-    """Return the obstacles of a table's list `obstacle`.
+def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
+    """Return the obstacles in a list of [x, y, width, height].
+
+    Raises:
+        ConfigError: as `obstacles_from_list`.
+    """
+    if not isinstance(data, list):
+        raise at.wrong(f"must be a list of [x, y, width, height], got {shown(data)}")
+    for number, sides in enumerate(data, start=1):
+        if not isinstance(sides, list) or len(sides) != len(_KEYS):
+            raise at.at(f"[{number}]").wrong(f"must be [x, y, width, height], got {shown(sides)}")
+    return obstacles_from_list([dict(zip(_KEYS, sides, strict=True)) for sides in data], at)
+
+
+def obstacles_from_list(data: object, at: Location) -> tuple[Obstacle, ...]:
+    """Return the obstacles in a list of tables.
 
     Raises:
         ObstacleError: a key or a value is wrong, or there are too many.
     """
-    return _obstacles(table.entries("obstacle", ObstacleError), table.file)
-
-
-def _from_json(data: object, file: str) -> tuple[Obstacle, ...]:
-    if not isinstance(data, list):
-        raise ObstacleError(f"must be a list of [x, y, width, height], got {shown(data)}", file=file)
-    boxes = []
-    for at, sides in enumerate(data, start=1):
-        if not isinstance(sides, list) or len(sides) != len(OBSTACLE_KEYS):
-            raise ObstacleError(f"must be [x, y, width, height], got {shown(sides)}", file=file, key=f"[{at}]")
-        named = dict(zip(OBSTACLE_KEYS, sides, strict=True))
-        boxes.append(Section(named, file, ObstacleError, f"[{at}]"))
-    return _obstacles(boxes, file)
-
-
-def _obstacles(boxes: Sequence[Section], file: str) -> tuple[Obstacle, ...]:
-    if len(boxes) > MAX_OBSTACLES:
-        raise ObstacleError(f"has {len(boxes)} obstacles", f"at most {MAX_OBSTACLES}", file=file)
-    return tuple(map(_obstacle, boxes))
-
-
-def _obstacle(box: Section) -> Obstacle:
-    box.allow(OBSTACLE_KEYS)
-    sides = [box.number(key) for key in OBSTACLE_KEYS]
-    with box.telling():
-        return Obstacle(*sides)
+    return tuple(convert(box, Obstacle, place) for box, place in entries(data, at, MAX_OBSTACLES, "obstacles"))
 
 
 def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
@@ -96,5 +107,5 @@ def obstacle_lines(obstacles: Sequence[Obstacle]) -> list[str]:
     """Return obstacles as TOML lines."""
     if not obstacles:
         return ["obstacle = []"]
-    tables = [["[[obstacle]]", *toml_lines({key: getattr(box, key) for key in OBSTACLE_KEYS}), ""] for box in obstacles]
-    return [line for table in tables for line in table][:-1]
+    boxes = [["[[obstacle]]", *toml_lines({key: getattr(box, key) for key in _KEYS}), ""] for box in obstacles]
+    return [line for box in boxes for line in box][:-1]

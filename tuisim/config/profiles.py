@@ -4,27 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_type_hints
 
+from msgspec import Meta
+
+from tuisim.config.files import Location, Scalar, convert, means_file, name_of, one_of, read_file, table, toml_lines
 from tuisim.config.options import nearest
-from tuisim.config.reader import Section, means_file, name_of, read_file
-from tuisim.config.toml_writer import Scalar, toml_lines
-from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, MotorLaw, ProfileSpec, law_of_earlier
+from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, ProfileSpec, law_of_earlier
 from tuisim.errors import ProfileError
 
 DEFAULT_PROFILE = "robolab"
-MAX_COST_MS = 60_000.0
+MAX_COST_MS = 60_000
 
+_COST_MS: Any = Annotated[float, Meta(ge=0, le=MAX_COST_MS)]
 _NS, _MS = "_ns", "_ms"
-_RANGES: dict[str, tuple[float, float]] = {
+_RANGES: dict[str, tuple[int, int]] = {
     "tick_hz": (1, 1000),
     "max_speed_dps": (1, 100_000),
     "reflected_max": (1, 1000),
     "ultrasonic_period_ticks": (1, 1000),
 }
 """Ranges of numbers; all others are from 0 to a million."""
-_ANY = (0.0, 1e6)
+_ANY = (0, 1_000_000)
 
 _OLD = "measured on the old simulator"
 _NEW = "choice of this project"
@@ -69,56 +72,51 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
     path = Path(word).expanduser()
     if path.suffix.lower() != ".toml":
         raise ProfileError("is not a .toml file", "the suffix selects the format", file=str(path))
-    return profile_from_table(Section(read_file(path, ProfileError), str(path), ProfileError), name_of(path))
+    return profile_from_table(read_file(path, ProfileError), name_of(path), Location(str(path), ProfileError))
 
 
-def profile_from_table(table: Section, name: str) -> ProfileSpec:
+def profile_from_table(data: object, name: str, at: Location) -> ProfileSpec:
     """Return the profile in a table. Costs may be given in ms instead of ns.
 
     Args:
-        table: The table.
+        data: The table.
         name: The profile's name, unless the table has one.
+        at: The location of the table.
 
     Raises:
         ProfileError: a key or a value is wrong.
     """
-    kinds = {field.name: str(field.type) for field in fields(ProfileSpec)}
-    in_ms = {_in_ms(key): key for key in kinds if key.endswith(_NS)}
-    in_ns = frozenset(in_ms.values())
+    names = [field.name for field in fields(ProfileSpec)]
+    in_ms = {_in_ms(key): key for key in names if key.endswith(_NS)}
     earlier = EARLIER_KEYS | {_in_ms(key) for key in EARLIER_KEYS if key.endswith(_NS)}
-    table.allow(("base", *(key for key in kinds if key not in in_ns), *in_ms), unlisted=in_ns | earlier)
-    base = PROFILES[table.one_of("base", PROFILES) if "base" in table else DEFAULT_PROFILE]
+    listed = ("base", *(key for key in names if not key.endswith(_NS)), *in_ms)
+    given = table(data, at, listed, unlisted=earlier | frozenset(in_ms.values()))
+    base = PROFILES[one_of(given.get("base", DEFAULT_PROFILE), at.at("base"), PROFILES)]
     found: dict[str, Any] = {"name": name}
-    law = law_of_earlier({key: table.flag(key) for key in ("halve_position_moves",) if key in table})
-    if law is not None:
-        found["motor_law"] = law
-    for key in table:
-        if key in earlier:
-            continue
+    if "halve_position_moves" in given:
+        halved = convert(given["halve_position_moves"], bool, at.at("halve_position_moves"))
+        found["motor_law"] = law_of_earlier({"halve_position_moves": halved})
+    for key, value in given.items():
         if key in in_ms:
-            if in_ms[key] in table:
-                raise table.wrong(key, f"is given together with {in_ms[key]}", "give only one of them")
-            found[in_ms[key]] = round(table.number(key, 0, MAX_COST_MS) * MS)
-        elif key != "base":
-            found[key] = _value(table, key, kinds[key])
+            if in_ms[key] in given:
+                raise at.at(key).wrong(f"is given together with {in_ms[key]}", "give only one of them")
+            found[in_ms[key]] = round(convert(value, _COST_MS, at.at(key)) * MS)
+        elif key in names:
+            found[key] = convert(value, _kinds()[key], at.at(key))
     if found["name"] in PROFILES:
-        raise table.wrong("name", f"{found['name']!r} is the name of a built-in profile", "choose another name")
+        raise at.at("name").wrong(f"{found['name']!r} is the name of a built-in profile", "choose another name")
     return replace(base, **found)
 
 
-def _value(table: Section, key: str, kind: str) -> object:
-    low, high = _RANGES.get(key, (0.0, MAX_COST_MS * MS) if key.endswith(_NS) else _ANY)
-    match kind:
-        case "MotorLaw":
-            return MotorLaw(table.one_of(key, [law.value for law in MotorLaw]))
-        case "bool":
-            return table.flag(key)
-        case "int":
-            return table.whole(key, int(low), int(high))
-        case "float":
-            return table.number(key, low, high)
-        case _:
-            return table.text(key)
+@lru_cache
+def _kinds() -> Mapping[str, Any]:
+    """Return the type of each field, numbers with their range."""
+    kinds = get_type_hints(ProfileSpec)
+    for key, kind in kinds.items():
+        if kind in (int, float):
+            low, high = _RANGES.get(key, (0, MAX_COST_MS * MS) if key.endswith(_NS) else _ANY)
+            kinds[key] = Annotated[kind, Meta(ge=low, le=high)]
+    return kinds
 
 
 def _in_ms(key: str) -> str:

@@ -1,19 +1,104 @@
-"""Robots by name or from a file: read, and written so that they read back the same."""
+"""Robots by name or from a file: TOML, or the JSON of the course's browser simulator; written so that they read back.
+
+To add a robot: add an entry to `ROBOTS`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Annotated, Any
 
-from tuisim.config.options import RobotChoice, nearest
-from tuisim.config.presets import ROBOTS
-from tuisim.config.reader import Section, means_file, name_of, parse_toml, read_file
-from tuisim.config.robot_json import robot_from_json
-from tuisim.config.robot_table import DEFAULT_ROBOT, LENGTH_KEYS, PEN_KEYS, PORT_KEYS, keys_of, robot_from_table
-from tuisim.config.toml_writer import Scalar, toml_key, toml_lines, write_toml
-from tuisim.core.parts import TouchSpec
-from tuisim.core.spec import MOUNTS, ROBOT_WEIGHTS, RobotSpec
-from tuisim.errors import RobotError
+from tuisim.config.files import (
+    MAX_NAME,
+    Location,
+    Scalar,
+    by_switch,
+    changed,
+    convert,
+    keys_of,
+    means_file,
+    name_of,
+    one_of,
+    parse_toml,
+    read_file,
+    required,
+    shown,
+    table,
+    toml_key,
+    toml_lines,
+    updated,
+    with_location,
+    write_toml,
+)
+from tuisim.config.options import RobotChoice, nearest, pen_color
+from tuisim.core.parts import MOTOR_KINDS, InfraredSpec, MotorSpec, TouchSpec
+from tuisim.core.spec import (
+    MAX_LIGHT_NOISE,
+    MAX_MOTOR_NOISE,
+    MOUNTS,
+    OUTPUT_PORTS,
+    ROBOT_WEIGHTS,
+    ColorSensorSpec,
+    Mount,
+    RobotSpec,
+    SensorSpec,
+    UltrasonicSpec,
+)
+from tuisim.errors import ConfigError, RobotError
+
+
+def _sensor_pair(
+    x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int
+) -> tuple[ColorSensorSpec, ...]:
+    """Return two colour sensors, symmetric about the robot's axis."""
+    return (
+        ColorSensorSpec("left", "in2", -x_mm, y_mm, left_diameter_mm),
+        ColorSensorSpec("right", "in3", x_mm, y_mm, right_diameter_mm),
+    )
+
+
+_SMALL = RobotSpec(
+    name="Small_Robot",
+    wheel_diameter_mm=28.0,
+    wheel_spacing_mm=90.0,
+    back_mm=-60.0,
+    weight=ROBOT_WEIGHTS["weightless"],
+    color_sensors=_sensor_pair(10.0, 15.0, 10, 10),
+    ultrasonic=UltrasonicSpec(y_mm=10.0),
+)
+
+ROBOTS: Mapping[str, RobotSpec] = {
+    robot.name: robot
+    for robot in (
+        RobotSpec(),
+        _SMALL,
+        replace(_SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_sensor_pair(30.0, 15.0, 10, 10)),
+        RobotSpec(name="Sensor_Diameter_Config", color_sensors=_sensor_pair(20.0, 30.0, 30, 10)),
+        RobotSpec(
+            name="Explorer",
+            color_sensors=(ColorSensorSpec("left", "in2", 0.0, 30.0),),
+            ultrasonic=None,
+            extra_motors=(MotorSpec("outA", "medium"),),
+            touch_sensors=(TouchSpec("bumper", "in1", 0.0, 60.0, 60.0),),
+            infrared=InfraredSpec(port="in3"),
+        ),
+    )
+}
+"""Every robot by name."""
+
+DEFAULT_ROBOT = "Default_Robot"
+LENGTH_KEYS = ("wheel_diameter_mm", "wheel_spacing_mm", "wheel_width_mm", "back_mm")
+PORT_KEYS = ("left_port", "right_port")
+_BODY_KEYS = ("name", *LENGTH_KEYS, *PORT_KEYS)
+"""Keys whose values are those of the fields."""
+PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
+_TOP_KEYS = (
+    "base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, "motors", *(mount.key for mount in MOUNTS), "pen",
+)  # fmt: skip
+_SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 COMMENTS = {
     "wheel_spacing_mm": "between the centres of the wheels",
@@ -65,10 +150,191 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
         hint = f"{nearest(word, ROBOTS)}; or a .toml or .json file"
         raise RobotError(f"no such robot {word!r}", hint, key=key)
     path = Path(word).expanduser()
-    data = read_file(path, RobotError)
-    if path.suffix.lower() == ".json":
-        return robot_from_json(Section(data, str(path), RobotError), name_of(path))
-    return robot_from_table(Section(data, str(path), RobotError), name_of(path))
+    data, at = read_file(path, RobotError), Location(str(path), RobotError)
+    read = robot_from_json if path.suffix.lower() == ".json" else robot_from_table
+    return read(data, name_of(path), at)
+
+
+def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
+    """Return the robot in a table.
+
+    Args:
+        data: The table.
+        name: The robot's name, unless the table has one.
+        at: The location of the table.
+
+    Raises:
+        RobotError: a key or a value is wrong.
+    """
+    found = table(data, at, _TOP_KEYS)
+    base = ROBOTS[one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
+    changes = {"name": name, **{key: found[key] for key in _BODY_KEYS if key in found}}
+    if "name" in found:
+        _check_name(found["name"], at.at("name"))
+    if "weight" in found:
+        changes["weight"] = _weight(found["weight"], at.at("weight"))
+    if "pen" in found:
+        pen = dict(table(found["pen"], at.at("pen")))
+        if "color" in pen:
+            pen["color"] = by_switch(pen["color"], at.at("pen.color"), pen_color)
+        changes["pen"] = updated(base.pen, pen, at.at("pen"))
+    if "motors" in found:
+        changes |= _motors(found, base, at)
+    for mount in MOUNTS:
+        if mount.key in found:
+            read = _named if mount.many else _single
+            changes[mount.field] = read(found[mount.key], mount, base, at.at(mount.key))
+    sensors = found.get("color_sensors", {}).values()
+    own_places = any(isinstance(sensor, dict) and "x_mm" in sensor for sensor in sensors)
+    return RobotChoice(changed(base, changes, at), own_places=own_places)
+
+
+def _check_name(data: object, at: Location) -> None:
+    if len(name := convert(data, str, at)) > MAX_NAME:
+        raise at.wrong(f"must be at most {MAX_NAME} characters, got {len(name)}")
+
+
+def _weight(data: object, at: Location) -> float:
+    return ROBOT_WEIGHTS[one_of(data, at, ROBOT_WEIGHTS)] if isinstance(data, str) else convert(data, float, at)
+
+
+def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str, Any]:
+    """Return motor kinds by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
+    wheels = {convert(robot.get(key, getattr(base, key)), str, at.at(key)): key for key in PORT_KEYS}
+    kinds = {motor.port: motor.kind for motor in base.extra_motors}
+    found: dict[str, Any] = {}
+    at = at.at("motors")
+    for port, kind in table(robot["motors"], at, OUTPUT_PORTS).items():
+        if port in wheels and kind is False:
+            raise at.at(port).wrong("drives a wheel", f"it cannot be removed; {wheels[port]} sets its port")
+        if port in wheels:
+            found[wheels[port].replace("port", "motor")] = one_of(kind, at.at(port), MOTOR_KINDS)
+        elif kind is False:
+            kinds.pop(port, None)
+        else:
+            kinds[port] = one_of(kind, at.at(port), MOTOR_KINDS)
+    return {**found, "extra_motors": tuple(MotorSpec(port, kind) for port, kind in kinds.items())}
+
+
+def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> SensorSpec | None:
+    """Return the only sensor of its kind; None for `false`, which removes it."""
+    return None if data is False else updated(getattr(base, mount.field) or mount.spec(), data, at)
+
+
+def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[SensorSpec, ...]:
+    """Return the base's sensors with the table's changes, and those that the table adds; `false` removes one."""
+    found = {sensor.name: sensor for sensor in base.sensors_in(mount)}
+    names = table(data, at)
+    for name, sensor in names.items():
+        place = at.at(name)
+        if sensor is False:
+            found.pop(name, None)
+        elif not _SENSOR_NAME.fullmatch(name):
+            wrong = at.at(shown(name)[1:-1]).wrong
+            raise wrong("is not a valid sensor name", "letters, digits and _, a letter first, at most 31")
+        elif name in found:
+            found[name] = updated(found[name], sensor, place)
+        else:
+            # No port is free by itself.
+            required(table(sensor, place, keys_of(mount.spec)), "port", place)
+            found[name] = convert({"name": name, **sensor}, mount.spec, place)
+    # A file that names all of them also sets their order.
+    order = [name for name in names if name in found]
+    return tuple(found[name] for name in (order if len(order) == len(found) else found))
+
+
+_COLOR_SENSOR = {"x": "x_mm", "y": "y_mm", "diameter": "diameter_mm"}
+_PARTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
+    "pen": ("pen", {"x": "x_mm", "y": "y_mm", "color": "color", "width": "width_mm"}),
+    "sensor1": ("color_sensors.left", _COLOR_SENSOR),
+    "sensor2": ("color_sensors.right", _COLOR_SENSOR),
+    "ultrasonic": ("ultrasonic", {"x": "x_mm", "y": "y_mm", "angle": "angle_deg", "noise": "noise_mm"}),
+    "gyro": ("gyro", {}),
+}
+"""The key of each part in a robot's TOML table, and the names of its keys there."""
+
+_KEYS = {
+    "wheeldiameter": "wheel_diameter_mm",
+    "wheelSpacing": "wheel_spacing_mm",
+    "back": "back_mm",
+    "weight": "weight",
+}
+_WHEEL_NOISE, _SENSOR_NOISE = "wheelNoise", "sensorNoise"
+_DEFAULT_NOISE = 1
+"""The simulator's default for motor and ultrasonic noise."""
+
+_KEYS_SHOWN = 5
+
+_WITHOUT_EFFECT = ("baseWeight", "width", "height")
+"""Keys of saved files that do not affect a run."""
+
+
+def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
+    """Return the robot saved by the course's browser simulator.
+
+    Missing keys are as in Default_Robot; its noise settings become those of the run. A key that the simulator did not
+    know either is ignored, with a note. Keys are translated to those of a robot's TOML table, so both formats are
+    checked by the same rules.
+
+    Args:
+        data: The object in the file.
+        name: The robot's name.
+        at: The location of the object.
+
+    Raises:
+        RobotError: a key or a value is wrong.
+    """
+    found = table(data, at)
+    ours: dict[str, Any] = {"color_sensors": {}}
+    theirs: dict[str, str] = {}
+    unknown: list[str] = []
+    for key, value in found.items():
+        if key in _KEYS:
+            if key == "weight" and value in (None, ""):
+                # Medium, as without the key.
+                continue
+            ours[_KEYS[key]] = value
+            theirs[_KEYS[key]] = key
+        elif key in _PARTS:
+            place, keys = _PARTS[key]
+            theirs |= {place: key, f"{place}.port": key} | {f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()}
+            outer, _, inner = place.rpartition(".")
+            part = table(value, at.at(key))
+            (ours[outer] if outer else ours)[inner] = _part(part, keys, at.at(key))
+            unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
+        elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
+            unknown.append(key)
+    motor, light = _noise(found, _WHEEL_NOISE, MAX_MOTOR_NOISE, at), _noise(found, _SENSOR_NOISE, MAX_LIGHT_NOISE, at)
+    try:
+        choice = robot_from_table(ours, name, at)
+    except ConfigError as error:
+        raise with_location(error, at.file, theirs.get(error.key, error.key)) from None
+    notes = (f"{at.file}: ignored unknown keys: {shown_keys(unknown)}",) if unknown else ()
+    return replace(choice, motor_noise=_DEFAULT_NOISE if motor is None else motor, light_noise=light, notes=notes)
+
+
+def _noise(robot: Mapping[str, object], key: str, most: int, at: Location) -> int | None:
+    from msgspec import Meta
+
+    value = robot.get(key)
+    kind: Any = Annotated[int, Meta(ge=0, le=most)]
+    return None if value is None else convert(value, kind, at.at(key))
+
+
+def _part(part: Mapping[str, object], keys: Mapping[str, str], at: Location) -> dict[str, object] | bool:
+    """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
+    if at.key != "pen" and not convert(part.get("enabled", True), bool, at.at("enabled")):
+        return False
+    found = {keys[key]: value for key, value in part.items() if key in keys}
+    if "noise" in keys and found.get("noise_mm") is None:
+        found["noise_mm"] = _DEFAULT_NOISE
+    return found
+
+
+def shown_keys(keys: Sequence[str]) -> str:
+    """Return a short list of keys for a message, whatever their number and length."""
+    names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
+    return ", ".join(names) + (f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else "")
 
 
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
@@ -79,8 +345,8 @@ def save_robot(spec: RobotSpec, path: Path | str) -> None:
     """
     path = Path(path)
     lines = robot_file(spec)
-    table = Section(parse_toml("\n".join(lines), str(path), RobotError), str(path), RobotError)
-    if robot_from_table(table, name_of(path)).spec != spec:
+    data = parse_toml("\n".join(lines), str(path), RobotError)
+    if robot_from_table(data, name_of(path), Location(str(path), RobotError)).spec != spec:
         raise RobotError("a file cannot represent this robot", file=str(path))
     write_toml(path, lines, RobotError)
 

@@ -1,37 +1,128 @@
-"""World files: TOML with mat, obstacles, robot, noise, start pose, pen, profile and infrared beacon."""
+"""World files: mat, obstacles, robot, noise, start pose, pen, profile and infrared beacon; read and written as TOML."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, TypeAlias, TypeVar
 
+from msgspec import UNSET, Meta, Struct, UnsetType, structs
+
+from tuisim.config.build import build_run_spec, settings_from
+from tuisim.config.files import (
+    Location,
+    Scalar,
+    by_switch,
+    convert,
+    entries,
+    errors_at,
+    means_file,
+    name_of,
+    one_of,
+    parse_toml,
+    read_file,
+    required,
+    shown,
+    toml_lines,
+    write_toml,
+)
 from tuisim.config.folders import programs_folder
 from tuisim.config.mats import find_mat
-from tuisim.config.obstacles import load_obstacles, obstacles_from_table
-from tuisim.config.options import MAX_ANGLE_DEG, MAX_PEN_MM, MAX_POSITION_MM, MAX_SEED, MIN_PEN_MM, PANELS, pen_color
-from tuisim.config.profiles import load_profile, profile_from_table
-from tuisim.config.reader import Section, means_file, name_of, read_file, shown
-from tuisim.config.robot_table import robot_from_table
-from tuisim.config.robots import load_robot
-from tuisim.config.toml_writer import Scalar, toml_lines
+from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
+from tuisim.config.options import (
+    MAX_ANGLE_DEG,
+    MAX_PEN_MM,
+    MAX_POSITION_MM,
+    MAX_SEED,
+    MIN_PEN_MM,
+    PANELS,
+    RobotChoice,
+    pen_color,
+    settings_of,
+)
+from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
+from tuisim.config.robots import load_robot, robot_from_table, robot_lines
+from tuisim.core.geometry import Pose
 from tuisim.core.parts import REMOTE_BUTTONS, BeaconSpec, RemotePress
-from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE
+from tuisim.core.profile import ProfileSpec
+from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, RunSpec
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
 WORLD_SUFFIX = ".toml"
-FLAGS = {"walls": "walls", "solid": "solid", "pen_marks": "pen_marks", "rays": "rays", "autorun": "autorun"}
-START_LIMITS = {"x_mm": MAX_POSITION_MM, "y_mm": MAX_POSITION_MM, "heading_deg": MAX_ANGLE_DEG}
-NOISE_LIMITS = {"light": MAX_LIGHT_NOISE, "motor": MAX_MOTOR_NOISE}
-PANEL_KEYS = {"panels": "panels_on", "hidden_panels": "panels_off"}
-PEN_KEYS = ("down", "color", "width_mm")
-TOP_KEYS = (
-    "program", "arguments", "background", "mats", "background_fit", "robot", "obstacles", "obstacle", "profile", "seed",
-    *FLAGS, *PANEL_KEYS, "start", "noise", "pen", "beacon", "remote",
-)  # fmt: skip
+MAX_PRESSES = 10_000
+
+_Value = TypeVar("_Value")
+Given: TypeAlias = _Value | UnsetType
+"""A key that may be missing."""
+
+Position = Annotated[float, Meta(ge=-MAX_POSITION_MM, le=MAX_POSITION_MM)]
+Angle = Annotated[float, Meta(ge=-MAX_ANGLE_DEG, le=MAX_ANGLE_DEG)]
+Time = Annotated[float, Meta(ge=0, le=1e9)]
+Channel = Annotated[int, Meta(ge=1, le=4)]
+
+
+class _Start(Struct):
+    x_mm: Given[Position] = UNSET
+    y_mm: Given[Position] = UNSET
+    heading_deg: Given[Angle] = UNSET
+
+
+class _Noise(Struct):
+    light: Given[Annotated[int, Meta(ge=0, le=MAX_LIGHT_NOISE)]] = UNSET
+    motor: Given[Annotated[int, Meta(ge=0, le=MAX_MOTOR_NOISE)]] = UNSET
+
+
+class _Pen(Struct):
+    down: Given[bool] = UNSET
+    color: Given[str] = UNSET
+    width_mm: Given[Annotated[float, Meta(ge=MIN_PEN_MM, le=MAX_PEN_MM)]] = UNSET
+
+
+class _Beacon(Struct):
+    x_mm: Position
+    y_mm: Position
+    channel: Channel = 1
+
+
+class _Press(Struct):
+    buttons: list[str]
+    from_s: Time = 0.0
+    until_s: Time = 1e9
+    channel: Channel = 1
+
+
+class _World(Struct):
+    """The keys of a world file; `Any` where further functions check them."""
+
+    program: Given[str] = UNSET
+    arguments: Given[list[Any]] = UNSET
+    background: Given[str] = UNSET
+    mats: Given[str] = UNSET
+    background_fit: Given[str] = UNSET
+    robot: Given[str | dict[str, Any]] = UNSET
+    obstacles: Given[str] = UNSET
+    obstacle: Given[list[Any]] = UNSET
+    profile: Given[str | dict[str, Any]] = UNSET
+    seed: Given[Annotated[int, Meta(ge=0, le=MAX_SEED)]] = UNSET
+    walls: Given[bool] = UNSET
+    solid: Given[bool] = UNSET
+    pen_marks: Given[bool] = UNSET
+    rays: Given[bool] = UNSET
+    autorun: Given[bool] = UNSET
+    panels: Given[list[Any]] = UNSET
+    hidden_panels: Given[list[Any]] = UNSET
+    start: Given[_Start] = UNSET
+    noise: Given[_Noise] = UNSET
+    pen: Given[_Pen] = UNSET
+    beacon: Any = UNSET
+    remote: Any = UNSET
+
+
+_SAME_IN_SETTINGS = ("seed", "walls", "solid", "pen_marks", "rays", "autorun")
+_PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 
 
 Resolver = Callable[[str], str]
@@ -69,46 +160,75 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
     path = Path(path).expanduser()
     if not means_world(path.name):
         raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
-    return world_from_table(Section(read_file(path, ConfigError), str(path), ConfigError), path, mats)
+    return world_from_table(read_file(path, ConfigError), path, mats)
 
 
-def world_from_table(table: Section, path: Path, mats: str | None = None) -> WorldFile:
+def world_from_table(data: object, path: Path, mats: str | None = None) -> WorldFile:
     """Return the world in a table.
 
     Args:
-        table: The table.
+        data: The table.
         path: The path of the file, which may not exist yet.
         mats: As for `load_world`.
 
     Raises:
         ConfigError: a key or a value is wrong.
     """
-    table.allow(TOP_KEYS)
+    at = Location(str(path))
+    world = _given(convert(data, _World, at))
     referred: list[Path] = []
     resolve = partial(_resolved, path.parent, referred)
-    found: dict[str, Any] = _mat(table, resolve, mats)
-    found |= {field: table.flag(key) for key, field in FLAGS.items() if key in table}
-    for key, choose in (("robot", _robot), ("obstacles", _obstacles), ("profile", _profile)):
-        if key in table:
-            found[key] = choose(table, resolve, path)
-    if "obstacle" in table:
-        if "obstacles" in table:
-            raise table.wrong("obstacle", "is given together with obstacles", "give only one of them")
-        found["obstacles"] = obstacles_from_table(table)
-    if "seed" in table:
-        found["seed"] = table.whole("seed", 0, MAX_SEED)
-    found |= _noise(table) | _pen(table) | _panels(table) | infrared_from_table(table)
-    if "arguments" in table:
-        found["arguments"] = tuple(_argument(table, at, word) for at, word in enumerate(table.items("arguments"), 1))
-    program = _program(table.text("program"), path.parent, resolve) if "program" in table else None
+    found = {key: world[key] for key in _SAME_IN_SETTINGS if key in world} | _mat(world, at, resolve, mats)
+    for key, load, read, error in (
+        ("robot", load_robot, robot_from_table, RobotError),
+        ("obstacles", load_obstacles, None, ObstacleError),
+        ("profile", load_profile, profile_from_table, ProfileError),
+    ):
+        match world.get(key):
+            case str(word):
+                found[key] = _named(word, at.at(key), resolve, load)
+            case dict(inside) if read:
+                found[key] = read(inside, name_of(path), at.at(key, error))
+    if "obstacle" in world:
+        if "obstacles" in world:
+            raise at.at("obstacle").wrong("is given together with obstacles", "give only one of them")
+        found["obstacles"] = obstacles_from_list(world["obstacle"], at.at("obstacle", ObstacleError))
+    found |= {f"{key}_noise": value for key, value in world.get("noise", {}).items()}
+    found |= _pen(world.get("pen", {}), at.at("pen")) | _infrared(world, at)
+    for key, field in _PANEL_FIELDS.items():
+        if key in world:
+            listed = entries(world[key], at.at(key), len(PANELS), "panels")
+            found[field] = tuple(one_of(panel, place, PANELS) for panel, place in listed)
+    if "arguments" in world:
+        words = enumerate(world["arguments"], start=1)
+        found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
+    program = _program(world["program"], path.parent, resolve) if "program" in world else None
     return WorldFile(path, found, program, (path, *referred))
 
 
-def _argument(table: Section, at: int, word: object) -> str:
+def _given(data: Struct) -> dict[str, Any]:
+    """Return the keys that a table has, nested tables as dicts."""
+    found = {key: value for key, value in structs.asdict(data).items() if value is not UNSET}
+    return {key: _given(value) if isinstance(value, Struct) else value for key, value in found.items()}
+
+
+def pose_from_table(data: object, at: Location) -> Pose:
+    """Return a pose; all of its keys are required.
+
+    Raises:
+        ConfigError: a key is missing or unknown, or a value is wrong.
+    """
+    found = _given(convert(data, _Start, at))
+    for key in _Start.__struct_fields__:
+        required(found, key, at)
+    return Pose(**found)
+
+
+def _argument(word: object, at: Location) -> str:
     if not isinstance(word, str):
-        raise table.wrong(f"arguments[{at}]", f"must be text, got {shown(word)}", 'in quotes, such as "5"')
+        raise at.wrong(f"must be text, got {shown(word)}", 'in quotes, such as "5"')
     if "\0" in word:
-        raise table.wrong(f"arguments[{at}]", "must be text without null characters")
+        raise at.wrong("must be text without null characters")
     return word
 
 
@@ -127,127 +247,134 @@ def _resolved(folder: Path, referred: list[Path], word: str) -> str:
     return str(found)
 
 
-def _mat(table: Section, resolve: Resolver, mats: str | None) -> dict[str, Any]:
+def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | None) -> dict[str, Any]:
     """Return mat, fit and start pose. A mat has its own start pose, so it also discards the magic line's."""
     found: dict[str, Any] = {}
-    if "background_fit" in table:
-        found["background_fit"] = table.one_of("background_fit", BACKGROUND_FITS)
-    if "mats" in table:
-        found["mats"] = resolve(table.text("mats"))
-    if "background" in table:
-        word = table.text("background")
-        found |= dict.fromkeys(START_LIMITS)
+    if "background_fit" in world:
+        found["background_fit"] = one_of(world["background_fit"], at.at("background_fit"), BACKGROUND_FITS)
+    if "mats" in world:
+        found["mats"] = resolve(world["mats"])
+    if "background" in world:
+        word = world["background"]
+        found |= dict.fromkeys(_Start.__struct_fields__)
         found["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
-        with table.telling("background"):
+        with errors_at(at.file, "background"):
             find_mat(found["background"], found.get("mats", mats))
-    if "start" in table:
-        start = table.section("start")
-        start.allow(START_LIMITS)
-        found |= {key: start.number(key, -high, high) for key, high in START_LIMITS.items() if key in start}
+    found |= world.get("start", {})
     return found
 
 
-def _robot(table: Section, resolve: Resolver, path: Path) -> Any:
-    if not isinstance(table.raw("robot"), str):
-        return robot_from_table(table.section("robot", RobotError), name_of(path))
-    return _named(table, "robot", resolve, load_robot)
-
-
-def _obstacles(table: Section, resolve: Resolver, path: Path) -> Any:
-    return _named(table, "obstacles", resolve, load_obstacles)
-
-
-def _profile(table: Section, resolve: Resolver, path: Path) -> Any:
-    if not isinstance(table.raw("profile"), str):
-        return profile_from_table(table.section("profile", ProfileError), name_of(path))
-    return _named(table, "profile", resolve, load_profile)
-
-
-def _named(table: Section, key: str, resolve: Resolver, load: Callable[[str], object]) -> str:
-    """Return the name or file in a key; it is loaded once, so that errors name this file and key."""
-    word = table.text(key)
+def _named(word: str, at: Location, resolve: Resolver, load: Callable[[str], object]) -> str:
+    """Return a name or the path of a file; it is loaded once, so that errors name this file and key."""
     if means_file(word):
         word = resolve(word)
-    with table.telling(key):
+    with errors_at(at.file, at.key):
         load(word)
     return word
 
 
-def _noise(table: Section) -> dict[str, Any]:
-    if "noise" not in table:
-        return {}
-    noise = table.section("noise")
-    noise.allow(NOISE_LIMITS)
-    return {f"{key}_noise": noise.whole(key, 0, high) for key, high in NOISE_LIMITS.items() if key in noise}
-
-
-def _pen(table: Section) -> dict[str, Any]:
-    if "pen" not in table:
-        return {}
-    pen = table.section("pen")
-    pen.allow(PEN_KEYS)
-    found: dict[str, Any] = {}
-    if "down" in pen:
-        found["pen_down"] = pen.flag("down")
+def _pen(pen: Mapping[str, Any], at: Location) -> dict[str, Any]:
+    found = {f"pen_{key}": value for key, value in pen.items()}
     if "color" in pen:
-        found["pen_color"] = pen.converted("color", pen_color)
-    if "width_mm" in pen:
-        found["pen_width_mm"] = pen.number("width_mm", MIN_PEN_MM, MAX_PEN_MM)
+        found["pen_color"] = by_switch(pen["color"], at.at("color"), pen_color)
     return found
 
 
-def _panels(table: Section) -> dict[str, Any]:
+def _infrared(world: Mapping[str, Any], at: Location) -> dict[str, Any]:
+    """Return beacon and remote control, keyed by field of `Settings`."""
     found: dict[str, Any] = {}
-    for key, field in PANEL_KEYS.items():
-        if key in table:
-            named = table.instead({f"{key}[{at}]": panel for at, panel in enumerate(table.items(key), start=1)})
-            found[field] = tuple(named.one_of(each, PANELS) for each in named)
+    if "beacon" in world:
+        found["beacon"] = BeaconSpec(**_given(convert(world["beacon"], _Beacon, at.at("beacon", ObstacleError))))
+    if "remote" in world:
+        presses = entries(world["remote"], at.at("remote", ObstacleError), MAX_PRESSES, "presses")
+        found["remote"] = tuple(_press(press, place) for press, place in presses)
     return found
 
 
-MAX_PRESSES = 10_000
+def _press(data: object, at: Location) -> RemotePress:
+    press = convert(data, _Press, at)
+    for number, button in enumerate(press.buttons, start=1):
+        one_of(button, at.at(f"buttons[{number}]"), REMOTE_BUTTONS)
+    return convert(structs.asdict(press), RemotePress, at)
 
+
+_HEAD = "# A world for tuisim. Lengths in mm, angles in degrees counter-clockwise from +x; y up from the bottom edge."
 _COMMENTS = {
+    "program": "relative to this file",
+    "arguments": "the program's sys.argv[1:]",
+    "background": "a mat's name, or an image relative to this file",
+    "background_fit": "for an image: stretch, fit, centre or corner",
+    "walls": "on the four edges of the field",
+    "solid": "whether obstacles and walls stop the robot",
+    "pen_marks": "whether the sensors see what the pen draws",
+    "light": "0 … 128, steps of 255",
+    "motor": "0 … 500, degrees per second",
+    "color": "a CSS colour name, or #rrggbb",
     "channel": "1 to 4",
     "buttons": f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
     "from_s": "simulated seconds",
 }
 
 
-def infrared_from_table(table: Section) -> dict[str, Any]:
-    """Return beacon and remote control of a world file, keyed by field of `Settings`.
+def save_world(spec: RunSpec, path: Path | str, program: str | None = None, arguments: Sequence[str] = ()) -> None:
+    """Write a run atomically to a world file from which an equal run is built.
+
+    Args:
+        spec: The run.
+        path: The file; an image and a program are written relative to its folder.
+        program: The program to run in it, as a path or as the name of an example.
+        arguments: The program's arguments.
 
     Raises:
-        ObstacleError: a key or a value is wrong.
+        ConfigError: the file cannot be written, or cannot represent the run.
     """
-    found: dict[str, Any] = {}
-    if "beacon" in table:
-        beacon = table.section("beacon", ObstacleError)
-        beacon.allow(("x_mm", "y_mm", "channel"))
-        with table.telling(""):
-            found["beacon"] = BeaconSpec(beacon.number("x_mm"), beacon.number("y_mm"), _channel(beacon))
-    if "remote" in table:
-        entries = table.entries("remote", ObstacleError)
-        if len(entries) > MAX_PRESSES:
-            raise table.wrong("remote", f"{len(entries)} presses are too many", f"at most {MAX_PRESSES}")
-        found["remote"] = tuple(_press(entry) for entry in entries)
-    return found
+    path = Path(path)
+    lines = world_lines(spec, path.parent, program, arguments)
+    data = parse_toml("\n".join(lines), str(path), ConfigError)
+    if build_run_spec(settings_of(world_from_table(data, path).settings)) != spec:
+        raise ConfigError("a file cannot represent this world", file=str(path))
+    write_toml(path, lines, ConfigError)
 
 
-def _channel(table: Section) -> int:
-    return table.whole("channel", 1, 4) if "channel" in table else 1
+def world_lines(spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()) -> list[str]:
+    """Return a run as TOML lines.
+
+    Args:
+        spec: The run.
+        folder: Where the file will be; paths are relative to it.
+        program, arguments: As for `save_world`.
+    """
+    settings = settings_from(spec)
+    top: dict[str, Scalar] = {}
+    if program is not None:
+        top["program"] = _relative(program, folder) if Path(program).exists() else program
+    if arguments:
+        top["arguments"] = list(arguments)
+    mat = settings["background"]
+    top["background"] = _relative(mat, folder) if os.sep in mat else mat
+    settings["solid"] = spec.world.solid
+    for key in ("background_fit", "walls", "solid", "pen_marks", "robot", "obstacles", "profile", "seed"):
+        if isinstance(settings[key], str | int):
+            top[key] = settings[key]
+    lines = [_HEAD, "", *toml_lines(top, _COMMENTS)]
+    lines += _table("start", {key: settings[key] for key in ("x_mm", "y_mm", "heading_deg")})
+    lines += _table("noise", {key: settings[f"{key}_noise"] for key in ("light", "motor")})
+    pen = {"down": "pen_down", "color": "pen_color", "width_mm": "pen_width_mm"}
+    lines += _table("pen", {key: settings[field] for key, field in pen.items()})
+    if isinstance(settings["robot"], RobotChoice):
+        lines += ["", *robot_lines(spec.robot, "robot", ("x_mm", "y_mm"))]
+    if isinstance(settings["profile"], ProfileSpec):
+        lines += ["", *profile_lines(spec.profile, "profile")]
+    if not isinstance(settings["obstacles"], str):
+        lines += ["", *obstacle_lines(spec.world.obstacles)]
+    return [*lines, *_infrared_lines(spec.world.beacon, spec.world.remote)]
 
 
-def _press(table: Section) -> RemotePress:
-    table.allow(("buttons", "from_s", "until_s", "channel"))
-    named = table.instead({f"buttons[{at}]": name for at, name in enumerate(table.items("buttons"), start=1)})
-    buttons = tuple(named.one_of(key, REMOTE_BUTTONS) for key in named)
-    times = {key: table.number(key, 0.0, 1e9) for key in ("from_s", "until_s") if key in table}
-    with table.telling(table.key):
-        return RemotePress(buttons, channel=_channel(table), **times)
+def _table(name: str, values: Mapping[str, Scalar]) -> list[str]:
+    return ["", f"[{name}]", *toml_lines(values, _COMMENTS)]
 
 
-def infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
+def _infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
     """Return beacon and button presses as lines of a world file."""
     lines: list[str] = []
     if beacon is not None:
@@ -256,3 +383,9 @@ def infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> 
         values: dict[str, Scalar] = {**asdict(press), "buttons": list(press.buttons)}
         lines += ["", "[[remote]]", *toml_lines(values, _COMMENTS)]
     return lines
+
+
+def _relative(path: str, folder: Path) -> str:
+    """Return a path relative to a folder, in a form that cannot be mistaken for a name."""
+    found = os.path.relpath(os.path.expanduser(path), folder)
+    return found if os.sep in found or Path(found).suffix else f".{os.sep}{found}"

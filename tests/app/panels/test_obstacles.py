@@ -15,8 +15,7 @@ from tuisim.app.panels.obstacles import BoxGrip, Obstacles, box_at
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import ENDED, RUNNING
-from tuisim.config.obstacles import load_obstacles
-from tuisim.config.presets import OBSTACLES
+from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.core.spec import Obstacle
 
 SHOWN = frozenset({"obstacles"})

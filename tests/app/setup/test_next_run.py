@@ -13,8 +13,7 @@ from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import NextRun, plan_of, plan_of_spec
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.config.presets import ROBOTS
-from tuisim.config.robots import load_robot, save_robot
+from tuisim.config.robots import ROBOTS, load_robot, save_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec
 from tuisim.errors import ConfigError

@@ -63,7 +63,7 @@ def save_obstacles(lab: LabApp) -> None:
 def save_world(lab: LabApp) -> None:
     """Ask for a file and write the world to it, with the program that is open."""
     from tuisim.app.dialogs.save import SaveDialog
-    from tuisim.config.world_writer import save_world as write
+    from tuisim.config.worlds import save_world as write
 
     def save(path: Path) -> None:
         program = lab.bridge.program

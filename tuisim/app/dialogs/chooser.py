@@ -161,8 +161,7 @@ def program_chooser() -> Chooser:
 
 def robot_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for robots."""
-    from tuisim.config.presets import ROBOTS
-    from tuisim.config.robots import load_robot
+    from tuisim.config.robots import ROBOTS, load_robot
 
     presets = [(name, name, _robot_title(name)) for name in ROBOTS]
     groups = [Group("", presets), files_here([".toml", ".json"], lambda path: load_robot(str(path)))]
@@ -170,7 +169,7 @@ def robot_chooser(plan: NextRun) -> Chooser:
 
 
 def _robot_title(name: str) -> str:
-    from tuisim.config.presets import ROBOTS
+    from tuisim.config.robots import ROBOTS
 
     robot = ROBOTS[name]
     eyes = ", ".join(f"({eye.x_mm:g}, {eye.y_mm:g}) ⌀ {eye.diameter_mm}" for eye in robot.color_sensors)
@@ -179,8 +178,7 @@ def _robot_title(name: str) -> str:
 
 def obstacle_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for sets of obstacles."""
-    from tuisim.config.obstacles import load_obstacles
-    from tuisim.config.presets import OBSTACLES
+    from tuisim.config.obstacles import OBSTACLES, load_obstacles
 
     presets = [
         (name, name, "; ".join(f"{b.width_mm:g}×{b.height_mm:g} at ({b.x_mm:g}, {b.y_mm:g})" for b in boxes) or "none")

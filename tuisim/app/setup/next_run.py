@@ -68,7 +68,7 @@ def plan_of(settings: Settings) -> NextRun:
 
 def plan_of_spec(spec: RunSpec) -> NextRun:
     """Return the plan of a run of which nothing else is known."""
-    from tuisim.config.world_writer import settings_from
+    from tuisim.config.build import settings_from
 
     return replace(plan_of(settings_of(settings_from(spec))), spec=spec)
 

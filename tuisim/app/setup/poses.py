@@ -68,7 +68,6 @@ MAX_POSES = 500
 MAX_NAME = 40
 
 _HEAD = "# Poses saved in tuisim: mm from the lower left corner, degrees counter-clockwise from +x."
-_LIMITS = {"x_mm": 10_000.0, "y_mm": 10_000.0, "heading_deg": 36_000.0}
 
 
 def poses_file() -> Path:
@@ -84,20 +83,15 @@ def load_poses() -> dict[str, Pose]:
     Raises:
         ConfigError: their file cannot be read or is invalid.
     """
-    from tuisim.config.reader import Section, read_file
+    from tuisim.config.files import Location, read_file, required, table
+    from tuisim.config.worlds import pose_from_table
 
     path = poses_file()
     if not path.exists():
         return {}
-    table = Section(read_file(path, ConfigError), str(path), ConfigError)
-    table.allow(("poses",))
-    poses = table.section("poses")
-    found = {}
-    for name in poses:
-        place = poses.section(name)
-        place.allow(_LIMITS)
-        found[name] = Pose(*(place.number(key, -limit, limit) for key, limit in _LIMITS.items()))
-    return found
+    at = Location(str(path))
+    poses = required(table(read_file(path, ConfigError), at, ("poses",)), "poses", at)
+    return {name: pose_from_table(pose, at.at(f"poses.{name}")) for name, pose in table(poses, at.at("poses")).items()}
 
 
 def save_pose(name: str, pose: Pose) -> None:
@@ -125,7 +119,7 @@ def delete_pose(name: str) -> None:
 
 
 def _write(poses: Mapping[str, Pose]) -> None:
-    from tuisim.config.toml_writer import toml_key, toml_lines, write_toml
+    from tuisim.config.files import toml_key, toml_lines, write_toml
 
     path = poses_file()
     lines = [_HEAD, "", "[poses]"]

@@ -1,0 +1,434 @@
+"""Configuration files: read, converted to typed data, and written; every error names file and key.
+
+Files are not trusted: size, depth and types are checked before their values are used.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import reprlib
+import stat
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from tuisim.atomic import replacing
+from tuisim.config.options import nearest
+from tuisim.errors import ConfigError
+
+if TYPE_CHECKING:
+    from msgspec import inspect as types
+
+Value = TypeVar("Value")
+
+MAX_FILE_BYTES = 1_000_000
+MAX_LINE = 1000
+"""Longest line of a TOML file: a key of many thousand parts would take the parser hours."""
+
+MAX_NAME = 100
+MAX_WHOLE = 2**63
+"""Larger integers have no use in any key."""
+FILE_SUFFIXES = (".toml", ".json")
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """Where a value is in a file, for errors about it."""
+
+    file: str
+    error: type[ConfigError] = ConfigError
+    """The class of errors about it."""
+    key: str = ""
+    """The path of the value in the file, such as `ultrasonic.x_mm` or `obstacle[1]`; empty for the top level."""
+
+    def at(self, key: str, error: type[ConfigError] | None = None) -> Location:
+        """Return the location of a key of this table, with another class of errors if given."""
+        joint = "." if self.key and not key.startswith("[") else ""
+        return replace(self, key=f"{self.key}{joint}{key}", error=error or self.error)
+
+    def wrong(self, message: str, hint: str = "") -> ConfigError:
+        """Return an error about this value, to be raised."""
+        return self.error(message, hint, file=self.file, key=self.key)
+
+
+def shown(value: object) -> str:
+    """Return the `repr` of a value for messages, shortened."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return _SHORT.repr(value)
+
+
+def means_file(word: str) -> bool:
+    """Return whether a word names a file, not a preset."""
+    return os.sep in word or Path(word).suffix.lower() in FILE_SUFFIXES
+
+
+def name_of(path: Path) -> str:
+    """Return the default name of the object in a file, from the file name."""
+    return "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME] or "unnamed"
+
+
+def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
+    """Return the same error with another file and key as its location."""
+    where = ": ".join(part for part in (error.file, error.key) if part)
+    message = error.message.removeprefix(f"{where}: ") if where else error.message
+    return type(error)(message, error.hint, file=file, key=key)
+
+
+@contextmanager
+def errors_at(file: str, prefix: str = "") -> Iterator[None]:
+    """Add a file and the key of a table to ConfigErrors that are raised in the block without a file."""
+    try:
+        yield
+    except ConfigError as error:
+        if error.file:
+            raise
+        raise with_location(error, file, ".".join(filter(None, (prefix, error.key)))) from None
+
+
+def read_file(path: Path, error: type[ConfigError]) -> Any:
+    """Read a TOML or JSON file and return its data.
+
+    Raises:
+        ConfigError: of the class `error`: the file is missing, not a regular file, too large, not text, empty or
+            not valid TOML or JSON.
+    """
+    shown_path = str(path)
+    suffix = path.suffix.lower()
+    if suffix not in FILE_SUFFIXES:
+        raise error("is neither a .toml nor a .json file", "the suffix selects the format", file=shown_path)
+    text = _text(path, error)
+    if suffix == ".json":
+        return _json(text, shown_path, error)
+    return parse_toml(text, shown_path, error)
+
+
+def _text(path: Path, error: type[ConfigError]) -> str:
+    file = str(path)
+    try:
+        mode = path.stat().st_mode
+        if stat.S_ISDIR(mode):
+            raise error("is a folder, not a file", file=file)
+        # Reading from a device or a pipe may never end.
+        if not stat.S_ISREG(mode):
+            raise error("is not a regular file", file=file)
+        with path.open("rb") as stream:
+            data = stream.read(MAX_FILE_BYTES + 1)
+    except FileNotFoundError:
+        raise error("there is no such file", _neighbours(path), file=file) from None
+    except (OSError, ValueError) as reason:
+        raise error(f"cannot be read: {getattr(reason, 'strerror', None) or reason}", file=file) from None
+    if len(data) > MAX_FILE_BYTES:
+        raise error("is too large", f"at most {MAX_FILE_BYTES:,} bytes".replace(",", " "), file=file)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        line = data.count(b"\n", 0, reason.start) + 1
+        raise error(f"line {line} is not UTF-8 text", "save it as UTF-8", file=file) from None
+    if not text.strip():
+        raise error("is empty", file=file)
+    return text
+
+
+def _neighbours(path: Path) -> str:
+    """Return the hint for a missing file: files beside it with similar names."""
+    import difflib
+
+    try:
+        beside = [other.name for other in path.parent.iterdir() if other.suffix.lower() in FILE_SUFFIXES]
+    except (OSError, ValueError):
+        return ""
+    close = difflib.get_close_matches(path.name, beside, 3)
+    return f"did you mean {' or '.join(close)}?" if close else ""
+
+
+def parse_toml(text: str, file: str, error: type[ConfigError]) -> Any:
+    """Parse a TOML text and return its data.
+
+    Raises:
+        ConfigError: of the class `error`: it is not valid TOML, or is nested too deeply.
+    """
+    import tomllib
+
+    for number, line in enumerate(text.split("\n"), start=1):
+        if len(line) > MAX_LINE:
+            raise error(f"line {number} is too long", f"at most {MAX_LINE} characters", file=file)
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise error("is nested too deeply", file=file) from None
+    except ValueError as reason:
+        raise error(f"is not TOML: {reason}", file=file) from None
+
+
+def _json(text: str, file: str, error: type[ConfigError]) -> Any:
+    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for key, value in pairs:
+            if key in found:
+                raise error("is given twice", file=file, key=shown(key)[1:-1])
+            found[key] = value
+        return found
+
+    try:
+        return json.loads(text, object_pairs_hook=unique)
+    except RecursionError:
+        raise error("is nested too deeply", file=file) from None
+    except ValueError as reason:
+        raise error(f"is not JSON: {reason}", file=file) from None
+
+
+def table(data: object, at: Location, keys: Iterable[str] | None = None, unlisted: Collection[str] = ()) -> Any:
+    """Return data that is a table, as a dict.
+
+    Args:
+        data: The data.
+        at: Its location.
+        keys: The keys that it may have; None for any.
+        unlisted: Further keys, which hints omit.
+
+    Raises:
+        ConfigError: it is not a table, or has another key.
+    """
+    if not isinstance(data, dict):
+        raise at.wrong(f"must be {_TABLE}, got {shown(data)}")
+    if keys is not None:
+        known = list(keys)
+        for key in data:
+            if key not in known and key not in unlisted:
+                raise at.at(shown(key)[1:-1]).wrong("no such key", nearest(key[:MAX_NAME], known))
+    return data
+
+
+def required(data: Mapping[str, object], key: str, at: Location) -> object:
+    """Return a value of a table.
+
+    Raises:
+        ConfigError: the key is missing.
+    """
+    if key not in data:
+        raise at.at(key).wrong("is missing")
+    return data[key]
+
+
+def entries(data: object, at: Location, most: int, what: str) -> list[tuple[object, Location]]:
+    """Return the entries of a list, each with its location; the first is `key[1]`.
+
+    Raises:
+        ConfigError: it is not a list, or has more than `most` entries; `what` is their name in the plural.
+    """
+    if not isinstance(data, list):
+        raise at.wrong(f"must be a list, got {shown(data)}")
+    if len(data) > most:
+        raise at.wrong(f"has {len(data)} {what}", f"at most {most}")
+    return [(entry, at.at(f"[{number}]")) for number, entry in enumerate(data, start=1)]
+
+
+def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
+    """Return a text that must be one of `allowed`.
+
+    Raises:
+        ConfigError: it is another one, or no text.
+    """
+    word, words = convert(data, str, at), list(allowed)
+    if word not in words:
+        raise at.wrong(f"no such value {shown(word)}", f"one of {', '.join(words)}")
+    return word
+
+
+def by_switch(data: object, at: Location, converter: Callable[[str, str], Value]) -> Value:
+    """Return a text converted by the converter of a command-line switch.
+
+    Raises:
+        ConfigError: the converter refuses it, or it is no text.
+    """
+    text = convert(data, str, at)
+    try:
+        return converter(text, "")
+    except ConfigError as error:
+        raise at.wrong(error.message, error.hint) from None
+
+
+def updated(base: Value, data: object, at: Location) -> Value:
+    """Return a sensor or another part of the specs with the values in a table; its name is not one of them.
+
+    Raises:
+        ConfigError: a key or a value is wrong.
+    """
+    return changed(base, table(data, at, keys_of(type(base))), at)
+
+
+def changed(base: Value, values: Mapping[str, object], at: Location) -> Value:
+    """Return one of the specs with other values of some fields.
+
+    Raises:
+        ConfigError: a value is wrong.
+    """
+    kind: Any = type(base)
+    found: Value = convert({**{key: getattr(base, key) for key in kind.__dataclass_fields__}, **values}, kind, at)
+    return found
+
+
+def keys_of(kind: Any) -> tuple[str, ...]:
+    """Return the keys of a part in a file: every field of its class except the name."""
+    return tuple(field.name for field in fields(kind) if field.name != "name")
+
+
+def convert(data: object, kind: type[Value], at: Location) -> Value:
+    """Return data of a file as an object of a type: a dataclass, a `msgspec.Struct` or a simple type.
+
+    Args:
+        data: The data: tables as dicts, lists, texts, numbers and booleans.
+        kind: The type. Numbers must be finite, texts one line.
+        at: The location of the data.
+
+    Raises:
+        ConfigError: a key is missing or unknown, or a value is wrong.
+    """
+    import msgspec
+
+    found = dict(_walk(data, _type_info(kind), at))  # type: ignore[arg-type]  # a type is hashable
+    try:
+        return msgspec.convert(data, kind)
+    except ConfigError as error:
+        # The specs begin the keys in their errors with the name of the part, in which `at` may already end.
+        part = re.sub(r"\[\d+\]$", "", at.key).rpartition(".")[2]
+        inner = at.at(error.key.removeprefix(f"{part}."))
+        raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
+    except msgspec.ValidationError as error:
+        message, _, path = str(error).partition(" - at `$")
+        path = re.sub(r"\d+", lambda index: str(int(index[0]) + 1), path.rstrip("`").lstrip("."))
+        where = at.at(path) if path else at
+        if missing := re.fullmatch(r"Object missing required field `(\w+)`", message):
+            raise where.at(missing[1]).wrong("is missing") from None
+        value, info = found[where.key]
+        raise _mismatch(value, info, where) from None
+
+
+@lru_cache
+def _type_info(kind: Any) -> types.Type:
+    from msgspec import inspect
+
+    return inspect.type_info(kind)
+
+
+def _walk(data: object, info: types.Type, at: Location) -> Iterator[tuple[str, tuple[object, types.Type]]]:
+    """Yield the key, value and type of everything in a file; raise for what types do not express."""
+    from msgspec import inspect as types
+
+    match info, data:
+        case types.UnionType(types=members), _:
+            for member in members:
+                yield from _walk(data, member, at)
+        case types.StructType(fields=inner) | types.DataclassType(fields=inner), dict():
+            table(data, at, [field.name for field in inner])
+            for field in inner:
+                if field.name in data:
+                    yield from _walk(data[field.name], field.type, at.at(field.name))
+        case types.ListType(item_type=item) | types.VarTupleType(item_type=item), list() | tuple():
+            for number, entry in enumerate(data, start=1):
+                yield from _walk(entry, item, at.at(f"[{number}]"))
+        case types.StrType(), str() if not data.strip() or len(data) > MAX_LINE or not data.isprintable():
+            raise at.wrong(f"must be one line of text, got {shown(data)}")
+        case types.FloatType(), float() if not math.isfinite(data):
+            raise _mismatch(data, info, at)
+        case types.IntType(), int() if not isinstance(data, bool) and abs(data) > MAX_WHOLE:
+            raise _mismatch(data, info, at)
+        case types.FloatType() | types.IntType() | types.BoolType(), str():
+            # msgspec raises UnicodeEncodeError for half a surrogate pair.
+            raise _mismatch(data, info, at)
+    yield at.key, (data, info)
+
+
+def _mismatch(value: object, info: types.Type, at: Location) -> ConfigError:
+    from msgspec import inspect as types
+
+    match info:
+        case types.EnumType(cls=kind):
+            return at.wrong(f"no such value {shown(value)}", f"one of {', '.join(each.value for each in kind)}")
+        case types.LiteralType(values=values):
+            return at.wrong(f"no such value {shown(value)}", f"one of {', '.join(map(str, values))}")
+    return at.wrong(f"must be {_expected(info)}, got {shown(value)}")
+
+
+_TABLE = "a table of keys and values"
+
+
+def _expected(info: types.Type) -> str:
+    """Return in words what a type allows."""
+    from msgspec import inspect as types
+
+    match info:
+        case types.IntType(ge=low, le=high) | types.FloatType(ge=low, le=high):
+            whole = isinstance(info, types.IntType)
+            what = "a whole number" if whole else "a number"
+            if low is None or high is None:
+                return what
+            return f"{what} from {low} to {high}" if whole else f"{what} from {low:g} to {high:g}"
+        case types.StrType():
+            return "text"
+        case types.BoolType():
+            return "true or false"
+        case types.ListType() | types.VarTupleType() | types.TupleType():
+            return "a list"
+        case types.UnionType(types=members):
+            return " or ".join(map(_expected, members))
+        case _:
+            return _TABLE
+
+
+Scalar = str | bool | int | float | list[str] | list[float]
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml_key(key: str) -> str:
+    """Return a key in TOML syntax."""
+    return key if _BARE.fullmatch(key) else toml_value(key)
+
+
+def toml_value(value: Scalar) -> str:
+    """Return a value in TOML syntax; numbers round-trip exactly."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            # TOML has all escapes of JSON, and requires one more character to be escaped.
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case list():
+            return f"[{', '.join(map(toml_value, value))}]"
+        case _:
+            return repr(value)
+
+
+def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})) -> list[str]:
+    """Return the lines of one table, with their comments, aligned."""
+    pairs = [(f"{toml_key(key)} = {toml_value(value)}", comments.get(key, "")) for key, value in values.items()]
+    width = max((len(pair) for pair, comment in pairs if comment and len(pair) <= 36), default=0)
+    return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
+
+
+def write_toml(path: Path, lines: Iterable[str], error: type[ConfigError], *, owner_only: bool = False) -> None:
+    """Write a TOML file atomically.
+
+    Raises:
+        ConfigError: of the class `error`: it cannot be written; an existing file is unchanged.
+    """
+    try:
+        if path.suffix != ".toml":
+            raise error("must end in .toml", file=str(path))
+        with replacing(path, owner_only=owner_only) as stream:
+            stream.write(("\n".join(lines) + "\n").encode())
+    except (OSError, ValueError) as reason:
+        message = f"cannot be written: {getattr(reason, 'strerror', None) or reason}"
+        raise error(message, file=str(path)) from None
