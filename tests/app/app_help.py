@@ -56,7 +56,7 @@ def lab(pilot: Pilot[Any]) -> LabApp:
 async def ready(pilot: Pilot[Any]) -> LabApp:
     """Wait until the mat lies there."""
     app = lab(pilot)
-    await until(pilot, lambda: app.bridge.mat is not None)
+    await until(pilot, lambda: app.run_controller.mat is not None)
     await pilot.pause()
     return app
 
@@ -77,7 +77,7 @@ async def until_shown(pilot: Pilot[Any], text: str) -> None:
 
 async def press_and_stand(pilot: Pilot[Any], key: str) -> None:
     """Press a key that lets the program stand anew."""
-    debugging = lab(pilot).debugging
-    before = debugging.standing
+    debugger = lab(pilot).debugger
+    before = debugger.view
     await pilot.press(key)
-    await until(pilot, lambda: debugging.standing not in (None, before))
+    await until(pilot, lambda: debugger.view not in (None, before))

@@ -57,29 +57,29 @@ async def open_path(pilot: Pilot[Any], path: str) -> LabApp:
     entry.focus()
     entry.value = path
     await pilot.press("enter")
-    await until(pilot, lambda: len(app.screen_stack) == 1 and app.loading.mat_is_ready)
+    await until(pilot, lambda: len(app.screen_stack) == 1 and app.loader.mat_is_ready)
     return app
 
 
 def look(app: LabApp) -> None:
     """As the timer does, without waiting for it."""
-    app.loading.look()
+    app.loader.check_files()
 
 
 async def test_a_world_is_opened_whole(folder: Path) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.bridge.set_noise(NoiseSpec(1, 99))
+        app.run_controller.set_noise(NoiseSpec(1, 99))
         await open_path(pilot, "lab.toml")
-        spec = app.bridge.plan.spec
+        spec = app.run_controller.next_run.spec
         assert spec.world.background == "Square"
         assert spec.world.start.x_mm == 600
         assert spec.world.noise == NoiseSpec(7, 0)
         assert (spec.robot.wheel_diameter_mm, spec.seed) == (40, 5)
-        assert app.bridge.program is not None
-        assert app.bridge.program.name == "mine.py"
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.name == "mine.py"
         await pilot.press("m")
-        assert app.bridge.pose.x_mm == 600
+        assert app.run_controller.pose.x_mm == 600
 
 
 async def test_worlds_of_the_folder_are_offered_and_robots_are_not(folder: Path) -> None:
@@ -96,11 +96,11 @@ async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
     (folder / "lab.toml").write_text(LAB + "[pen]\nwidth_mm = 'thick'\n")
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        before = app.bridge.plan, app.bridge.program
+        before = app.run_controller.next_run, app.run_controller.program
         await open_path(pilot, "lab.toml")
         await until(pilot, lambda: any("pen.width_mm: must be a number" in notice for notice in notices(app)))
-        assert (app.bridge.plan, app.bridge.program) == before
-        assert app.loading.world_file is None
+        assert (app.run_controller.next_run, app.run_controller.program) == before
+        assert app.loader.world_file is None
 
 
 def with_magic(words: str) -> str:
@@ -118,32 +118,32 @@ async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
     path = folder / "mine.py"
     async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        before = app.desk.shown(panel)
+        before = app.panel_area.shown(panel)
         path.write_text(with_magic(words))
         look(app)
-        await until(pilot, lambda: app.desk.shown(panel) is shown)
+        await until(pilot, lambda: app.panel_area.shown(panel) is shown)
         path.write_text(with_magic(""))
         look(app)
-        await until(pilot, lambda: app.desk.shown(panel) is before)
+        await until(pilot, lambda: app.panel_area.shown(panel) is before)
 
 
 async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) -> None:
     (folder / "mine.py").write_text(with_magic(" -cu --speed 2"))
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await open_path(pilot, "mine.py")
-        assert app.desk.shown("chart")
-        assert app.desk.world is not None
-        assert app.desk.world.show_rays
-        assert app.bridge.speed == 2
+        assert app.panel_area.shown("chart")
+        assert app.panel_area.world is not None
+        assert app.panel_area.world.show_rays
+        assert app.run_controller.speed == 2
 
 
 async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Path) -> None:
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.loading.open_file(str(folder / "mine.py"))
-        app.bridge.place(Pose(321, 432, 10))
-        app.bridge.set_noise(NoiseSpec(3, 4))
-        spec = app.bridge.plan.spec
+        app.loader.open_file(str(folder / "mine.py"))
+        app.run_controller.place(Pose(321, 432, 10))
+        app.run_controller.set_noise(NoiseSpec(3, 4))
+        spec = app.run_controller.next_run.spec
         await pilot.press("ctrl+s")
         assert app.screen.query_one(Input).value == "lab.toml"
         await pilot.press("enter")
@@ -154,7 +154,7 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
         saved = load_world("lab.toml")
         assert build_run_spec(settings_of(saved.settings)) == spec
         assert saved.program == "mine.py"
-        assert app.loading.world_file == Path("lab.toml")
+        assert app.loader.world_file == Path("lab.toml")
         look(app)
         await pilot.pause()
         assert not any("changed on disk" in notice for notice in notices(app))
@@ -181,15 +181,15 @@ async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
     path.write_text("print('A: 1')\n")
     async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.bridge.place(Pose(500, 500, 0))
+        app.run_controller.place(Pose(500, 500, 0))
         path.write_text("print('Better: 2')\n")
         look(app)
         await until(pilot, lambda: "Better: 2" in screen_text(app))
         await until(pilot, lambda: "mine.py changed on disk: reloaded" in notices(app))
-        assert app.bridge.program is not None
-        assert app.bridge.program.text == "print('Better: 2')\n"
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.text == "print('Better: 2')\n"
         # The world is as the user left it.
-        assert app.bridge.pose == Pose(500, 500, 0)
+        assert app.run_controller.pose == Pose(500, 500, 0)
 
 
 async def test_the_timer_looks_by_itself(folder: Path) -> None:
@@ -204,16 +204,16 @@ async def test_a_changed_magic_line_applies_what_is_new_in_it(folder: Path) -> N
     path = folder / "mine.py"
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app = await open_path(pilot, "mine.py")
-        app.bridge.set_noise(NoiseSpec(9, 0))
+        app.run_controller.set_noise(NoiseSpec(9, 0))
         path.write_text(MINE.replace("-b Loop", "-b Loop -M 30 -r Small_Robot"))
         look(app)
-        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Small_Robot")
-        assert app.bridge.plan.spec.world.noise == NoiseSpec(9, 30)
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Small_Robot")
+        assert app.run_controller.next_run.spec.world.noise == NoiseSpec(9, 30)
         path.write_text(MINE.replace("Loop", "Square"))
         look(app)
-        spec = app.bridge.plan.spec
+        spec = app.run_controller.next_run.spec
         assert (spec.world.background, spec.robot.name, spec.world.noise.motor) == ("Square", "Default_Robot", 0)
-        await until(pilot, lambda: app.loading.mat_is_ready)
+        await until(pilot, lambda: app.loader.mat_is_ready)
 
 
 async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) -> None:
@@ -222,15 +222,17 @@ async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) ->
     async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RUNNING)
         path.write_text("print('Later: 2')\n")
         look(app)
         await until(pilot, lambda: notices(app) == ["mine.py changed on disk: reloaded when the run ends"])
-        assert app.bridge.program is not None
-        assert app.bridge.program.text == ENDLESS
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.text == ENDLESS
         await pilot.press("S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        await until(pilot, lambda: app.bridge.program is not None and "Later" in app.bridge.program.text)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(
+            pilot, lambda: app.run_controller.program is not None and "Later" in app.run_controller.program.text
+        )
 
 
 # The file, what it says then, the notice, and a fact that stays as it was.
@@ -247,16 +249,16 @@ async def test_a_file_that_became_wrong_is_told_and_the_former_stays(
 ) -> None:
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app = await open_path(pilot, "lab.toml")
-        before = app.bridge.plan, app.bridge.program
+        before = app.run_controller.next_run, app.run_controller.program
         good = (folder / name).read_text()
         (folder / name).write_text(text)
         look(app)
         await until(pilot, lambda: any(said in notice for notice in notices(app)))
-        assert (app.bridge.plan, app.bridge.program) == before
+        assert (app.run_controller.next_run, app.run_controller.program) == before
         (folder / name).write_text(good + "\n")
         look(app)
         await until(pilot, lambda: f"{name} changed on disk: reloaded" in notices(app))
-        assert app.bridge.plan.spec == before[0].spec
+        assert app.run_controller.next_run.spec == before[0].spec
 
 
 async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
@@ -268,12 +270,12 @@ async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
         box = "[[obstacle]]\nx_mm = 1\ny_mm = 2\nwidth_mm = 3\nheight_mm = 4\n"
         (folder / "boxes.toml").write_text(box)
         look(app)
-        spec = app.bridge.plan.spec
+        spec = app.run_controller.next_run.spec
         assert (spec.robot.wheel_diameter_mm, len(spec.world.obstacles)) == (44, 1)
         (folder / "lab.toml").write_text((folder / "lab.toml").read_text().replace("light = 7", "light = 8"))
         look(app)
-        assert app.bridge.plan.spec.world.noise.light == 8
-        assert app.bridge.plan.spec.robot.wheel_diameter_mm == 44
+        assert app.run_controller.next_run.spec.world.noise.light == 8
+        assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 44
 
 
 async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
@@ -294,7 +296,7 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
     )
     async with LabApp(opened).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        assert app.bridge.plan.spec == prepared.spec
+        assert app.run_controller.next_run.spec == prepared.spec
         (folder / "lab.toml").write_text(LAB.replace("seed = 5", "seed = 6"))
         look(app)
-        assert app.bridge.plan.spec.seed == 6
+        assert app.run_controller.next_run.spec.seed == 6

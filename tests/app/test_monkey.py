@@ -52,7 +52,7 @@ def analyser(turn: int) -> TerminalApp:
 
 def is_open(app: App[Any]) -> bool:
     if isinstance(app, LabApp):
-        return app.bridge.mat is not None
+        return app.run_controller.mat is not None
     return isinstance(app.screen, Analyser) and app.screen.model is not None
 
 

@@ -49,22 +49,22 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
     run_id = stored()
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == ENDED and "finished at" in screen_text(app))
+        await until(pilot, lambda: app.run_controller.state == ENDED and "finished at" in screen_text(app))
         assert "Colour: " in screen_text(app)
-        assert app.bridge.run_id == run_id
-        assert app.bridge.plan.spec == RunStore().load_run(run_id).spec
+        assert app.run_controller.run_id == run_id
+        assert app.run_controller.next_run.spec == RunStore().load_run(run_id).spec
         await pilot.press("g")
         app.screen.query_one(Input).value = "1.5"
         await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.snapshot().past)
-        assert app.bridge.snapshot().instant.noise.light == 20
-        assert app.bridge.snapshot().spec.seed == 5
-        app.bridge.timeline.go(50)
-        assert app.bridge.snapshot().instant.noise.light == 0
-        app.bridge.set_speed(0.0)
+        await until(pilot, lambda: app.run_controller.snapshot().past)
+        assert app.run_controller.snapshot().instant.noise.light == 20
+        assert app.run_controller.snapshot().spec.seed == 5
+        app.run_controller.timeline.go(50)
+        assert app.run_controller.snapshot().instant.noise.light == 0
+        app.run_controller.set_speed(0.0)
         await pilot.press("R", "r")
-        await until(pilot, lambda: app.bridge.run_id != run_id and app.bridge.state == ENDED)
-        again, first = RunStore().load_run(app.bridge.run_id), RunStore().load_run(run_id)
+        await until(pilot, lambda: app.run_controller.run_id != run_id and app.run_controller.state == ENDED)
+        again, first = RunStore().load_run(app.run_controller.run_id), RunStore().load_run(run_id)
         assert again.program.text == first.program.text
         assert again.telemetry.array()[:100].tobytes() == first.telemetry.array()[:100].tobytes()
 
@@ -82,10 +82,10 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         assert isinstance(app.screen, RunChooser)
         assert app.screen.query_one(OptionList).option_count == 1
         await pilot.press(*["backspace"] * 6, *"LOLLI", "enter")
-        await until(pilot, lambda: app.bridge.run_id == ids[1])
-        await until(pilot, lambda: app.bridge.mat is not None and app.bridge.mat.name == "Lollipop")
+        await until(pilot, lambda: app.run_controller.run_id == ids[1])
+        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop")
         await pilot.press("comma")
-        assert app.bridge.snapshot().past
+        assert app.run_controller.snapshot().past
 
 
 async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
@@ -98,23 +98,23 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
     folder = RunStore().folder(run_id)
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         # The prepared mat is in the cache still.
-        assert app.bridge.snapshot().colors["left"].green > 150
-        assert app.bridge.program is not None
-        assert app.bridge.program.path == ""
+        assert app.run_controller.snapshot().colors["left"].green > 150
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.path == ""
         await pilot.press("R")
         await until(pilot, lambda: any("own.png" in notice for notice in notices(app)))
-        assert app.bridge.run_id == run_id
+        assert app.run_controller.run_id == run_id
     for name in json.loads((folder / "run.json").read_text())["field"]["sums"]:
         Path(name[1]).unlink()
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         await until(pilot, lambda: any("the mat of the run" in notice for notice in notices(app)))
         await pilot.press("less_than_sign")
-        assert app.bridge.snapshot().past
-        assert not app.bridge.snapshot().colors
+        assert app.run_controller.snapshot().past
+        assert not app.run_controller.snapshot().colors
 
 
 def _no_run_file(folder: Path) -> str:
@@ -144,7 +144,7 @@ async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
         await until(pilot, lambda: "1 of 1 runs" in screen_text(app))
         await pilot.press("enter")
         await until(pilot, lambda: any(said in notice for notice in notices(app)))
-        assert not app.bridge.run_id
+        assert not app.run_controller.run_id
 
 
 @pytest.mark.parametrize(

@@ -232,17 +232,17 @@ def shows(folder: Path, *arguments: str) -> AppSettings:
 async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
     async with LabApp(shows(folder, "A", "B C")).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        edit = find(app.bridge.plan, "arguments")
+        edit = find(app.run_controller.next_run, "arguments")
         assert edit is not None
-        assert edit.read(app.bridge.plan) == "A 'B C'"
-        assert app.loading.attempt(lambda plan: edit.write(plan, "X 'Y Z'"))
+        assert edit.read(app.run_controller.next_run) == "A 'B C'"
+        assert app.loader.attempt(lambda plan: edit.write(plan, "X 'Y Z'"))
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.run is not None and app.bridge.run.ended is not None)
+        await until(pilot, lambda: app.run_controller.run is not None and app.run_controller.run.ended is not None)
         run = RunStore().load_run("last")
         assert run.program.arguments == ("X", "Y Z")
-        assert app.bridge.timeline.recording is not None
-        assert app.bridge.timeline.recording.program.arguments == ("X", "Y Z")
-        assert not app.loading.attempt(lambda plan: edit.write(plan, "'open"))
+        assert app.run_controller.timeline.recording is not None
+        assert app.run_controller.timeline.recording.program.arguments == ("X", "Y Z")
+        assert not app.loader.attempt(lambda plan: edit.write(plan, "'open"))
         (folder / "q.py").write_text(SHOWS)
-        app.loading.open_file(str(folder / "q.py"))
-        assert app.bridge.plan.settings.arguments == ()
+        app.loader.open_file(str(folder / "q.py"))
+        assert app.run_controller.next_run.settings.arguments == ()

@@ -21,7 +21,7 @@ from tuisim.app.actions.table import ACTIONS, IN_RUN, Situation, working
 from tuisim.app.background import is_leaving
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
-from tuisim.app.feed import Feed, Lookback, Series, sample_series
+from tuisim.app.feed import Feed, PastView, Series, sample_series
 from tuisim.app.keys.action import ActionHost, KeyWord, key_bindings
 from tuisim.app.keys.footer import FIELD_KEYS, TYPING_KEYS, KeyFooter
 from tuisim.app.loader import PERIOD_S, Loader, open_run
@@ -70,18 +70,18 @@ class LabApp(ActionHost, PanelMessages):
     def __init__(self, settings: AppSettings) -> None:
         super().__init__()
         self.settings = settings
-        self.bridge = RunController(settings)
-        self.desk = PanelArea(settings.panels_on, settings.panels_off)
+        self.run_controller = RunController(settings)
+        self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
         self.voice = Voice(settings.quiet)
-        self.bridge.propose = partial(branch.propose, self)
-        self.lookback = Lookback(self.desk, self.bridge.timeline)
+        self.run_controller.propose = partial(branch.propose, self)
+        self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None
         self._drawn: object = None
-        self.loading = Loader(self)
-        self.work = Document(self)
-        self.debugging = AppDebugger(self)
+        self.loader = Loader(self)
+        self.document = Document(self)
+        self.debugger = AppDebugger(self)
         self.brick_hint = BrickHint(self)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._beats: Timer | None = None
@@ -93,7 +93,7 @@ class LabApp(ActionHost, PanelMessages):
 
     def compose(self) -> ComposeResult:
         """Lay out the panel area and the footer."""
-        yield self.desk
+        yield self.panel_area
         yield self.key_footer
 
     def on_ready(self) -> None:
@@ -106,99 +106,99 @@ class LabApp(ActionHost, PanelMessages):
     def _begin(self) -> None:
         if is_leaving(self):
             return
-        self.desk.ensure("world", "output", "chart")
+        self.panel_area.ensure("world", "output", "chart")
         if self.settings.replay:
             open_run(self, self.settings.replay)
-            self.work.begin()
+            self.document.begin()
         else:
-            self.loading.prepare_mat()
-            self.loading.begin()
+            self.loader.prepare_mat()
+            self.loader.begin()
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
-        self.debugging.program_changed(self.bridge.program)
+        self.debugger.program_changed(self.run_controller.program)
         self._beats = self.set_interval(1 / self.settings.fps, self._beat)
         self.set_interval(_REST_GAP_S, self._seldom)
-        self.set_interval(PERIOD_S, self.loading.look)
+        self.set_interval(PERIOD_S, self.loader.check_files)
 
     def suspending(self) -> None:
         """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""
-        time_travel.stand_still(self)
+        time_travel.stop_time(self)
 
     def on_unmount(self) -> None:
         """Kill the child process and save unsaved work as a draft."""
-        self.work.keep()
-        self.debugging.close()
-        self.bridge.close()
+        self.document.save_draft()
+        self.debugger.close()
+        self.run_controller.close()
         self.voice.hush()
 
     # The world
 
     def mat_ready(self, pixels: Pixels | None) -> None:
         """Show the image of the mat that has been prepared, unless it is shown already."""
-        if pixels is not None and (world := self.desk.world):
+        if pixels is not None and (world := self.panel_area.world):
             world.set_mat(pixels)
         self.draw(force=True)
         if self._run_when_ready:
             self._run_when_ready = False
-            if self.bridge.program:
+            if self.run_controller.program:
                 self.start_run()
 
-    def plan_changed(self) -> None:
+    def next_run_changed(self) -> None:
         """Update the panels after the plan of the next run has changed."""
         self._introduce_program()
-        self.desk.show_plan(self.bridge.plan)
+        self.panel_area.show_next_run(self.run_controller.next_run)
         self.situation_changed()
         self.draw(force=True)
 
     # A run
 
-    def start_run(self, held: bool = False) -> bool:
+    def start_run(self, paused: bool = False) -> bool:
         """Start the program, as soon as the mat is ready. Return whether it has started.
 
         Args:
-            held: Hold it at its first line.
+            paused: Pause it at its first line.
         """
-        if not self.loading.mat_is_ready:
-            self._run_when_ready = not held
+        if not self.loader.mat_is_ready:
+            self._run_when_ready = not paused
             self.say("The mat is being prepared; the program starts at once after that")
             return False
-        if not self.work.apply():
+        if not self.document.apply():
             return False
         try:
-            self.bridge.start(self.debugging.texts, held)
+            self.run_controller.start(self.debugger.texts, paused)
         except TuisimError as error:
             self.complain(error)
             return False
         self.run_changed()
-        self.brick_hint.started(self.bridge.program.text if self.bridge.program else "")
+        self.brick_hint.started(self.run_controller.program.text if self.run_controller.program else "")
         return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
         """Prepare the panels for another run, which may have ended already with some last words."""
-        recording = self.bridge.timeline.recording
+        recording = self.run_controller.timeline.recording
         self.feed = Feed(recording) if recording else None
         self._last_words = last_words
-        self.desk.clear_log()
-        if self.desk.brick:
-            self.desk.brick.release_all()
-        self.work.run_changed()
-        self.work.run_ended_at(error_line)
-        self.debugging.run_changed()
+        self.panel_area.clear_log()
+        if self.panel_area.brick:
+            self.panel_area.brick.release_all()
+        self.document.run_changed()
+        self.document.run_ended_at(error_line)
+        self.debugger.run_changed()
         self.situation_changed()
 
     def _beat(self) -> None:
         """Process what the run has written, and draw a frame if the terminal has shown the last one."""
         try:
-            news = self.bridge.poll()
+            news = self.run_controller.poll()
             self._take(news)
             time_travel.beat(self)
-            self.debugging.beat()
+            self.debugger.beat()
             # A frame that has to wait counts as drawn.
             drew = not self.pacer.ready() or self.draw()
-            if drew or news or self.debugging.busy:
+            if drew or news or self.debugger.busy:
                 self._wake()
         except TuisimError as error:
             # What cannot be read now cannot be read at the next beat either.
-            self.bridge.close()
+            self.run_controller.close()
             self.complain(error)
             self.situation_changed()
 
@@ -229,60 +229,60 @@ class LabApp(ActionHost, PanelMessages):
     def _take(self, news: RunUpdate) -> None:
         for sound in news.spoken:
             self.voice.make_heard(sound)
-        for event in news.held:
-            self.debugging.take(event)
+        for event in news.pauses:
+            self.debugger.handle(event)
         if news.rows:
             self._take_rows(news)
-        if output := self.desk.output:
+        if output := self.panel_area.output:
             if news.prompt is not None and not output.asking:
                 self._ask(news.prompt)
             elif news.prompt is None and output.asking:
                 output.stop_asking()
-        if news.branched and (recording := self.bridge.timeline.recording):
-            self.say(branch.told(news.branched, recording))
+        if news.branched and (recording := self.run_controller.timeline.recording):
+            self.say(branch.branch_message(news.branched, recording))
             self.situation_changed()
         if news.ended:
             self._ended(news.ended)
-        if self._last_words and len(news.rows) < ROWS_A_POLL and self.desk.output:
-            self.desk.output.note(self._last_words)
+        if self._last_words and len(news.rows) < ROWS_A_POLL and self.panel_area.output:
+            self.panel_area.output.note(self._last_words)
             self._last_words = ""
 
     def _take_rows(self, news: RunUpdate) -> None:
         self.brick_hint.shown(news.rows)
-        if self.desk.output:
-            self.desk.output.add(news.rows, news.skipped)
+        if self.panel_area.output:
+            self.panel_area.output.add(news.rows, news.skipped)
         self._append(sample_series(news.rows))
 
     def _append(self, series: Series) -> None:
-        if chart := self.desk.chart:
+        if chart := self.panel_area.chart:
             for name, (times, values) in series.items():
                 chart.append(name, times, values)
 
     def _ask(self, prompt: str) -> None:
-        if not self.desk.shown("output"):
-            self.desk.toggle("output")
-        if self.desk.output:
-            self.desk.output.ask(prompt)
+        if not self.panel_area.shown("output"):
+            self.panel_area.toggle("output")
+        if self.panel_area.output:
+            self.panel_area.output.ask(prompt)
 
     def _ended(self, ended: Ended) -> None:
-        if self.desk.brick:
-            self.desk.brick.release_all()
+        if self.panel_area.brick:
+            self.panel_area.brick.release_all()
         good = ended.end in GOOD_ENDS
         words = ended.summary or end_label(ended.end)
         self.notify(words, severity="information" if good else "error", markup=False)
-        self.debugging.ended()
-        self.work.run_ended_at(ended.error_line)
+        self.debugger.ended()
+        self.document.run_ended_at(ended.error_line)
         # The traceback is among the rows already.
         known = ended.end in (End.FINISHED, End.RAISED)
         self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
         self.situation_changed()
-        self.loading.look()
+        self.loader.check_files()
 
     # The picture
 
     def draw(self, force: bool = False) -> bool:
         """Show the current moment in every panel. Return whether it differs from what they show already."""
-        snapshot = self.bridge.snapshot()
+        snapshot = self.run_controller.snapshot()
         now = (
             (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
             (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
@@ -293,8 +293,8 @@ class LabApp(ActionHost, PanelMessages):
             return False
         self._drawn = now
         self._feed_panels()
-        self.lookback.show()
-        self.desk.show(snapshot)
+        self.past_view.show()
+        self.panel_area.show(snapshot)
         self._show_footer(snapshot)
         self.pacer.drawn()
         return True
@@ -302,7 +302,7 @@ class LabApp(ActionHost, PanelMessages):
     def _feed_panels(self) -> None:
         if self.feed is None:
             return
-        if world := self.desk.world:
+        if world := self.panel_area.world:
             xs, ys = self.feed.trace_points()
             if xs:
                 world.extend_trace(xs, ys, self.feed.recording.spec.robot.pen)
@@ -311,8 +311,8 @@ class LabApp(ActionHost, PanelMessages):
 
     def _charted_field(self) -> Field | None:
         """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
-        mat = self.bridge.mat
-        if self.feed is None or mat is None or not self.desk.shown("chart"):
+        mat = self.run_controller.mat
+        if self.feed is None or mat is None or not self.panel_area.shown("chart"):
             return None
         return mat.field if mat.serves(self.feed.recording.spec) else None
 
@@ -328,22 +328,28 @@ class LabApp(ActionHost, PanelMessages):
     def situation_changed(self) -> None:
         """Update the footer."""
         self._wake()
-        self._show_footer(self.bridge.snapshot())
+        self._show_footer(self.run_controller.snapshot())
 
     def situation(self) -> Situation:
         """Return the state that decides which keys are available."""
-        bridge = self.bridge
-        has_program = bridge.program is not None
-        return Situation(bridge.state, has_program, bool(bridge.run_id), bridge.in_past, self.debugging.is_away)
+        run_controller = self.run_controller
+        has_program = run_controller.program is not None
+        return Situation(
+            run_controller.state,
+            has_program,
+            bool(run_controller.run_id),
+            run_controller.in_past,
+            self.debugger.is_away,
+        )
 
     def _show_footer(self, snapshot: Snapshot) -> None:
         status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
-        if self.debugging.looks_back:
-            status = "playing" if self.bridge.timeline.playing else f"past {snapshot.time_s:.2f} s"
+        if self.debugger.looks_back:
+            status = "playing" if self.run_controller.timeline.playing else f"past {snapshot.time_s:.2f} s"
         if snapshot.state in IN_RUN or snapshot.speed != 1:
             status += f" {speed_label(snapshot.speed)}"
-        off = frozenset(f"panel-{panel}" for panel in PANELS if not self.desk.shown(panel))
-        failed = snapshot.failed and not self.debugging.looks_back
+        off = frozenset(f"panel-{panel}" for panel in PANELS if not self.panel_area.shown(panel))
+        failed = snapshot.failed and not self.debugger.looks_back
         self.key_footer.show(working(self.situation()), status, off, self._field_keys(), failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
@@ -352,7 +358,7 @@ class LabApp(ActionHost, PanelMessages):
         focused = self.focused if self.screen_stack else None
         if isinstance(focused, Input):
             return FIELD_KEYS
-        code = self.desk.code
+        code = self.panel_area.code
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
         return TYPING_KEYS if typing else ()
 
@@ -360,18 +366,18 @@ class LabApp(ActionHost, PanelMessages):
 
     def on_panel_area_added(self, message: PanelArea.Added) -> None:
         """Bring a newly mounted panel up to date."""
-        if message.panel == "world" and (world := self.desk.world):
+        if message.panel == "world" and (world := self.panel_area.world):
             world.show_rays = self.settings.rays
-            if self.bridge.mat:
-                world.set_mat(self.bridge.mat.pixels)
+            if self.run_controller.mat:
+                world.set_mat(self.run_controller.mat.pixels)
             if self.focused is None:
                 world.focus()
         if message.panel in ("code", "controls"):
             self._introduce_program()
         if message.panel in ("code", "debug"):
-            self.debugging.mark()
-            self.debugging.show()
-        self.desk.show_plan(self.bridge.plan)
+            self.debugger.mark()
+            self.debugger.show()
+        self.panel_area.show_next_run(self.run_controller.next_run)
         self.call_after_refresh(self.draw, force=True)
 
     def on_panel_area_rearranged(self) -> None:
@@ -380,25 +386,25 @@ class LabApp(ActionHost, PanelMessages):
         self.call_after_refresh(self.draw, force=True)
 
     def _introduce_program(self) -> None:
-        self.work.introduce()
-        self.debugging.program_changed(self.bridge.program)
+        self.document.introduce()
+        self.debugger.program_changed(self.run_controller.program)
 
     # What the user does
 
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""
-        if self.debugging.is_away and self.focused in (None, self.desk.world):
+        if self.debugger.is_away and self.focused in (None, self.panel_area.world):
             time_travel.to_now(self)
-        self.desk.focus_world()
+        self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
         """The user answered `input()`."""
-        self.bridge.answer(message.text)
+        self.run_controller.answer(message.text)
         self.action_leave_field()
 
     def on_click(self, event: events.Click) -> None:
         """Leave the input field when the user clicks elsewhere."""
-        in_a_dialog = self.screen is not self.desk.screen
+        in_a_dialog = self.screen is not self.panel_area.screen
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             self.action_leave_field()
 
@@ -453,5 +459,5 @@ class BrickHint:
 
     def _tell(self, what: str) -> None:
         self._told = True
-        if not self._lab.desk.shown("brick"):
+        if not self._lab.panel_area.shown("brick"):
             self._lab.say(f"The program {what}: {PANELS['brick'].key} opens its panel")

@@ -99,7 +99,7 @@ class DebugView:
     """Where a program is paused, and its frames and variables there."""
 
     paused: Paused
-    looked: Inspected
+    inspected: Inspected
     past: bool
     """Whether this is a past instant."""
 
@@ -115,7 +115,7 @@ class AppDebugger:
         self._lab = lab
         self.breaks: tuple[Breakpoint, ...] = ()
         self.watches: tuple[str, ...] = ()
-        self.standing: DebugView | None = None
+        self.view: DebugView | None = None
         """What is shown; None while the program runs, or before it is first paused."""
         self._program = ""
         self._text = ""
@@ -169,13 +169,13 @@ class AppDebugger:
 
     def _send_breakpoints(self) -> None:
         """Send the breakpoints to the live run, each on its line of the text that runs."""
-        lines, texts = self._lab.work.lines(), []
+        lines, texts = self._lab.document.lines(), []
         for one in self.breaks:
             shown = break_line_of(one)
             runs = lines.to_run(shown)
             if runs or not shown:
                 texts.append(moved(one, runs).written())
-        self._lab.bridge.debug(protocol.SetBreaks(tuple(texts)))
+        self._lab.run_controller.debug(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
         """Set the watched expressions and store them."""
@@ -192,7 +192,7 @@ class AppDebugger:
 
     def mark(self) -> None:
         """Show the breakpoints in the code."""
-        if code := self._lab.desk.code:
+        if code := self._lab.panel_area.code:
             marks = {line: _mark(one) for line, one in break_lines(self.breaks).items()}
             code.set_marks(marks)
 
@@ -210,7 +210,7 @@ class AppDebugger:
 
     def run_changed(self) -> None:
         """Reset the state for another run, or none."""
-        self._paused = self._position = self.standing = self._lab.bridge.held_line = None
+        self._paused = self._position = self.view = self._lab.run_controller.paused_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._first, self._more_back = None, 0
@@ -221,10 +221,10 @@ class AppDebugger:
         """Handle the end of the run: it is no longer paused; a past instant stays in view."""
         self._paused = None
         if not self.is_away:
-            self.standing = self._lab.bridge.held_line = None
+            self.view = self._lab.run_controller.paused_line = None
             self.show()
 
-    def take(self, event: Message) -> None:
+    def handle(self, event: Message) -> None:
         """Handle a report that the run has paused, has resumed, or sends its frames and variables."""
         if self._breakpoints_unsent:
             self._breakpoints_unsent = False
@@ -234,8 +234,8 @@ class AppDebugger:
                 self._handle_pause(event)
             case protocol.Resumed():
                 self._paused = None
-                if not self._lab.bridge.in_past:
-                    self._position = self.standing = None
+                if not self._lab.run_controller.in_past:
+                    self._position = self.view = None
                     self.show()
             case Inspected() if self._paused is not None and not self.looks_back:
                 self._set_paused(DebugView(self._paused, event, False))
@@ -245,7 +245,7 @@ class AppDebugger:
         self._frame, self._thread = 0, ""
         if self._first is not None and paused.reason is not PauseReason.BREAK:
             first, self._first = self._first, None
-            self._lab.bridge.debug(first)
+            self._lab.run_controller.debug(first)
             return
         if paused.reason in SHOWS_PANELS:
             self._open_panels()
@@ -260,15 +260,15 @@ class AppDebugger:
             return
         self._panels_opened = True
         for panel in ("code", "debug"):
-            if not self._lab.desk.shown(panel):
-                self._lab.desk.toggle(panel)
+            if not self._lab.panel_area.shown(panel):
+                self._lab.panel_area.toggle(panel)
 
     # Inspect
 
     @property
     def looks_back(self) -> bool:
         """Whether a past instant is viewed, even one within the newest tick."""
-        return self._position is not None or self._lab.bridge.in_past
+        return self._position is not None or self._lab.run_controller.in_past
 
     @property
     def busy(self) -> bool:
@@ -287,15 +287,15 @@ class AppDebugger:
 
     def choose_frame(self, by: int) -> None:
         """Select the caller of the current frame, or the function that it called."""
-        if self.standing:
-            self._frame = min(max(0, self._frame + by), max(0, len(self.standing.looked.stack) - 1))
+        if self.view:
+            self._frame = min(max(0, self._frame + by), max(0, len(self.view.inspected.stack) - 1))
             self._inspect_again()
 
     def choose_thread(self) -> None:
         """Select the next thread."""
-        if self.standing and (threads := self.standing.looked.threads):
+        if self.view and (threads := self.view.inspected.threads):
             names = [thread.name for thread in threads]
-            at = names.index(self.standing.looked.thread) if self.standing.looked.thread in names else -1
+            at = names.index(self.view.inspected.thread) if self.view.inspected.thread in names else -1
             self._thread, self._frame = names[(at + 1) % len(names)], 0
             self._inspect_again()
 
@@ -303,19 +303,19 @@ class AppDebugger:
         if self.looks_back:
             self._replay_debugger.look(self.look)
         elif self._paused is not None:
-            self._lab.bridge.debug(self.look)
+            self._lab.run_controller.debug(self.look)
 
     def beat(self) -> None:
         """Follow the instant in view and process what has been computed."""
         self._replay_debugger.beat()
-        timeline = self._lab.bridge.timeline
+        timeline = self._lab.run_controller.timeline
         if self._position is not None and timeline.at not in (None, self._position.tick):
             self._position = None
         if not self.looks_back:
-            if self.standing and self.standing.past and not self.busy:
+            if self.view and self.view.past and not self.busy:
                 self._back_to_now()
             return
-        if timeline.at is not None and self._position is None and self._lab.desk.shown("debug"):
+        if timeline.at is not None and self._position is None and self._lab.panel_area.shown("debug"):
             self._follow(Position(timeline.at))
 
     def to_now(self) -> None:
@@ -328,20 +328,20 @@ class AppDebugger:
             self.show()
 
     def _back_to_now(self) -> None:
-        self.standing, self._wanted = None, None
+        self.view, self._wanted = None, None
         self.show()
         self._inspect_again()
 
     def _follow(self, position: Position) -> None:
-        timeline = self._lab.bridge.timeline
+        timeline = self._lab.run_controller.timeline
         if timeline.recording is None or timeline.playing or self._replay_debugger.busy or position == self._wanted:
             return
         self._wanted = position
         self._replay_debugger.go(timeline.recording, position, self.look)
         self.show()
 
-    def _arrived(self, paused: Paused, looked: Inspected) -> None:
-        timeline, here = self._lab.bridge.timeline, Position(paused.tick, paused.ordinal)
+    def _arrived(self, paused: Paused, inspected: Inspected) -> None:
+        timeline, here = self._lab.run_controller.timeline, Position(paused.tick, paused.ordinal)
         if self._wanted is None:
             if not self._is_past(here):
                 self._reached_now()
@@ -352,7 +352,7 @@ class AppDebugger:
             # The user has gone elsewhere meanwhile.
             self._wanted = None
             return
-        self._set_paused(DebugView(paused, looked, True))
+        self._set_paused(DebugView(paused, inspected, True))
         self._lab.situation_changed()
         if self._more_back:
             self.lines_back(0)
@@ -361,7 +361,7 @@ class AppDebugger:
         """Return whether an instant is in the past; a re-run may get farther than the current run."""
         now = self._paused
         if now is None or now.ordinal == UNKNOWN_ORDINAL:
-            return at.tick <= (self._lab.bridge.timeline.newest if now is None else now.tick)
+            return at.tick <= (self._lab.run_controller.timeline.newest if now is None else now.tick)
         return at.is_before(Position(now.tick, now.ordinal))
 
     def _reached_now(self) -> None:
@@ -373,23 +373,23 @@ class AppDebugger:
         self._lab.say(why)
         self.show()
 
-    def _set_paused(self, standing: DebugView) -> None:
-        self.standing = standing
-        line = standing.paused.line if not standing.paused.file else 0
-        self._lab.bridge.held_line = (standing.paused.tick, line)
+    def _set_paused(self, view: DebugView) -> None:
+        self.view = view
+        line = view.paused.line if not view.paused.file else 0
+        self._lab.run_controller.paused_line = (view.paused.tick, line)
         self.show()
         self._lab.draw(force=True)
 
     def show(self) -> None:
         """Update the debug panel."""
-        if panel := self._lab.desk.debug:
+        if panel := self._lab.panel_area.debug:
             panel.show_debugging(self)
 
     # Steps
 
     def _here(self) -> Position | None:
         """Return the instant in view, exact to the line as far as that is known."""
-        timeline = self._lab.bridge.timeline
+        timeline = self._lab.run_controller.timeline
         if self._position is not None:
             return self._position
         if timeline.at is not None:
@@ -404,8 +404,8 @@ class AppDebugger:
 
     def run_to(self, line: int) -> None:
         """Continue until a line is about to run."""
-        bridge = self._lab.bridge
-        runs = self._lab.work.lines().to_run(line) if bridge.in_run or self.is_away else line
+        run_controller = self._lab.run_controller
+        runs = self._lab.document.lines().to_run(line) if run_controller.in_run or self.is_away else line
         if runs:
             self.go_on(protocol.RunToLine(runs))
         else:
@@ -416,17 +416,17 @@ class AppDebugger:
         lab = self._lab
         if self.is_away:
             self._in_past(command)
-        elif lab.bridge.in_run:
-            lab.bridge.debug(command)
+        elif lab.run_controller.in_run:
+            lab.run_controller.debug(command)
         else:
             # A program started for this pauses at its first line anyway.
             first = None if isinstance(command, protocol.StepLine) else command
-            if lab.start_run(held=True):
+            if lab.start_run(paused=True):
                 self._first = first
                 self._open_panels()
 
     def _in_past(self, command: Message) -> None:
-        timeline = self._lab.bridge.timeline
+        timeline = self._lab.run_controller.timeline
         if timeline.recording is None or self._replay_debugger.busy:
             return
         self._open_panels()
@@ -439,14 +439,14 @@ class AppDebugger:
     def lines_back(self, count: int) -> None:
         """Go back by a number of executed lines."""
         lab = self._lab
-        here, recording = self._here(), lab.bridge.timeline.recording
+        here, recording = self._here(), lab.run_controller.timeline.recording
         if here is None or recording is None:
             lab.say("No run yet to look back on: R runs the program")
         elif self._replay_debugger.busy:
             self._more_back += count
         else:
-            if lab.bridge.in_run and lab.bridge.state != PAUSED:
-                lab.bridge.pause()
+            if lab.run_controller.in_run and lab.run_controller.state != PAUSED:
+                lab.run_controller.pause()
             self._open_panels()
             self._position, self._wanted = None, None
             count, self._more_back = count + self._more_back, 0

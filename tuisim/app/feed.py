@@ -160,25 +160,25 @@ PAST_ROWS = 200
 """Number of output rows shown of a past instant."""
 
 
-class Lookback:
+class PastView:
     """Keeps panels at the instant in view.
 
     Args:
-        desk: The panel area.
+        panel_area: The panel area.
         timeline: Provides that instant.
     """
 
-    def __init__(self, desk: PanelArea, timeline: Timeline) -> None:
-        self._panel_area = desk
+    def __init__(self, panel_area: PanelArea, timeline: Timeline) -> None:
+        self._panel_area = panel_area
         self._timeline = timeline
         self._traced: object = None
         self._printed: object = None
 
     def show(self) -> None:
         """Update the panels if they show another instant."""
-        desk, timeline = self._panel_area, self._timeline
+        panel_area, timeline = self._panel_area, self._timeline
         recording, tick = timeline.recording, timeline.at
-        if world := desk.world:
+        if world := panel_area.world:
             world.time_bar.marks = timeline.marks
             key = None if tick is None or recording is None else (recording, tick, world)
             if key != self._traced:
@@ -187,7 +187,7 @@ class Lookback:
                     world.show_past_trace(None)
                 else:
                     world.show_past_trace(trace_until(recording, tick), recording.spec.robot.pen)
-        if output := desk.output:
+        if output := panel_area.output:
             count = None if tick is None or recording is None else (recording, recording.rows.until(tick), output)
             if count != self._printed:
                 self._printed = count

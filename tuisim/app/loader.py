@@ -49,12 +49,12 @@ class Loader:
         """Settings of the world file and the magic line when last read, to detect what changes in them."""
         self._file_prelude = ""
         """The prelude that the program's file asks for; the command line may have chosen another one."""
-        self._later: list[Path] = []
+        self._changed_in_run: list[Path] = []
         """Files that changed during the run."""
 
     def begin(self) -> None:
         """Register what the command line has opened, and watch those files."""
-        program = self._lab.bridge.program
+        program = self._lab.run_controller.program
         try:
             if self.world_file is not None:
                 self._read_world(self.world_file)
@@ -64,41 +64,45 @@ class Loader:
             # It was read a moment ago and is invalid now: the next check reports that.
             pass
         self._follow()
-        self._lab.work.begin()
+        self._lab.document.begin()
 
     # The mat
 
     @property
     def mat_is_ready(self) -> bool:
         """Whether the mat is prepared for the robot's sensors."""
-        mat = self._lab.bridge.mat
-        return mat is not None and mat.serves(self._lab.bridge.plan.spec)
+        mat = self._lab.run_controller.mat
+        return mat is not None and mat.serves(self._lab.run_controller.next_run.spec)
 
     def prepare_mat(self) -> None:
         """Prepare the mat in the background; `LabApp.mat_ready` is called when done."""
-        spec = self._lab.bridge.plan.spec
+        spec = self._lab.run_controller.next_run.spec
         work, failed = partial(prepare_mat, spec), partial(self._mat_failed, spec)
         background.run(self._lab, work, self._prepared, failed, group="mat", exclusive=True)
 
     def _mat_failed(self, spec: RunSpec, error: TuisimError) -> None:
         """Report the error in a mat, and restore the previous mat."""
         self._lab.complain(error)
-        bridge = self._lab.bridge
-        if self._good is not None and not bridge.in_run and mat_key(bridge.plan.spec) == mat_key(spec):
-            plan, bridge.mat = self._good
-            self._load(plan, bridge.program)
+        run_controller = self._lab.run_controller
+        if (
+            self._good is not None
+            and not run_controller.in_run
+            and mat_key(run_controller.next_run.spec) == mat_key(spec)
+        ):
+            plan, run_controller.mat = self._good
+            self._load(plan, run_controller.program)
 
     def _prepared(self, mat: Mat) -> None:
-        bridge = self._lab.bridge
-        if mat.key == mat_key(bridge.plan.spec):
-            same_picture = bridge.mat is not None and bridge.mat.key[:2] == mat.key[:2]
-            bridge.mat = mat
-            self._good = bridge.plan, mat
+        run_controller = self._lab.run_controller
+        if mat.key == mat_key(run_controller.next_run.spec):
+            same_picture = run_controller.mat is not None and run_controller.mat.key[:2] == mat.key[:2]
+            run_controller.mat = mat
+            self._good = run_controller.next_run, mat
             self._lab.mat_ready(None if same_picture else mat.pixels)
 
     def lay_out(self, plan: NextRun, program: Program | None, mat: Mat) -> None:
         """Set a plan and a program together with their mat, which must have been prepared already."""
-        self._lab.bridge.mat = mat
+        self._lab.run_controller.mat = mat
         self._good = plan, mat
         self._note_program(program, _settings_in(program))
         self._load(plan, program)
@@ -109,7 +113,7 @@ class Loader:
     def attempt(self, make: Callable[[NextRun], NextRun]) -> bool:
         """Change the plan, or report the error; the robot stays where it is. Return whether the plan was changed."""
         try:
-            self.take(self.change(make))
+            self.set_next_run(self.change(make))
         except TuisimError as error:
             self._lab.complain(error)
             return False
@@ -121,22 +125,22 @@ class Loader:
         Raises:
             TuisimError: there is a run, or the change is impossible.
         """
-        if self._lab.bridge.in_run:
+        if self._lab.run_controller.in_run:
             raise TuisimError(NOT_NOW)
-        return make(self._lab.bridge.plan)
+        return make(self._lab.run_controller.next_run)
 
-    def take(self, plan: NextRun) -> None:
+    def set_next_run(self, plan: NextRun) -> None:
         """Set a plan that differs in other things than the start."""
-        if plan.robot != self._lab.bridge.plan.robot:
+        if plan.robot != self._lab.run_controller.next_run.robot:
             for note in plan.robot.notes:
                 self._lab.say(note)
-        self._lab.bridge.change(plan)
+        self._lab.run_controller.change(plan)
         self._loaded()
 
     def change_mat(self, name: str) -> None:
         """Change the mat; the robot goes to its start."""
         try:
-            self._load(plans.with_mat(self._lab.bridge.plan, name), self._lab.bridge.program)
+            self._load(plans.with_mat(self._lab.run_controller.next_run, name), self._lab.run_controller.program)
         except TuisimError as error:
             self._lab.complain(error)
 
@@ -145,7 +149,7 @@ class Loader:
 
         If the open program has unsaved changes, a dialog asks first.
         """
-        self._lab.work.when_safe(partial(self._open_file, path))
+        self._lab.document.when_safe(partial(self._open_file, path))
 
     def _open_file(self, path: str) -> None:
         from tuisim.config.worlds import means_world
@@ -158,7 +162,7 @@ class Loader:
 
     def _open_program(self, path: str) -> None:
         program, said = _read_program(path)
-        plan, before = plans.with_choices(self._lab.bridge.plan, said), self._lab.bridge.program
+        plan, before = plans.with_choices(self._lab.run_controller.next_run, said), self._lab.run_controller.program
         if before is not None and before.path != program.path:
             plan = plans.with_arguments(plan, ())
         self._note_program(program, said)
@@ -174,7 +178,7 @@ class Loader:
         before = self.world_file, self._world_settings, self._world_refers
         try:
             named = self._read_world(Path(path))
-            program, magic = _read_program(named) if named else (lab.bridge.program, {})
+            program, magic = _read_program(named) if named else (lab.run_controller.program, {})
             # A world file replaces everything: earlier choices do not show through.
             fresh = plans.with_choices(plans.plan_of(Settings()), magic)
             plan = plans.with_choices(fresh, self._world_settings)
@@ -189,13 +193,13 @@ class Loader:
         """Read a world file and remember its settings. Return the path of its program."""
         from tuisim.config.worlds import load_world
 
-        world = load_world(path, self._lab.bridge.plan.settings.mats)
+        world = load_world(path, self._lab.run_controller.next_run.settings.mats)
         self.world_file, self._world_settings, self._world_refers = path, world.settings, world.files
         return _program_path(world.program) if world.program is not None else None
 
     def _load(self, plan: NextRun, program: Program | None) -> None:
-        self._lab.bridge.load(plan, program)
-        if world := self._lab.desk.world:
+        self._lab.run_controller.load(plan, program)
+        if world := self._lab.panel_area.world:
             world.clear_trace()
         self._loaded()
 
@@ -203,17 +207,17 @@ class Loader:
         lab = self._lab
         self._follow()
         if not self.mat_is_ready:
-            mat = lab.bridge.mat
-            if mat is not None and mat.key[:2] != mat_key(lab.bridge.plan.spec)[:2]:
-                lab.bridge.mat = None
+            mat = lab.run_controller.mat
+            if mat is not None and mat.key[:2] != mat_key(lab.run_controller.next_run.spec)[:2]:
+                lab.run_controller.mat = None
             self.prepare_mat()
-        lab.plan_changed()
+        lab.next_run_changed()
 
     # Files that change on the disk
 
     def _follow(self) -> None:
-        bridge, words = self._lab.bridge, self._lab.bridge.plan.words
-        paths = [Path(bridge.program.path)] if bridge.program and bridge.program.path else []
+        run_controller, words = self._lab.run_controller, self._lab.run_controller.next_run.words
+        paths = [Path(run_controller.program.path)] if run_controller.program and run_controller.program.path else []
         paths += [self.world_file, *self._world_refers] if self.world_file else []
         paths += [Path(word).expanduser() for word in words.values() if _is_file_word(word)]
         self._watch.follow(dict.fromkeys(paths))
@@ -231,18 +235,21 @@ class Loader:
         self._follow()
         self._watch.note(path)
 
-    def look(self) -> None:
+    def check_files(self) -> None:
         """Reload the files that have changed on disk; during a run, when it ends."""
         changed = self._watch.changed()
-        if self._lab.bridge.in_run:
+        if self._lab.run_controller.in_run:
             for path in changed:
-                if path not in self._later:
-                    self._later.append(path)
+                if path not in self._changed_in_run:
+                    self._changed_in_run.append(path)
                     self._lab.say(f"{path.name} changed on disk: reloaded when the run ends")
             return
-        changed, self._later = [*self._later, *(path for path in changed if path not in self._later)], []
+        changed, self._changed_in_run = (
+            [*self._changed_in_run, *(path for path in changed if path not in self._changed_in_run)],
+            [],
+        )
         for path in changed:
-            if not self._lab.work.stands_against(path):
+            if not self._lab.document.conflicts_with(path):
                 self.reload(path)
 
     def reload(self, path: Path) -> None:
@@ -258,8 +265,8 @@ class Loader:
 
     def _reread(self, path: Path) -> bool:
         """Read a file again. Return whether it is still in use."""
-        lab, plan = self._lab, self._lab.bridge.plan
-        program = lab.bridge.program
+        lab, plan = self._lab, self._lab.run_controller.next_run
+        program = lab.run_controller.program
         if program and program.path and Path(program.path) == path:
             self._apply_program(*_read_program(program.path))
             return True
@@ -272,14 +279,14 @@ class Loader:
             field for field, word in plan.words.items() if _is_file_word(word) and Path(word).expanduser() == path
         ]
         for field in fields:
-            self.take(plans.with_choices(plan, {field: plan.words[field]}))
+            self.set_next_run(plans.with_choices(plan, {field: plan.words[field]}))
         if path in self._world_refers and str(path) == plan.spec.world.background:
-            lab.bridge.mat = None
+            lab.run_controller.mat = None
             self._loaded()
             return True
         return bool(fields)
 
-    def take_text(self, text: str, path: str, name: str) -> None:
+    def apply_text(self, text: str, path: str, name: str) -> None:
         """Apply the edited text of the open program. Not during a run.
 
         Args:
@@ -295,18 +302,18 @@ class Loader:
         file = program_of_text(text, Path(path) if path else None, name)
         self._apply_program(file.program, file.switches)
 
-    def take_new(self, text: str, name: str) -> None:
+    def open_new(self, text: str, name: str) -> None:
         """Open a new program without a file and without a magic line. Not during a run."""
         from tuisim.config.program_file import program_of_text
 
         file = program_of_text(text, None, name)
         self._note_program(file.program, file.switches)
-        self._lab.bridge.program = file.program
+        self._lab.run_controller.program = file.program
         self._loaded()
 
     def _apply_program(self, new: Program, said: Mapping[str, Any]) -> None:
         """Apply another text of the open program, with the changes in its magic line."""
-        program = self._lab.bridge.program
+        program = self._lab.run_controller.program
         as_said = new.prelude if new.prelude != self._file_prelude or program is None else program.prelude
         folder = program.module_folder if program and not new.path else ""
         before = self._magic_settings
@@ -317,21 +324,21 @@ class Loader:
     def _apply_app_settings(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
         """Apply the changes in a magic line that concern the app: panels, rays and speed."""
         lab, panels = self._lab, _panels_in(now)
-        lab.desk.ask({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
-        if now.get("rays") and not before.get("rays") and lab.desk.world:
-            lab.desk.world.show_rays = True
+        lab.panel_area.ask({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
+        if now.get("rays") and not before.get("rays") and lab.panel_area.world:
+            lab.panel_area.world.show_rays = True
         if now.get("speed") is not None and now["speed"] != before.get("speed"):
-            lab.bridge.set_speed(now["speed"])
+            lab.run_controller.set_speed(now["speed"])
 
     def _apply_changed(self, differences: Mapping[str, Any], program: Program | None) -> None:
         """Apply changed settings of a file; unchanged ones keep what the user has set since."""
         lab = self._lab
-        plan = plans.with_choices(lab.bridge.plan, differences)
+        plan = plans.with_choices(lab.run_controller.next_run, differences)
         if differences.keys() & {"background", *plans.POSE_FIELDS}:
             self._load(plan, program)
         else:
-            lab.bridge.program = program
-            self.take(plan)
+            lab.run_controller.program = program
+            self.set_next_run(plan)
 
 
 def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
@@ -441,7 +448,7 @@ def program_of(run: StoredRun) -> Program:
 
 def open_run(lab: LabApp, run: str | StoredRun) -> None:
     """Show a stored run, given as an object or by number or id; errors are shown to the user."""
-    if lab.bridge.in_run:
+    if lab.run_controller.in_run:
         lab.say(NOT_NOW)
         return
     background.run(lab, partial(_prepare, run), partial(_show, lab), lab.complain, group="mat", exclusive=True)
@@ -468,12 +475,12 @@ def _show(lab: LabApp, loaded: tuple[StoredRun, Mat, TuisimError | None]) -> Non
     run, mat, mat_error = loaded
     if mat_error is not None:
         lab.complain(mat_error)
-    if lab.bridge.in_run:
+    if lab.run_controller.in_run:
         lab.say(NOT_NOW)
         return
     plan = with_arguments(plan_of_run(run.spec), run.program.arguments)
-    lab.loading.lay_out(plan, program_of(run), mat)
-    lab.bridge.replay(run)
+    lab.loader.lay_out(plan, program_of(run), mat)
+    lab.run_controller.replay(run)
     end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
     words = f"— {end_label(run.state)} at {end_s:.2f} s · {_title(run)}"
     lab.run_changed(words, run.end.error_line if run.end else 0)

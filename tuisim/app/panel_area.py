@@ -12,7 +12,7 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.panels import BOTTOM, LARGE, MAIN, MEDIUM, PANELS, SIDE, SMALL, Panel, PlanPanel
+from tuisim.app.panels import BOTTOM, LARGE, MAIN, MEDIUM, PANELS, SIDE, SMALL, NextRunPanel, Panel
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -47,7 +47,7 @@ class PanelArea(Container):
             self.panel = panel
 
     def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
-        super().__init__(id="desk")
+        super().__init__(id="panel-area")
         self.panels: dict[str, Widget] = {}
         """The panels that have been mounted, by id."""
         asked = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
@@ -191,11 +191,11 @@ class PanelArea(Container):
             self.post_message(self.Added(panel))
         return self.panels[panel]
 
-    def show_plan(self, plan: NextRun) -> None:
+    def show_next_run(self, plan: NextRun) -> None:
         """Update the panels that edit the plan of the next run, on the screen or not."""
         for widget in self.panels.values():
-            if isinstance(widget, PlanPanel):
-                widget.show_plan(plan)
+            if isinstance(widget, NextRunPanel):
+                widget.show_next_run(plan)
 
     def focus_world(self) -> None:
         """Focus the world if it is shown; the focus of a dialog above the panels stays."""

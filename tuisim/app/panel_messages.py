@@ -35,32 +35,32 @@ ROOMY_COLUMNS, ROOMY_ROWS = 86, 15
 class CodeMessages(TerminalApp):
     """Message handlers of the app for the code panel; Textual finds the methods by name."""
 
-    work: Document
-    desk: PanelArea
+    document: Document
+    panel_area: PanelArea
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         """While the user types, give the code panel room and show the editor's keys in the footer."""
         cast("LabApp", self).situation_changed()
         if not message.typing:
-            self.desk.give_all("")
+            self.panel_area.give_all("")
         else:
-            self.desk.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
+            self.panel_area.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
 
     def on_code_edited(self, message: Code.Edited) -> None:
         """Handle an edit of the text."""
-        self.work.edited(message.text)
-        cast("LabApp", self).debugging.edited(message.text)
+        self.document.edited(message.text)
+        cast("LabApp", self).debugger.edited(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         """Handle a key of the editor."""
         match message.what:
             case "save":
-                self.work.save()
+                self.document.save()
             case "run":
                 cast("LabApp", self).action_act("run")
                 # Make the robot visible, or the place of the error in the text.
-                if self.desk.alone and not (self.desk.code and self.desk.code.error_line):
-                    self.desk.give_all("")
+                if self.panel_area.alone and not (self.panel_area.code and self.panel_area.code.error_line):
+                    self.panel_area.give_all("")
             case "new" | "open":
                 cast("LabApp", self).action_act(message.what)
             case _:
@@ -70,10 +70,10 @@ class CodeMessages(TerminalApp):
 class PanelMessages(CodeMessages):
     """Message handlers of the app for the panels; Textual finds the methods by name."""
 
-    bridge: RunController
-    debugging: AppDebugger
-    desk: PanelArea
-    loading: Loader
+    run_controller: RunController
+    debugger: AppDebugger
+    panel_area: PanelArea
+    loader: Loader
 
     def on_descendant_focus(self) -> None:
         """Update the footer: other keys may be available."""
@@ -85,8 +85,8 @@ class PanelMessages(CodeMessages):
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """Move the robot with the mouse; in the past, ask about a branch at the end of the drag."""
-        if message.done or not self.bridge.in_past:
-            self.bridge.place(message.pose)
+        if message.done or not self.run_controller.in_past:
+            self.run_controller.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
         """Go to the time of the chart's cursor."""
@@ -98,13 +98,13 @@ class PanelMessages(CodeMessages):
 
     def on_positioning_applied(self, message: Positioning.Applied) -> None:
         """Place the robot at a pose that was typed in."""
-        self.bridge.place(message.pose)
+        self.run_controller.place(message.pose)
 
     def attend(self, panel: str) -> None:
         """Focus a panel that has been opened, if it can have the focus; the world if it was closed."""
-        widget = self.desk.panels.get(panel)
-        if not self.desk.shown(panel) or widget is None:
-            self.desk.focus_world()
+        widget = self.panel_area.panels.get(panel)
+        if not self.panel_area.shown(panel) or widget is None:
+            self.panel_area.focus_world()
         elif not widget.is_mounted:
             # It is still being mounted.
             widget.call_later(self.attend, panel)
@@ -118,13 +118,13 @@ class PanelMessages(CodeMessages):
     def on_settings_edited(self, message: Settings.Edited) -> None:
         """Apply a field of the settings; the field shows an error."""
         try:
-            self.loading.take(self.loading.change(lambda plan: message.edit.write(plan, message.text)))
+            self.loader.set_next_run(self.loader.change(lambda plan: message.edit.write(plan, message.text)))
         except TuisimError as error:
             message.row.refuse(error)
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
         """Apply obstacles that were typed, added or removed."""
-        self.loading.attempt(lambda plan: with_obstacles(plan, message.obstacles))
+        self.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
 
     def on_obstacles_marked(self) -> None:
         """Mark another obstacle as the selected one."""
@@ -132,40 +132,42 @@ class PanelMessages(CodeMessages):
 
     def mark_box(self) -> None:
         """Show in the world which obstacle is selected, and whether the mouse draws obstacles."""
-        on = self.desk.shown("obstacles")
-        if world := self.desk.world:
-            world.edit_boxes(on, self.desk.obstacles.at if on and self.desk.obstacles else None)
+        on = self.panel_area.shown("obstacles")
+        if world := self.panel_area.world:
+            world.edit_boxes(on, self.panel_area.obstacles.at if on and self.panel_area.obstacles else None)
 
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
         """Apply obstacles that were drawn or moved with the mouse."""
-        if self.loading.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and self.desk.obstacles:
-            self.desk.obstacles.mark(message.index)
+        if self.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and self.panel_area.obstacles:
+            self.panel_area.obstacles.mark(message.index)
 
     def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
         """Toggle the breakpoint whose gutter cell was clicked."""
-        self.debugging.toggle_line(message.line)
+        self.debugger.toggle_line(message.line)
 
     def on_debug_frame_wanted(self, message: Debug.FrameWanted) -> None:
         """Select another frame."""
-        self.debugging.choose_frame(message.by)
+        self.debugger.choose_frame(message.by)
 
     def on_debug_thread_wanted(self) -> None:
         """Select another thread."""
-        self.debugging.choose_thread()
+        self.debugger.choose_thread()
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
         """Press or release the brick's buttons."""
-        if message.buttons <= self.bridge.pressed or (self.bridge.in_run and not self.bridge.in_past):
-            self.bridge.press(message.buttons)
-        elif self.bridge.in_run:
+        if message.buttons <= self.run_controller.pressed or (
+            self.run_controller.in_run and not self.run_controller.in_past
+        ):
+            self.run_controller.press(message.buttons)
+        elif self.run_controller.in_run:
             self.notify("The brick's buttons work now, not in the past: end comes back", timeout=3)
         else:
             self.notify("The brick's buttons work while a program runs: R runs it", timeout=3)
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
         """Set the noise."""
-        self.bridge.set_noise(message.noise)
+        self.run_controller.set_noise(message.noise)
 
     def on_noise_seeded(self, message: Noise.Seeded) -> None:
         """Set the seed of the next run."""
-        self.bridge.set_seed(message.seed)
+        self.run_controller.set_seed(message.seed)

@@ -89,9 +89,9 @@ class RunView:
 
     def __init__(self, settings: AppSettings) -> None:
         self.program: Program | None = settings.program
-        self.plan: NextRun = _first_plan(settings)
+        self.next_run: NextRun = _first_plan(settings)
         """The settings of the next run."""
-        self.home: Pose = self.plan.spec.world.start
+        self.home: Pose = self.next_run.spec.world.start
         """The pose that `back to start` uses."""
         self.speed = settings.speed
         self.mat: Mat | None = None
@@ -108,14 +108,14 @@ class RunView:
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
-        self.held_line: tuple[int, int] | None = None
+        self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
 
     @property
     def spec(self) -> RunSpec:
         """The specification in view: the run's own while it is live or viewed in the past, else the next run's."""
         recording = self.timeline.recording
-        return recording.spec if recording and (self.in_run or self.in_past) else self.plan.spec
+        return recording.spec if recording and (self.in_run or self.in_past) else self.next_run.spec
 
     @property
     def in_run(self) -> bool:
@@ -177,7 +177,7 @@ class RunView:
                 speed=self.speed,
                 pen_down=pen_down,
                 stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
-                next_spec=self.plan.spec,
+                next_spec=self.next_run.spec,
             ),
             face=face,
             turns=turns or ((0.0, 0.0),) * len(self.spec.robot.extra_motors),
@@ -188,7 +188,7 @@ class RunView:
         )
 
     def _at_rest(self, pose: Pose) -> Instant:
-        spec = self.plan.spec
+        spec = self.next_run.spec
         return Instant(0, pose, gyro_zero_deg=pose.heading_deg, noise=spec.world.noise, seed=spec.seed)
 
     @property
@@ -207,13 +207,13 @@ class RunView:
         """Return the instant, the program's line, and whether the pen is down."""
         record, recording = self._record(), self.timeline.recording
         if record is None or recording is None:
-            return self._still, 0, self.plan.spec.robot.pen.down
+            return self._still, 0, self.next_run.spec.robot.pen.down
         from tuisim.runs.views import instant_of
 
-        noise = recording.noise_at(record) if self._is_of_run else self.plan.spec.world.noise
+        noise = recording.noise_at(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is where the next run will have it.
-        down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.plan.spec.robot.pen.down
-        tick, line = self.held_line or (-1, 0)
+        down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.next_run.spec.robot.pen.down
+        tick, line = self.paused_line or (-1, 0)
         instant, line = instant_of(record, self.spec, noise), line if tick == record.tick else record.line
         if self.in_run and not self.in_past:
             instant, down = self._pending.done_to(record, instant, down)
@@ -257,12 +257,12 @@ class RunController(RunView):
 
     # What the user does
 
-    def start(self, breaks: tuple[str, ...] = (), held: bool = False) -> None:
+    def start(self, breaks: tuple[str, ...] = (), paused: bool = False) -> None:
         """Start the program from where the robot was last placed.
 
         Args:
             breaks: The breakpoints.
-            held: Pause at the first line.
+            paused: Pause at the first line.
 
         Raises:
             TuisimError: the run cannot be started.
@@ -273,10 +273,10 @@ class RunController(RunView):
             return
         options = RunOptions(
             live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True,
-            breaks=breaks, hold_at=FIRST_LINE if held else None,
+            breaks=breaks, hold_at=FIRST_LINE if paused else None,
         )  # fmt: skip
-        program = replace(self.program, arguments=self.plan.settings.arguments)
-        run = start_run(program, self.plan.spec, options)
+        program = replace(self.program, arguments=self.next_run.settings.arguments)
+        run = start_run(program, self.next_run.spec, options)
         self.close()
         self.run, self._end = run, None
         self._look_at(Recording(self.run))
@@ -292,18 +292,18 @@ class RunController(RunView):
         self.close()
         self.run, self._end = run, None
         # The noise of the current run is that of the next one, as if chosen now.
-        self.plan = plans.with_noise(self.plan, noise)
+        self.next_run = plans.with_noise(self.next_run, noise)
         self._look_at(Recording(run, branch.of.answers))
         self._branch = branch
 
-    def _branch_arrived(self, held: protocol.Paused | None = None) -> Branch | None:
+    def _branch_arrived(self, paused: protocol.Paused | None = None) -> Branch | None:
         """Switch from the former run to the new one, which is paused at the instant of the branch or has ended.
 
         A program that ends before that instant is paused at its end.
         """
         branch, self._branch = self._branch, None
-        if branch is not None and held is not None:
-            early = held.tick < branch.tick
+        if branch is not None and paused is not None:
+            early = paused.tick < branch.tick
             self._send(protocol.SetSpeed(self.speed))
             if branch.of.pressed_at(branch.tick + 1) and not early:
                 # Buttons that were held then have been released meanwhile.
@@ -321,7 +321,7 @@ class RunController(RunView):
         self._look_at(Recording(run))
 
     def _look_at(self, recording: Recording) -> None:
-        self.timeline.take(recording)
+        self.timeline.switch_to(recording)
         self._pending.forget()
         self.pressed = frozenset()
         self._moved = False
@@ -367,7 +367,7 @@ class RunController(RunView):
             self.propose(protocol.SetPen(down))
             return
         self._act(protocol.SetPen(down))
-        self.plan = plans.with_pen(self.plan, down)
+        self.next_run = plans.with_pen(self.next_run, down)
 
     def press(self, buttons: frozenset[str]) -> None:
         """Hold down these buttons of the brick, and no others."""
@@ -382,16 +382,16 @@ class RunController(RunView):
             if noise != self._moment()[0].noise:
                 self.propose(protocol.SetNoise(noise.light, noise.motor))
             return
-        if noise == self.plan.spec.world.noise:
+        if noise == self.next_run.spec.world.noise:
             return
-        self.plan = plans.with_noise(self.plan, noise)
+        self.next_run = plans.with_noise(self.next_run, noise)
         self._still = replace(self._still, noise=noise)
         if self.in_run:
             self._act(protocol.SetNoise(noise.light, noise.motor))
 
     def set_seed(self, seed: int) -> None:
         """Choose the seed of the next run."""
-        self.plan = plans.with_seed(self.plan, seed)
+        self.next_run = plans.with_seed(self.next_run, seed)
         self._still = replace(self._still, seed=seed)
 
     def place(self, pose: Pose) -> None:
@@ -408,14 +408,14 @@ class RunController(RunView):
         self._start_at(pose)
 
     def _start_at(self, pose: Pose) -> None:
-        self.plan = plans.at_pose(self.plan, pose)
+        self.next_run = plans.at_pose(self.next_run, pose)
         self._still = self._at_rest(pose)
         self._moved = True
 
     def load(self, plan: NextRun, program: Program | None) -> None:
         """Load another world or program; the robot goes to its start. Not during a run."""
         self.timeline.go(None)
-        self.plan, self.program, self.home = plan, program, plan.spec.world.start
+        self.next_run, self.program, self.home = plan, program, plan.spec.world.start
         self._start_at(plan.spec.world.start)
 
     def change(self, plan: NextRun) -> None:
@@ -424,7 +424,7 @@ class RunController(RunView):
         The view returns from the past, so that the change is visible.
         """
         self.timeline.go(None)
-        self.plan = plan
+        self.next_run = plan
         self._still = replace(self._still, noise=plan.spec.world.noise, seed=plan.spec.seed)
 
     def close(self) -> None:
@@ -435,7 +435,7 @@ class RunController(RunView):
             self.run.close()
             self.run = None
         self._branch = None
-        self.timeline.take(None)
+        self.timeline.switch_to(None)
 
     def _act(self, action: protocol.Message) -> None:
         """Send an action that changes the world; while paused, show it before it has taken effect."""
@@ -467,7 +467,7 @@ class RunController(RunView):
             return RunUpdate([])
         ended = branched = None
         spoken: list[protocol.Spoke] = []
-        held: list[protocol.Message] = []
+        pauses: list[protocol.Message] = []
         for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
@@ -475,16 +475,16 @@ class RunController(RunView):
                     branched = self._branch_arrived()
                 case protocol.Paused() if self._branch:
                     branched = self._branch_arrived(event)
-                    held.append(event)
+                    pauses.append(event)
                 case protocol.Paused() | protocol.Resumed() | protocol.Inspected():
-                    held.append(event)
+                    pauses.append(event)
                     if isinstance(event, protocol.Paused) and event.reason is protocol.PauseReason.BREAK:
                         self.timeline.breaks.append(event.tick)
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
-        return RunUpdate(rows, 0, ended, tuple(spoken), prompt, branched, tuple(held))
+        return RunUpdate(rows, 0, ended, tuple(spoken), prompt, branched, tuple(pauses))
 
 
 @dataclass(frozen=True, slots=True)
@@ -502,9 +502,9 @@ class RunUpdate:
     """The prompt while the program waits in `input()`."""
     branched: Branch | None = None
     """Set once, when a branch has reached its instant, or has ended before it."""
-    held: tuple[protocol.Message, ...] = ()
+    pauses: tuple[protocol.Message, ...] = ()
     """Reports that the program has paused or resumed, and its frames and variables."""
 
     def __bool__(self) -> bool:
         """Return whether anything has arrived; a prompt that is still open does not count."""
-        return bool(self.rows or self.ended or self.spoken or self.branched or self.held)
+        return bool(self.rows or self.ended or self.spoken or self.branched or self.pauses)

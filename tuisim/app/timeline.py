@@ -34,7 +34,7 @@ class Timeline:
         self._face = BrickState()
         """What the brick showed after output rows, by row number."""
 
-    def take(self, recording: Recording | None) -> None:
+    def switch_to(self, recording: Recording | None) -> None:
         """Switch to another run, at its newest instant."""
         self.recording = recording
         self._face_numbers, self._face = [], BrickState()
@@ -102,7 +102,7 @@ class Timeline:
         if self.at is not None:
             self._played_s, self._wall_s = self.at / self.tick_hz, wall_s
 
-    def stand(self) -> None:
+    def stop_playback(self) -> None:
         """Stop playback."""
         self._played_s = None
 

@@ -35,17 +35,17 @@ while True:
 async def with_a_past(pilot: Pilot[Any], ticks: int = 300) -> LabApp:
     """Let the program run with noise and a user who meddles, and stop it."""
     app = await ready(pilot)
-    await until(pilot, lambda: app.bridge.timeline.newest > ticks // 4)
-    app.bridge.set_noise(NoiseSpec(30, 20))
-    await until(pilot, lambda: app.bridge.timeline.newest > ticks // 2)
-    app.bridge.place(Pose(500, 700, 45))
-    await until(pilot, lambda: app.bridge.timeline.newest > ticks)
+    await until(pilot, lambda: app.run_controller.timeline.newest > ticks // 4)
+    app.run_controller.set_noise(NoiseSpec(30, 20))
+    await until(pilot, lambda: app.run_controller.timeline.newest > ticks // 2)
+    app.run_controller.place(Pose(500, 700, 45))
+    await until(pilot, lambda: app.run_controller.timeline.newest > ticks)
     return app
 
 
 async def stop(pilot: Pilot[Any], app: LabApp) -> None:
     await pilot.press("S")
-    await until(pilot, lambda: app.bridge.state == ENDED)
+    await until(pilot, lambda: app.run_controller.state == ENDED)
 
 
 def telemetry(run_id: str) -> Any:
@@ -60,7 +60,7 @@ async def _nudge(pilot: Pilot[Any], app: LabApp) -> None:
 
 
 async def _noise(pilot: Pilot[Any], app: LabApp) -> None:
-    app.bridge.set_noise(NoiseSpec(100, 0))
+    app.run_controller.set_noise(NoiseSpec(100, 0))
 
 
 async def _pen(pilot: Pilot[Any], app: LabApp) -> None:
@@ -85,14 +85,14 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot)
         await stop(pilot, app)
-        first = app.bridge.run_id
+        first = app.run_controller.run_id
         to_tick(app, 260)
         await deed(pilot, app)
         await until(pilot, lambda: "Branch from 2.60 s?" in screen_text(app))
         await pilot.press("y")
-        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 300)
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 300)
         await stop(pilot, app)
-        branch = RunStore().load_run(app.bridge.run_id)
+        branch = RunStore().load_run(app.run_controller.run_id)
         old, new = telemetry(first), branch.telemetry.array()
         assert old[:260].tobytes() == new[:260].tobytes()
         assert branch.tags == ("branch-of-1", "at-2.60s")
@@ -109,22 +109,22 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
 async def test_a_paused_run_branches_paused_and_is_kept() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot)
-        first = app.bridge.run_id
+        first = app.run_controller.run_id
         await pilot.press("space", "less_than_sign")
-        await until(pilot, lambda: app.bridge.state == PAUSED)
-        at = app.bridge.timeline.at
+        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        at = app.run_controller.timeline.at
         assert at is not None
         await pilot.press("R")
         await until(pilot, lambda: "Run 1 ends here" in screen_text(app))
         await pilot.press("n")
-        assert app.bridge.timeline.at == at
+        assert app.run_controller.timeline.at == at
         await pilot.press("y", "y")
-        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == PAUSED)
-        assert app.bridge.timeline.newest == at
-        assert not app.bridge.in_past
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == PAUSED)
+        assert app.run_controller.timeline.newest == at
+        assert not app.run_controller.in_past
         assert RunStore().load_run(first).state == "stopped"
         await pilot.press("space")
-        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.timeline.newest > at)
+        await until(pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.timeline.newest > at)
         await stop(pilot, app)
 
 
@@ -132,13 +132,15 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot)
         await stop(pilot, app)
-        first = app.bridge.run_id
-        app.bridge.program = program(DRIVES.replace("    tank_drive.on(", "    time.sleep(1)\n    tank_drive.on("))
+        first = app.run_controller.run_id
+        app.run_controller.program = program(
+            DRIVES.replace("    tank_drive.on(", "    time.sleep(1)\n    tank_drive.on(")
+        )
         to_tick(app, 260)
         await pilot.press("R")
         await until(pilot, lambda: "The edited program" in screen_text(app))
         await pilot.press("y")
-        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 260)
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260)
         await until(pilot, lambda: any("it differs from 0." in notice for notice in notices(app)))
         await stop(pilot, app)
 
@@ -146,12 +148,12 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
 async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot, ticks=80)
-        first = app.bridge.run_id
+        first = app.run_controller.run_id
         await pilot.press("less_than_sign", "R", "r")
-        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == RUNNING)
-        assert not app.bridge.in_past
-        await until(pilot, lambda: app.bridge.timeline.newest > 5)
-        assert not RunStore().load_run(app.bridge.run_id).tags
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RUNNING)
+        assert not app.run_controller.in_past
+        await until(pilot, lambda: app.run_controller.timeline.newest > 5)
+        assert not RunStore().load_run(app.run_controller.run_id).tags
         await stop(pilot, app)
 
 
@@ -159,11 +161,11 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot, ticks=100)
         await stop(pilot, app)
-        first = app.bridge.run_id
-        app.bridge.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
+        first = app.run_controller.run_id
+        app.run_controller.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
         to_tick(app, 80)
         await pilot.press("y", "y")
-        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == ENDED)
         await until(pilot, lambda: any("of the edited program: it differs" in n for n in notices(app)))
 
 
@@ -172,11 +174,11 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot)
         await stop(pilot, app)
-        first = app.bridge.run_id
+        first = app.run_controller.run_id
         to_tick(app, 200)
-        app.bridge.set_noise(NoiseSpec(0, 0))
+        app.run_controller.set_noise(NoiseSpec(0, 0))
         await pilot.press("y")
-        await until(pilot, lambda: app.bridge.run_id != first and app.bridge.timeline.newest > 260)
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260)
         await stop(pilot, app)
         await pilot.press("equals_sign")
         await until(pilot, lambda: "Compare run 2 with" in screen_text(app) and "1 of 1 runs" in screen_text(app))
@@ -185,7 +187,7 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
         assert "2.00 s, tick 200: differs in actions" in screen_text(app)
         assert "user actions" in screen_text(app)
         await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.timeline.at == 200)
+        await until(pilot, lambda: app.run_controller.timeline.at == 200)
 
 
 @pytest.mark.parametrize(

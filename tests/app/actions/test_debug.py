@@ -40,13 +40,13 @@ print('done')
 
 
 def line(app: LabApp) -> int:
-    assert app.debugging.standing is not None
-    return app.debugging.standing.paused.line
+    assert app.debugger.view is not None
+    return app.debugger.view.paused.line
 
 
 def looked(app: LabApp) -> Inspected:
-    assert app.debugging.standing is not None
-    return app.debugging.standing.looked
+    assert app.debugger.view is not None
+    return app.debugger.view.inspected
 
 
 def values(app: LabApp) -> dict[str, str]:
@@ -55,13 +55,13 @@ def values(app: LabApp) -> dict[str, str]:
 
 def cursor_to(app: LabApp, line: int) -> None:
     """Put the cursor of the code panel on a line, counted from 1."""
-    assert app.desk.code is not None
-    app.desk.code._area.move_cursor((line - 1, 0))
+    assert app.panel_area.code is not None
+    app.panel_area.code._area.move_cursor((line - 1, 0))
 
 
 async def stands(pilot: Pilot[Any], app: LabApp, at: int) -> None:
     """Wait until the program stands at a line and has been looked at."""
-    await until(pilot, lambda: app.debugging.standing is not None and line(app) == at and not app.debugging.busy)
+    await until(pilot, lambda: app.debugger.view is not None and line(app) == at and not app.debugger.busy)
 
 
 async def press(pilot: Pilot[Any], app: LabApp, key: str, *lines: int) -> None:
@@ -72,8 +72,8 @@ async def press(pilot: Pilot[Any], app: LabApp, key: str, *lines: int) -> None:
 
 
 def drawn(app: LabApp) -> str:
-    assert app.desk.debug is not None
-    return "\n".join("".join(text for text, _ in row) for row in app.desk.debug._lines)
+    assert app.panel_area.debug is not None
+    return "\n".join("".join(text for text, _ in row) for row in app.panel_area.debug._lines)
 
 
 async def test_steps_from_the_first_line(home: object) -> None:
@@ -82,8 +82,8 @@ async def test_steps_from_the_first_line(home: object) -> None:
         await ready(pilot)
         await press(pilot, app, "n", 1, 2, 3, 4, 5)
         assert values(app) == {"total": "0", "i": "0"}
-        assert app.bridge.snapshot().line == 5
-        assert app.desk.shown("debug")
+        assert app.run_controller.snapshot().line == 5
+        assert app.panel_area.shown("debug")
         await press(pilot, app, "n", 6, 3, 4)
         assert values(app)["i"] == "1"
         assert "line 4" in drawn(app)
@@ -97,12 +97,12 @@ async def test_one_line_back_and_on_again(home: object) -> None:
         assert values(app)["total"] == "1"
         await press(pilot, app, "N", 5, 4)
         assert values(app)["total"] == "0"
-        assert app.debugging.looks_back
+        assert app.debugger.looks_back
         assert "past" in drawn(app)
         await press(pilot, app, "n", 5)
         assert values(app)["total"] == "1"
         await pilot.press("end")
-        await until(pilot, lambda: not app.debugging.looks_back and app.debugging.standing is not None)
+        await until(pilot, lambda: not app.debugger.looks_back and app.debugger.view is not None)
         assert line(app) == 6
         await press(pilot, app, "n", 3)
 
@@ -116,7 +116,7 @@ async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> Non
         await press(pilot, app, "N", 5)
         assert "past" in drawn(app)
         await press(pilot, app, key, 6)
-        assert not app.debugging.is_away
+        assert not app.debugger.is_away
         assert "past" not in drawn(app) and "…" not in drawn(app)
         await press(pilot, app, "n", 3)
 
@@ -130,8 +130,8 @@ async def test_into_and_out_of_calls(home: object) -> None:
         assert [frame.function for frame in looked(app).stack] == ["inner", "outer", "<module>"]
         assert values(app) == {"m": "2"}
         await pilot.press("tab")
-        assert app.desk.debug is not None
-        app.desk.debug.focus()
+        assert app.panel_area.debug is not None
+        app.panel_area.debug.focus()
         await pilot.press("right")
         await until(pilot, lambda: values(app) == {"n": "1", "local": "2"})
         await pilot.press("u")
@@ -143,18 +143,18 @@ async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> 
         app = await ready(pilot)
         cursor_to(app, 5)
         await pilot.press("t")
-        assert [one.text for one in app.debugging.breaks] == ["5"]
+        assert [one.text for one in app.debugger.breaks] == ["5"]
         await pilot.press("R")
         await stands(pilot, app, 5)
         assert any("Break 5" in text for text in notices(app))
         await pilot.press("space")
-        await until(pilot, lambda: app.debugging.standing is not None and values(app).get("i") == "1")
+        await until(pilot, lambda: app.debugger.view is not None and values(app).get("i") == "1")
         await pilot.press("t", "space")
-        await until(pilot, lambda: not app.bridge.in_run)
+        await until(pilot, lambda: not app.run_controller.in_run)
         await pilot.press("t")
     async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: [one.text for one in app.debugging.breaks] == ["5"])
+        await until(pilot, lambda: [one.text for one in app.debugger.breaks] == ["5"])
 
 
 async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: object) -> None:
@@ -168,12 +168,12 @@ async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: ob
             field.value = text
             await pilot.press("enter")
         assert "no expression" not in str(app.screen.query_one("#message", Static).render())
-        assert [one.text for one in app.debugging.breaks] == ["sample Total > 5", "4 if i == 3"]
+        assert [one.text for one in app.debugger.breaks] == ["sample Total > 5", "4 if i == 3"]
         app.screen.query_one(OptionList).focus()
         await pilot.press("home", "space")
-        assert app.debugging.breaks[0].disabled
+        assert app.debugger.breaks[0].disabled
         await pilot.press("delete", "escape")
-        assert [one.written() for one in app.debugging.breaks] == ["4 if i == 3"]
+        assert [one.written() for one in app.debugger.breaks] == ["4 if i == 3"]
         await pilot.press("w")
         await pilot.pause()
         app.screen.query_one(Input).value = "total * 2"
@@ -188,20 +188,20 @@ async def test_the_variables_of_any_former_instant(home: object) -> None:
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.state == "ended")
+        await until(pilot, lambda: app.run_controller.state == "ended")
         await pilot.press("G")
-        app.bridge.timeline.go(42)
-        await until(pilot, lambda: app.debugging.standing is not None and not app.debugging.busy)
+        app.run_controller.timeline.go(42)
+        await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
         assert values(app) == {"total": "36", "i": "8"}
         assert "sleeps until 0.45 s" in drawn(app)
-        app.bridge.timeline.go(7)
+        app.run_controller.timeline.go(7)
         await until(pilot, lambda: values(app) == {"total": "1", "i": "1"})
         await press(pilot, app, "n", 6)
-        assert app.bridge.timeline.at == 10
+        assert app.run_controller.timeline.at == 10
         await pilot.press("L")
-        await until(pilot, lambda: not app.debugging.busy)
+        await until(pilot, lambda: not app.debugger.busy)
         await pilot.press("end")
-        await until(pilot, lambda: app.debugging.standing is None)
+        await until(pilot, lambda: app.debugger.view is None)
 
 
 async def test_run_to_the_cursor_starts_the_program(home: object) -> None:
@@ -212,7 +212,7 @@ async def test_run_to_the_cursor_starts_the_program(home: object) -> None:
         await pilot.press("L")
         await stands(pilot, app, 6)
         await pilot.press("S")
-        await until(pilot, lambda: not app.bridge.in_run)
+        await until(pilot, lambda: not app.run_controller.in_run)
 
 
 @pytest.mark.parametrize(
@@ -239,14 +239,14 @@ def test_what_is_kept_comes_back(home: object) -> None:
 
 async def test_breaks_are_kept_with_a_program_that_no_panel_shows(home: object) -> None:
     app = LabApp(settings(COUNTS, panels_off=("code", "controls")))
-    assert app.bridge.program is not None
-    keep(app.bridge.program.path, Kept(parse_breakpoints(("4",)), ("total",)))
+    assert app.run_controller.program is not None
+    keep(app.run_controller.program.path, Kept(parse_breakpoints(("4",)), ("total",)))
     async with app.run_test(size=(80, 24)) as pilot:
         await ready(pilot)
-        await until(pilot, lambda: bool(app.debugging.breaks))
-        assert (app.desk.code, app.debugging.watches) == (None, ("total",))
-        app.debugging.set_breaks(parse_breakpoints(("4", "6")))
-        assert load_kept(app.bridge.program.path).breaks == app.debugging.breaks
+        await until(pilot, lambda: bool(app.debugger.breaks))
+        assert (app.panel_area.code, app.debugger.watches) == (None, ("total",))
+        app.debugger.set_breaks(parse_breakpoints(("4", "6")))
+        assert load_kept(app.run_controller.program.path).breaks == app.debugger.breaks
         await pilot.press("D")
-        await until(pilot, lambda: app.desk.code is not None)
-        assert [one.text for one in app.debugging.breaks] == ["4", "6"]
+        await until(pilot, lambda: app.panel_area.code is not None)
+        assert [one.text for one in app.debugger.breaks] == ["4", "6"]

@@ -42,10 +42,10 @@ LINES = "".join(f"n{number} = {number}\n" for number in range(1, 10))
 async def held(pilot: Pilot[Any]) -> LabApp:
     """Hold the program at a line, with ticks behind it."""
     app = await ready(pilot)
-    await until(pilot, lambda: app.bridge.timeline.newest > 20)
+    await until(pilot, lambda: app.run_controller.timeline.newest > 20)
     await pilot.press("n")
-    await until(pilot, lambda: app.debugging.standing is not None)
-    while app.debugging.standing is None or app.debugging.standing.paused.line != 4:
+    await until(pilot, lambda: app.debugger.view is not None)
+    while app.debugger.view is None or app.debugger.view.paused.line != 4:
         await press_and_stand(pilot, "n")
     return app
 
@@ -54,32 +54,32 @@ async def held(pilot: Pilot[Any]) -> LabApp:
 async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> None:
     async with LabApp(settings(STEPS, autorun=True, speed=8.0)).run_test(size=(120, 40)) as pilot:
         app = await held(pilot)
-        tick, start = app.bridge.timeline.newest, app.bridge.pose
-        app.bridge.set_noise(NoiseSpec(20, 0))
+        tick, start = app.run_controller.timeline.newest, app.run_controller.pose
+        app.run_controller.set_noise(NoiseSpec(20, 0))
         for key in ("up", "up", "right", "p", "p", "p"):
             await pilot.press(key)
-        assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
+        assert app.run_controller.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         # As at the end of a drag.
-        app.bridge.place(app.bridge.pose)
-        now = app.bridge.snapshot()
+        app.run_controller.place(app.run_controller.pose)
+        now = app.run_controller.snapshot()
         assert (now.instant.noise, now.pen_down, now.gyro_deg) == (NoiseSpec(20, 0), True, 0)
         # Another line, and still the same tick: nothing has been done yet.
         await pilot.press("n")
-        await until(pilot, lambda: app.debugging.standing is not None and app.debugging.standing.paused.line == 5)
-        assert app.bridge.timeline.newest == tick
-        assert app.bridge.pose.y_mm == start.y_mm + 20
+        await until(pilot, lambda: app.debugger.view is not None and app.debugger.view.paused.line == 5)
+        assert app.run_controller.timeline.newest == tick
+        assert app.run_controller.pose.y_mm == start.y_mm + 20
         await pilot.press("full_stop")
-        await until(pilot, lambda: app.bridge.timeline.newest == tick + 1)
-        recording = app.bridge.timeline.recording
+        await until(pilot, lambda: app.run_controller.timeline.newest == tick + 1)
+        recording = app.run_controller.timeline.recording
         assert recording is not None
         kinds = ["set_noise", *["set_pose"] * 3, *["set_pen"] * 3]
         assert [(one.tick, one.command.kind) for one in recording.actions()] == [(tick, kind) for kind in kinds]
-        assert app.bridge.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
+        assert app.run_controller.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         await pilot.press("S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         # It stands nowhere any more.
-        assert app.debugging.standing is None
-        run = RunStore().load_run(app.bridge.run_id)
+        assert app.debugger.view is None
+        run = RunStore().load_run(app.run_controller.run_id)
         again = rerun(run, RunStore())
         again.wait(PATIENCE_S)
         assert same(run, RunStore().load_run(again.run_id)).same
@@ -88,9 +88,12 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
 async def noisy_past(pilot: Pilot[Any]) -> LabApp:
     """A run whose noise was set to 10 on its way, looked at before and after that by turns."""
     app = await ready(pilot)
-    await until(pilot, lambda: app.bridge.timeline.newest > 30)
-    app.bridge.set_noise(NoiseSpec(10, 0))
-    await until(pilot, lambda: app.bridge.snapshot().instant.noise.light == 10 and app.bridge.timeline.newest > 60)
+    await until(pilot, lambda: app.run_controller.timeline.newest > 30)
+    app.run_controller.set_noise(NoiseSpec(10, 0))
+    await until(
+        pilot,
+        lambda: app.run_controller.snapshot().instant.noise.light == 10 and app.run_controller.timeline.newest > 60,
+    )
     to_tick(app, 10)
     await until(pilot, lambda: light(app) == 0)
     return app
@@ -102,7 +105,7 @@ def light(app: LabApp) -> int:
 
 def noises(app: LabApp) -> list[int]:
     """The light noise that the user has set in the run at hand."""
-    recording = app.bridge.timeline.recording
+    recording = app.run_controller.timeline.recording
     assert recording is not None
     return [one.command.light for one in recording.actions() if isinstance(one.command, SetNoise)]
 
@@ -137,15 +140,15 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         await pilot.press("enter")
         await until(pilot, lambda: isinstance(app.screen, BranchQuestion))
         await pilot.press("y")
-        await until(pilot, lambda: len(app.screen_stack) == 1 and app.bridge.state in (RUNNING, PAUSED))
+        await until(pilot, lambda: len(app.screen_stack) == 1 and app.run_controller.state in (RUNNING, PAUSED))
         await until(pilot, lambda: noises(app) == [30])
         field.focus()
         await pilot.press("escape")
         await pilot.pause()
-        assert (light(app), app.bridge.plan.spec.world.noise.light) == (30, 30)
-        newest = app.bridge.timeline.newest
-        app.bridge.resume()
-        await until(pilot, lambda: app.bridge.timeline.newest > newest + 5)
+        assert (light(app), app.run_controller.next_run.spec.world.noise.light) == (30, 30)
+        newest = app.run_controller.timeline.newest
+        app.run_controller.resume()
+        await until(pilot, lambda: app.run_controller.timeline.newest > newest + 5)
         assert noises(app) == [30]
 
 
@@ -153,13 +156,13 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
     asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
     async with LabApp(asks).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == WAITING)
+        await until(pilot, lambda: app.run_controller.state == WAITING)
         await pilot.press("escape", "space")
-        await until(pilot, lambda: app.bridge.state == PAUSED)
+        await until(pilot, lambda: app.run_controller.state == PAUSED)
         await pilot.press("space")
-        await until(pilot, lambda: app.bridge.state == WAITING)
-        app.bridge.answer("Ann")
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == WAITING)
+        app.run_controller.answer("Ann")
+        await until(pilot, lambda: app.run_controller.state == RUNNING)
 
 
 @pytest.mark.slow
@@ -170,35 +173,35 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
             await pilot.press("n")
             await until(pilot, partial(at_line, app, line))
             # The panels are there from the first line on.
-            assert app.desk.shown("code") and app.desk.shown("debug")
+            assert app.panel_area.shown("code") and app.panel_area.shown("debug")
         await pilot.press("N", "N", "n")
-        await until(pilot, lambda: at_line(app, 2) and not app.debugging.busy)
+        await until(pilot, lambda: at_line(app, 2) and not app.debugger.busy)
         assert "past 0.00 s" in screen_text(app)
         # As the end key does it: the run at work is not let on from a former line.
         await pilot.press("full_stop")
         await until(pilot, partial(at_line, app, 4))
         # While the way back is worked out, it can be given up.
         await pilot.press("N", "end")
-        assert not app.debugging.busy
+        assert not app.debugger.busy
         await pilot.press("n")
         await until(pilot, partial(at_line, app, 5))
-        assert not app.debugging.looks_back
-        assert app.bridge.timeline.newest == 0
+        assert not app.debugger.looks_back
+        assert app.run_controller.timeline.newest == 0
 
 
 def at_line(app: LabApp, line: int) -> bool:
-    return app.debugging.standing is not None and app.debugging.standing.paused.line == line
+    return app.debugger.view is not None and app.debugger.view.paused.line == line
 
 
 async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> None:
     async with LabApp(settings(LINES + "tank_drive.on_for_seconds(50, 50, 1)\n", speed=0.0)).run_test() as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         to_tick(app, 10)
-        assert app.bridge.in_past
-        assert app.loading.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
-        assert app.bridge.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)
+        assert app.run_controller.in_past
+        assert app.loader.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
+        assert app.run_controller.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)
 
 
 async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

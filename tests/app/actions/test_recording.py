@@ -96,7 +96,7 @@ def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> N
 
 def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     timeline = Timeline()
-    timeline.take(Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n")))
+    timeline.switch_to(Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n")))
     timeline.breaks.append(40)
     assert timeline.marks() == [(40, "break")]
     timeline.go(30)

@@ -275,13 +275,13 @@ async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
     spec = build_run_spec(Settings(background="Grey_bands"))
     async with LabApp(AppSettings(spec=spec, program=program(LOGS))).run_test(size=(120, 40)) as pilot:
         lab = await ready(pilot)
-        below, pose = lab.screen, lab.bridge.snapshot().instant.pose
+        below, pose = lab.screen, lab.run_controller.snapshot().instant.pose
         analyser = Analyser(LogRequest(runs=(run.id,)))
         await lab.push_screen(analyser)
         await until(pilot, lambda: analyser.model is not None)
         await pilot.press("d", "escape", "B", "i", "left", "shift+up")
         assert lab.screen is analyser
-        assert lab.bridge.snapshot().instant.pose == pose
+        assert lab.run_controller.snapshot().instant.pose == pose
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(lab.screen, CommandPalette))
         await pilot.press("escape")

@@ -19,7 +19,7 @@ async def test_no_drag_outlives_a_dialog() -> None:
         view, slider = app.query_one(WorldView), app.query_one("#light", Slider)
         chart, brick = app.query_one(Chart), app.query_one(Brick)
         assert view._port is not None
-        col, row = view._port.to_px(app.bridge.pose.x_mm, app.bridge.pose.y_mm)
+        col, row = view._port.to_px(app.run_controller.pose.x_mm, app.run_controller.pose.y_mm)
         grips: list[tuple[Widget, tuple[int, int]]] = [(view, (int(col), int(row / 2))), (slider, (0, 0))]
         for widget, at in grips:
             await pilot.mouse_down(widget, offset=at)

@@ -50,8 +50,10 @@ async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
         await pilot.press("b")
         await pilot.pause()
         await enter_path(pilot, path)
-        await until(pilot, lambda: app.bridge.plan.spec.world.background == str(path) and app.loading.mat_is_ready)
-        assert app.bridge.snapshot().colors["left"].rgb == (200, 0, 0)
+        await until(
+            pilot, lambda: app.run_controller.next_run.spec.world.background == str(path) and app.loader.mat_is_ready
+        )
+        assert app.run_controller.snapshot().colors["left"].rgb == (200, 0, 0)
 
 
 @pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
@@ -61,14 +63,14 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
         path.write_text(content)
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        before = app.bridge.plan
+        before = app.run_controller.next_run
         await pilot.press("b")
         await pilot.pause()
         await enter_path(pilot, path)
         await until(pilot, lambda: any("none.png" in notice for notice in notices(app)))
-        await until(pilot, lambda: app.bridge.plan == before)
-        assert app.loading.mat_is_ready
-        assert app.bridge.snapshot().colors["left"].rgb == (255, 255, 255)
+        await until(pilot, lambda: app.run_controller.next_run == before)
+        assert app.loader.mat_is_ready
+        assert app.run_controller.snapshot().colors["left"].rgb == (255, 255, 255)
 
 
 def with_mats(folder: Path | None) -> AppSettings:
@@ -94,17 +96,19 @@ async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_
         app = await ready(pilot)
         await choose(pilot, "FLL_2018_Into_Orbit")
         picture = str(folder / "FLL2018.jpg")
-        await until(pilot, lambda: app.bridge.plan.spec.world.background == picture and app.loading.mat_is_ready)
-        assert app.bridge.plan.spec.world.start.x_mm == 150
+        await until(
+            pilot, lambda: app.run_controller.next_run.spec.world.background == picture and app.loader.mat_is_ready
+        )
+        assert app.run_controller.next_run.spec.world.start.x_mm == 150
 
 
 async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        before = app.bridge.plan
+        before = app.run_controller.next_run
         await choose(pilot, "FLL_2018_Into_Orbit")
         await until(pilot, lambda: any("save it as FLL2018.jpg" in notice for notice in notices(app)))
-        assert app.bridge.plan == before
+        assert app.run_controller.next_run == before
 
 
 async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:

@@ -39,9 +39,9 @@ def own(path: Path, text: str = TEXT) -> AppSettings:
 
 async def begun(pilot: Pilot[Any]) -> tuple[LabApp, Code]:
     app = await ready(pilot)
-    await until(pilot, lambda: app.desk.code is not None)
-    assert app.desk.code is not None
-    return app, app.desk.code
+    await until(pilot, lambda: app.panel_area.code is not None)
+    assert app.panel_area.code is not None
+    return app, app.panel_area.code
 
 
 async def typed(pilot: Pilot[Any], code: Code, *keys: str) -> None:
@@ -66,10 +66,10 @@ async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Pat
         await typed(pilot, code, *"print", "left_parenthesis", "7", "right_parenthesis", "enter")
         assert str(code.border_title) == "Code: prog.py • edited"
         await pilot.press("ctrl+r")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         await pilot.pause()
-        assert app.bridge.timeline.recording is not None
-        assert app.bridge.timeline.recording.program.text == "print(7)\n" + TEXT
+        assert app.run_controller.timeline.recording is not None
+        assert app.run_controller.timeline.recording.program.text == "print(7)\n" + TEXT
         assert path.read_text() == TEXT
         await pilot.press("ctrl+s")
         await pilot.pause()
@@ -92,25 +92,25 @@ async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_p
     path = tmp_path / "prog.py"
     async with LabApp(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
-        start = app.bridge.plan.spec.world.start
+        start = app.run_controller.next_run.spec.world.start
         await typed(pilot, code, "i", "f", "enter", "ctrl+r")
-        assert app.bridge.state == IDLE
-        assert app.bridge.plan.spec.world.start == start
+        assert app.run_controller.state == IDLE
+        assert app.run_controller.next_run.spec.world.start == start
         assert "✗ 1 if" in screen_text(app)
         assert any("cannot run: line 1" in text for text in notices(app))
         await pilot.press(*["backspace"] * 3, "ctrl+r")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
 
 
 async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("d")
-        await until(pilot, lambda: app.desk.alone == "code")
+        await until(pilot, lambda: app.panel_area.alone == "code")
         await pilot.press("i", "f", "enter", "ctrl+r")
-        await until(pilot, lambda: app.desk.code is not None and app.desk.code.error_line == 1)
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.error_line == 1)
         await pilot.pause()
-        assert app.desk.alone == "code"
+        assert app.panel_area.alone == "code"
 
 
 async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -125,40 +125,45 @@ async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch:
         await until(pilot, lambda: not isinstance(app.screen, ProgramDialog))
         assert (tmp_path / example.name).read_bytes() == b"#\n" + before
         assert example.path.read_bytes() == before
-        assert app.bridge.program is not None
-        assert app.bridge.program.path == str(tmp_path / example.name)
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.path == str(tmp_path / example.name)
 
 
 async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("d")
-        await until(pilot, lambda: app.desk.code is not None and app.desk.code.size.height > 20)
-        assert not app.desk.shown("world")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.size.height > 20)
+        assert not app.panel_area.shown("world")
         await pilot.press("x", "escape")
-        await until(pilot, lambda: app.desk.shown("world"))
-        assert app.desk.shown("code")
+        await until(pilot, lambda: app.panel_area.shown("world"))
+        assert app.panel_area.shown("code")
         await pilot.press("d", "ctrl+r")
-        await until(pilot, lambda: app.bridge.state == ENDED and app.desk.shown("world"))
-        assert app.work.dirty
+        await until(pilot, lambda: app.run_controller.state == ENDED and app.panel_area.shown("world"))
+        assert app.document.dirty
 
 
 @pytest.mark.parametrize("size", [(80, 24), (100, 30), (120, 40), (200, 60)], ids=str)
 async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=size) as pilot:
         app = await ready(pilot)
-        before = app.desk.code.size if app.desk.shown("code") and app.desk.code else None
+        before = app.panel_area.code.size if app.panel_area.shown("code") and app.panel_area.code else None
         await pilot.press("d")
-        await until(pilot, lambda: app.desk.code is not None and app.desk.code.typing)
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         await pilot.pause()
-        assert app.desk.code is not None
-        width, height = app.desk.code.size
+        assert app.panel_area.code is not None
+        width, height = app.panel_area.code.size
         assert width >= min(79 + 5, size[0] - 2)
         assert height >= 13
         # Where there is room for both, the world stays.
-        assert app.desk.shown("world") is (size == (200, 60))
+        assert app.panel_area.shown("world") is (size == (200, 60))
         await pilot.press(*"abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz", "escape")
-        await until(pilot, lambda: app.desk.shown("world") and before in (None, app.desk.code and app.desk.code.size))
+        await until(
+            pilot,
+            lambda: (
+                app.panel_area.shown("world") and before in (None, app.panel_area.code and app.panel_area.code.size)
+            ),
+        )
         await until(pilot, lambda: app.query_one(CodeArea).scroll_offset.x == 0)
 
 
@@ -170,11 +175,11 @@ async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], t
     async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         await pilot.press("d")
-        await until(pilot, lambda: app.desk.code is not None and app.desk.code.typing)
-        assert app.desk.code is not None
-        await until(pilot, lambda: app.desk.code is not None and app.desk.code.error_line == 3)
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        assert app.panel_area.code is not None
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.error_line == 3)
         assert app.query_one(CodeArea).cursor_location == (2, 4)
 
 
@@ -185,7 +190,7 @@ async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(tmp
         await pilot.press("R")
         await until(pilot, lambda: code.error_line == 3)
         path.write_text(WRONG.replace("n.x", "n + 1"))
-        app.loading.look()
+        app.loader.check_files()
         await pilot.pause()
         assert "n + 1" in code.query_one(CodeArea).program_text
         assert code.error_line == 0
@@ -223,12 +228,12 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
         await typed(pilot, code, "x", "escape")
-        app.loading.open_file(str(other))
+        app.loader.open_file(str(other))
         await asked(pilot)
         await pilot.press("d")
         await until(pilot, lambda: "print('other')" in screen_text(app))
         assert path.read_text() == TEXT
-        assert not app.work.dirty
+        assert not app.document.dirty
 
 
 @pytest.mark.parametrize(
@@ -246,7 +251,7 @@ async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path:
         await pilot.press(answer)
         await pilot.pause()
         assert code.query_one(CodeArea).program_text == shown
-        assert app.work.dirty is (answer == "r")
+        assert app.document.dirty is (answer == "r")
     assert (find_draft(str(path)) is not None) is kept
 
 
@@ -258,7 +263,7 @@ async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Pat
         await until(pilot, lambda: find_draft(str(path)) is not None)
         await pilot.press("ctrl+z")
         await until(pilot, lambda: find_draft(str(path)) is None)
-        assert not app.work.dirty
+        assert not app.document.dirty
 
 
 @pytest.mark.parametrize(("answer", "shown"), [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"])
@@ -268,22 +273,22 @@ async def test_a_file_that_changes_under_unsaved_edits(answer: str, shown: str, 
         app, code = await begun(pilot)
         await typed(pilot, code, "x", "escape")
         path.write_text("other = 1\n")
-        app.loading.look()
+        app.loader.check_files()
         await asked(pilot)
         await pilot.press(answer)
         await pilot.pause()
         assert code.query_one(CodeArea).program_text == shown
-        assert app.work.dirty is (answer == "k")
+        assert app.document.dirty is (answer == "k")
 
 
 async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
         await typed(pilot, code, "x", "escape")
-        app.loading.change_mat("Grey_bands")
+        app.loader.change_mat("Grey_bands")
         await pilot.pause()
         assert code.query_one(CodeArea).program_text == "x" + TEXT
-        assert app.work.dirty
+        assert app.document.dirty
 
 
 async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -294,8 +299,8 @@ async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypa
         await until(pilot, lambda: code.typing)
         assert code.query_one(CodeArea).program_text == TEMPLATE
         await pilot.press("f5")
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        assert app.bridge._end == "finished"
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        assert app.run_controller._end == "finished"
         await pilot.press("ctrl+s")
         await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
         await pilot.press("enter")
@@ -311,9 +316,9 @@ async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Pat
         assert "%%sim_magic_preloaded -x 300" in screen_text(app)
         await typed(pilot, code, *["right"] * 25, "delete", "5", "escape")
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        assert app.bridge.timeline.recording is not None
-        assert app.bridge.timeline.recording.spec.world.start.x_mm == 500
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        assert app.run_controller.timeline.recording is not None
+        assert app.run_controller.timeline.recording.spec.world.start.x_mm == 500
 
 
 async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> None:
@@ -321,14 +326,14 @@ async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> 
     async with LabApp(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RUNNING)
         await until(pilot, lambda: "▶" in screen_text(app))
         await typed(pilot, code, "#", "enter", "ctrl+s")
         await until(pilot, lambda: "running text differs" in screen_text(app))
         assert path.read_text().startswith("#\n# %%")
         assert "▶ 4" not in screen_text(app)
-        app.bridge.stop()
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        app.run_controller.stop()
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         await until(pilot, lambda: "running text differs" not in screen_text(app))
 
 

@@ -53,15 +53,15 @@ async def test_breakpoints_and_light_stay_on_their_lines_when_a_held_program_is_
         app = await ready(pilot)
 
         def at(line: int) -> bool:
-            return app.debugging.standing is not None and app.debugging.standing.paused.line == line
+            return app.debugger.view is not None and app.debugger.view.paused.line == line
 
         await pilot.press("n")
         await until(pilot, lambda: at(1))
-        app.debugging.toggle_line(6)
+        app.debugger.toggle_line(6)
         await pilot.press("d", "ctrl+home", "#", "enter", "escape")
-        assert app.debugging.texts == ("7",)
-        assert app.desk.code is not None
-        area = app.desk.code._area
+        assert app.debugger.texts == ("7",)
+        assert app.panel_area.code is not None
+        area = app.panel_area.code._area
         await until(pilot, lambda: area._lit == 2)
         await pilot.press("space")
         await until(pilot, lambda: at(6) and area._lit == 7)

@@ -38,10 +38,10 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
         app = await ready(pilot)
         for panel in PANELS.values():
             at_first = LARGE in panel.sizes
-            assert app.desk.shown(panel.id) is at_first, panel.id
+            assert app.panel_area.shown(panel.id) is at_first, panel.id
             for shown in (not at_first, at_first):
                 await pilot.press(panel.key)
-                assert app.desk.shown(panel.id) is shown, panel.id
+                assert app.panel_area.shown(panel.id) is shown, panel.id
                 await pilot.pause()
                 assert (f"─ {panel.title}" in screen_text(app)) is shown, panel.id
 
@@ -54,10 +54,10 @@ async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back(pane
         await pilot.press(PANELS[panel].key)
         # Those that hear no keys leave the focus where it is.
         deaf = ("instrumentation", "arrays", "controls")
-        wanted = app.desk.panels["world" if panel in deaf else panel]
+        wanted = app.panel_area.panels["world" if panel in deaf else panel]
         await until(pilot, lambda: app.focused is not None and wanted in app.focused.ancestors_with_self)
         await pilot.press(PANELS[panel].key)
-        await until(pilot, lambda: not app.desk.shown(panel) and app.focused is app.desk.world)
+        await until(pilot, lambda: not app.panel_area.shown(panel) and app.focused is app.panel_area.world)
 
 
 async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
@@ -66,7 +66,7 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
         await until(pilot, lambda: "— finished" in screen_text(app) and "[x] Colour" in screen_text(app))
         await pilot.press("x")
         await until(pilot, lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app))
-        recording = app.bridge.timeline.recording
+        recording = app.run_controller.timeline.recording
         assert recording is not None
         assert any("Colour" in row.text for row in recording.rows.rows(0))
 
@@ -89,12 +89,12 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("A", "H")
-        assert app.desk.shown("arrays")
-        assert app.desk.shown("controls")
-        assert not app.desk.shown("instrumentation")
+        assert app.panel_area.shown("arrays")
+        assert app.panel_area.shown("controls")
+        assert not app.panel_area.shown("instrumentation")
         assert "Simulator controls takes the room of Instrumentation (i)" in notices(app)
         await pilot.press("H")
-        assert app.desk.shown("instrumentation")
+        assert app.panel_area.shown("instrumentation")
 
 
 async def test_resize_there_and_back() -> None:
@@ -103,10 +103,10 @@ async def test_resize_there_and_back() -> None:
         await until(pilot, lambda: "White" in screen_text(app))
         before = screen_text(app)
         await pilot.resize_terminal(200, 60)
-        await until(pilot, lambda: app.desk.shown("positioning"))
-        assert all(app.desk.shown(panel.id) for panel in PANELS.values() if panel.sizes)
+        await until(pilot, lambda: app.panel_area.shown("positioning"))
+        assert all(app.panel_area.shown(panel.id) for panel in PANELS.values() if panel.sizes)
         await pilot.resize_terminal(80, 24)
-        await until(pilot, lambda: not app.desk.shown("chart"))
+        await until(pilot, lambda: not app.panel_area.shown("chart"))
         await until(pilot, lambda: screen_text(app) == before)
 
 
@@ -114,10 +114,10 @@ async def test_switched_off_stays_off_in_every_size() -> None:
     off = settings(LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"}))
     async with LabApp(off).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        assert app.desk.shown("arrays")
+        assert app.panel_area.shown("arrays")
         await pilot.resize_terminal(200, 60)
-        await until(pilot, lambda: app.desk.shown("chart"))
-        assert not app.desk.shown("world")
+        await until(pilot, lambda: app.panel_area.shown("chart"))
+        assert not app.panel_area.shown("world")
 
 
 async def test_a_key_that_does_nothing_says_why() -> None:
@@ -150,42 +150,42 @@ async def test_nudge() -> None:
             ("f", Pose(150, 500, -5)),
         ):
             await pilot.press(key)
-            assert app.bridge.pose == pose, key
-            assert app.bridge.snapshot().gyro_deg == 0, key
+            assert app.run_controller.pose == pose, key
+            assert app.run_controller.snapshot().gyro_deg == 0, key
             await pilot.press("m")
-            assert app.bridge.pose == Pose(150, 500, 0), key
+            assert app.run_controller.pose == Pose(150, 500, 0), key
 
 
 async def test_readings_follow_the_robot_at_rest() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        assert app.bridge.snapshot().colors["left"].red == 255
-        app.bridge.place(Pose(300, 500, 0))
-        assert app.bridge.snapshot().colors["left"].red == 220
+        assert app.run_controller.snapshot().colors["left"].red == 255
+        app.run_controller.place(Pose(300, 500, 0))
+        assert app.run_controller.snapshot().colors["left"].red == 220
 
 
 async def test_speed_steps_and_ends() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("left_square_bracket", "left_square_bracket")
-        assert app.bridge.speed == 0.25
+        assert app.run_controller.speed == 0.25
         await pilot.press("left_square_bracket")
         assert notices(app) == ["Speed is ¼× already: that is the slowest"]
         await pilot.press(*["right_square_bracket"] * 6)
-        assert app.bridge.speed == 0
+        assert app.run_controller.speed == 0
 
 
 async def test_pen_is_p_and_not_shift_p() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("P", "escape")
-        after_shift_p = app.bridge.pen_down
+        after_shift_p = app.run_controller.pen_down
         await pilot.press("p")
-        assert (after_shift_p, app.bridge.pen_down) == (False, True)
+        assert (after_shift_p, app.run_controller.pen_down) == (False, True)
         await pilot.press("x")
-        assert not app.desk.shown("positioning")
+        assert not app.panel_area.shown("positioning")
         await pilot.press("X")
-        assert app.desk.shown("positioning")
+        assert app.panel_area.shown("positioning")
 
 
 async def test_help_lists_every_key() -> None:
@@ -219,7 +219,7 @@ async def test_bad_position_is_refused_with_a_reason() -> None:
             await pilot.press("enter")
             await pilot.pause()
             assert str(app.query_one("Positioning #message", Static).render()) == message
-            assert app.bridge.pose == Pose(150, 500, 0)
+            assert app.run_controller.pose == Pose(150, 500, 0)
 
 
 async def test_good_position_is_applied() -> None:
@@ -228,7 +228,7 @@ async def test_good_position_is_applied() -> None:
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
         app.query_one("#x", Input).focus()
         await pilot.press("4", "0", "0", "comma", "5", "enter")
-        await until(pilot, lambda: app.bridge.pose == Pose(400.5, 500, 0))
+        await until(pilot, lambda: app.run_controller.pose == Pose(400.5, 500, 0))
 
 
 @pytest.mark.parametrize("text", ["1", " -2.5 ", "3,5", "+4e2"])
@@ -244,9 +244,9 @@ async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
         mats = app.screen.query_one(OptionList)
         mats.highlighted = mats.get_option_index("Lollipop")
         await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.mat is not None and app.bridge.mat.name == "Lollipop")
-        assert app.bridge.pose.heading_deg == -180
-        assert app.bridge.program is not None
+        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop")
+        assert app.run_controller.pose.heading_deg == -180
+        assert app.run_controller.program is not None
 
 
 async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
@@ -259,20 +259,20 @@ async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
         entry.focus()
         entry.value = str(path)
         await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.mat is not None and app.bridge.mat.name == "Square")
-        assert app.bridge.program is not None
-        assert app.bridge.program.name == "mine.py"
-        assert app.bridge.pose.x_mm == 500
-        assert app.bridge.state == IDLE
+        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Square")
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.name == "mine.py"
+        assert app.run_controller.pose.x_mm == 500
+        assert app.run_controller.state == IDLE
 
 
 async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.loading.open_file(str(tmp_path / "none.py"))
+        app.loader.open_file(str(tmp_path / "none.py"))
         await pilot.pause()
         assert "there is no such program" in notices(app)[0]
-        assert app.bridge.program is None
+        assert app.run_controller.program is None
 
 
 async def test_quit_without_a_run_asks_nothing() -> None:

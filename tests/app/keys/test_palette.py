@@ -24,7 +24,7 @@ async def test_it_offers_every_key_and_finds_it_by_its_title() -> None:
         found = [hit async for hit in provider.search("pen up") if isinstance(hit, Hit)]
         assert [str(hit.match_display) for hit in found] == [ACTIONS["pen"].title]
         found[0].command()
-        assert app.bridge.pen_down
+        assert app.run_controller.pen_down
 
 
 async def test_above_the_analyser_it_offers_no_key_of_the_lab(tmp_path: Path) -> None:

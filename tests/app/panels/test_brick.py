@@ -33,19 +33,19 @@ while True:
 
 
 def printed(app: LabApp) -> list[str]:
-    assert app.bridge.run is not None
-    return [row.text for row in app.bridge.run.output.all_rows() if row.stream == 1]
+    assert app.run_controller.run is not None
+    return [row.text for row in app.run_controller.run.output.all_rows() if row.stream == 1]
 
 
 def drawn(app: LabApp) -> str:
     """What the panel shows, as lines of text."""
-    assert app.desk.brick is not None
-    return "\n".join("".join(text for text, _ in line) for line in app.desk.brick._picture.lines)
+    assert app.panel_area.brick is not None
+    return "\n".join("".join(text for text, _ in line) for line in app.panel_area.brick._picture.lines)
 
 
 def actions(app: LabApp) -> list[list[str]]:
-    assert app.bridge.run is not None
-    path = app.bridge.run.folder / "actions.jsonl"
+    assert app.run_controller.run is not None
+    path = app.run_controller.run.folder / "actions.jsonl"
     return [json.loads(line)["pressed"] for line in path.read_text().splitlines()] if path.exists() else []
 
 
@@ -59,7 +59,7 @@ async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
         assert any("while a program runs" in text for text in notices(app))
         await pilot.press("R")
         await until(pilot, lambda: "ready" in printed(app))
-        pose = app.bridge.pose
+        pose = app.run_controller.pose
 
         await pilot.press("left")
         await until(pilot, lambda: "left" in printed(app))
@@ -67,15 +67,15 @@ async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
         await pilot.press("shift+up")
         await pilot.press("enter")
         await until(pilot, lambda: "up+enter" in printed(app))
-        assert app.bridge.pose == pose
+        assert app.run_controller.pose == pose
         await until(pilot, lambda: "red" in drawn(app))
 
         await pilot.press("down")
         await until(pilot, lambda: "Mission 7" in drawn(app))
         await pilot.press("backspace")
-        await until(pilot, lambda: not app.bridge.in_run)
-        assert app.desk.brick is not None
-        assert app.desk.brick.held == frozenset()
+        await until(pilot, lambda: not app.run_controller.in_run)
+        assert app.panel_area.brick is not None
+        assert app.panel_area.brick.held == frozenset()
 
 
 async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() -> None:
@@ -84,7 +84,7 @@ async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() ->
         await ready(pilot)
         await pilot.press("K", "R")
         await until(pilot, lambda: "ready" in printed(app))
-        panel = app.desk.brick
+        panel = app.panel_area.brick
         assert panel is not None
         panel.action_tap("down")
         panel.release_all()
@@ -99,7 +99,7 @@ async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
         await ready(pilot)
         await pilot.press("K", "R")
         await until(pilot, lambda: "ready" in printed(app))
-        brick = app.desk.brick
+        brick = app.panel_area.brick
         assert brick is not None
         await until(pilot, lambda: bool(brick._picture.buttons))
         box = next(box for box in brick._picture.buttons if box.name == "right")
@@ -121,11 +121,11 @@ async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
         await pilot.press("down")
         await until(pilot, lambda: "Mission 7" in drawn(app))
         await pilot.press("space")
-        await until(pilot, lambda: app.bridge.state == "paused")
-        app.bridge.timeline.go(1)
+        await until(pilot, lambda: app.run_controller.state == "paused")
+        app.run_controller.timeline.go(1)
         app.draw(force=True)
         await until(pilot, lambda: "Mission 7" not in drawn(app))
-        assert app.bridge.snapshot().pressed == frozenset()
+        assert app.run_controller.snapshot().pressed == frozenset()
 
 
 async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
@@ -134,14 +134,14 @@ async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
         await ready(pilot)
         await pilot.press("K", "plus")
         await pilot.pause()
-        assert [panel for panel in app.desk.panels if app.desk.shown(panel)] == ["brick"]
-        assert app.desk.panels["brick"].size.width > 110
+        assert [panel for panel in app.panel_area.panels if app.panel_area.shown(panel)] == ["brick"]
+        assert app.panel_area.panels["brick"].size.width > 110
         await pilot.press("plus")
         await pilot.pause()
-        assert app.desk.shown("world")
+        assert app.panel_area.shown("world")
         await pilot.press("plus", "W")
         await pilot.pause()
-        assert app.desk.shown("world")
+        assert app.panel_area.shown("world")
 
 
 async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
@@ -150,16 +150,16 @@ async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
         await ready(pilot)
         await pilot.press("R")
         await until(pilot, lambda: "ready" in printed(app))
-        assert app.desk.brick is not None
-        app.desk.brick.focus()
+        assert app.panel_area.brick is not None
+        app.panel_area.brick.focus()
         await pilot.press("shift+up")
         await until(pilot, lambda: "up" in printed(app))
         assert actions(app) == [["up"]]
         await pilot.press("comma")
-        await until(pilot, lambda: app.bridge.snapshot().past)
+        await until(pilot, lambda: app.run_controller.snapshot().past)
         await pilot.press("enter")
         await until(pilot, lambda: any("not in the past" in text for text in notices(app)))
-        assert app.bridge.pressed == {"up"}
+        assert app.run_controller.pressed == {"up"}
         await pilot.press("y", "y")
-        await until(pilot, lambda: app.bridge.state in (RUNNING, PAUSED) and actions(app) == [["up"], []])
-        assert (app.bridge.pressed, app.desk.brick.held) == (frozenset(), frozenset())
+        await until(pilot, lambda: app.run_controller.state in (RUNNING, PAUSED) and actions(app) == [["up"], []])
+        assert (app.run_controller.pressed, app.panel_area.brick.held) == (frozenset(), frozenset())

@@ -31,6 +31,6 @@ async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
         app = await ready(pilot)
         for _ in range(2):
             await pilot.press("R")
-            await until(pilot, lambda: app.bridge.state == ENDED and not app._last_words)
+            await until(pilot, lambda: app.run_controller.state == ENDED and not app._last_words)
         told = [notice for notice in notices(app) if notice.startswith("The program")]
         assert told == ["The program shows something on the brick: K opens its panel"]

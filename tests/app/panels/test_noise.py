@@ -26,14 +26,14 @@ def sliders(app: LabApp) -> list[int]:
 async def test_a_slider_acts_on_the_readings_at_once() -> None:
     async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        assert app.bridge.snapshot().colors["left"].green == 255
+        assert app.run_controller.snapshot().colors["left"].green == 255
         app.query_one("#light", Slider).focus()
         await pilot.press("end")
-        await until(pilot, lambda: app.bridge.snapshot().colors["left"].green < 255)
-        assert app.bridge.plan.spec.world.noise == NoiseSpec(128, 0)
+        await until(pilot, lambda: app.run_controller.snapshot().colors["left"].green < 255)
+        assert app.run_controller.next_run.spec.world.noise == NoiseSpec(128, 0)
         assert app.query_one("#light-number", Input).value == "128"
         # The arrows belong to the slider now, not to the robot.
-        assert app.bridge.pose.x_mm == 150
+        assert app.run_controller.pose.x_mm == 150
 
 
 @pytest.mark.parametrize(
@@ -47,14 +47,14 @@ async def test_a_slider_acts_on_the_readings_at_once() -> None:
 async def test_a_wrong_number_is_refused_beside_it(field: str, typed: str, said: str) -> None:
     async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        before = app.bridge.plan
+        before = app.run_controller.next_run
         entry = app.query_one(f"#{field}", Input)
         entry.focus()
         entry.value = typed
         await pilot.press("enter")
         await pilot.pause()
         assert str(app.query_one("Noise #message", Static).render()) == said
-        assert app.bridge.plan == before
+        assert app.run_controller.next_run == before
 
 
 async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
@@ -65,22 +65,24 @@ async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
             entry.focus()
             entry.value = typed
             await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.plan.spec.seed == 7)
+        await until(pilot, lambda: app.run_controller.next_run.spec.seed == 7)
         await pilot.press("escape", "R")
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        assert app.bridge.run is not None
-        assert app.bridge.run.spec.world.noise == NoiseSpec(0, 50)
-        assert app.bridge.run.spec.seed == 7
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        assert app.run_controller.run is not None
+        assert app.run_controller.run.spec.world.noise == NoiseSpec(0, 50)
+        assert app.run_controller.run.spec.seed == 7
 
 
 async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.snapshot().instant.tick > 0)
+        await until(
+            pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.snapshot().instant.tick > 0
+        )
         app.query_one("#light", Slider).focus()
         await pilot.press("pageup")
-        await until(pilot, lambda: app.bridge.snapshot().instant.noise.light == 10)
-        run, recording = app.bridge.run, app.bridge.timeline.recording
+        await until(pilot, lambda: app.run_controller.snapshot().instant.noise.light == 10)
+        run, recording = app.run_controller.run, app.run_controller.timeline.recording
         assert run is not None
         assert recording is not None
         actions, _ = read_actions(run.folder)
@@ -90,8 +92,8 @@ async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -
         # The run itself began without: what it was made of does not change.
         assert json.loads((run.folder / "run.json").read_text())["spec"]["world"]["noise"]["light"] == 0
         await pilot.press("escape", "S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        assert app.bridge.snapshot().instant.noise.light == 10
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        assert app.run_controller.snapshot().instant.noise.light == 10
         assert sliders(app) == [10, 0]
 
 
@@ -100,7 +102,7 @@ async def test_the_panel_shows_what_a_mat_or_a_program_leaves() -> None:
         app = await ready(pilot)
         app.query_one("#motor", Slider).focus()
         await pilot.press("right")
-        app.loading.change_mat("Loop")
-        await until(pilot, lambda: app.loading.mat_is_ready)
+        app.loader.change_mat("Loop")
+        await until(pilot, lambda: app.loader.mat_is_ready)
         assert sliders(app) == [0, 1]
         assert app.query_one(Noise).display

@@ -22,7 +22,7 @@ SHOWN = frozenset({"obstacles"})
 
 
 def boxes(app: LabApp) -> tuple[Obstacle, ...]:
-    return app.bridge.plan.spec.world.obstacles
+    return app.run_controller.next_run.spec.world.obstacles
 
 
 async def opened(pilot: Pilot[Any]) -> LabApp:
@@ -121,13 +121,13 @@ async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
         await until(pilot, lambda: boxes(app)[0].x_mm > 1300)
         assert boxes(app)[0].x_mm == pytest.approx(made.x_mm + 400, abs=35)
         assert (boxes(app)[0].width_mm, boxes(app)[0].y_mm) == (made.width_mm, made.y_mm)
-        assert app.bridge.pose.x_mm == 150
+        assert app.run_controller.pose.x_mm == 150
 
 
 async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
-        app.loading.take(with_obstacles(app.bridge.plan, OBSTACLES["Square_posts"]))
+        app.loader.set_next_run(with_obstacles(app.run_controller.next_run, OBSTACLES["Square_posts"]))
         await pilot.pause()
         await pilot.click(WorldView, offset=cell(app, 550, 250))
         await until(pilot, lambda: app.query_one(Obstacles).at == 0)
@@ -140,7 +140,7 @@ async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown
 async def test_the_box_at_hand_is_marked_in_the_world() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
-        app.loading.take(with_obstacles(app.bridge.plan, OBSTACLES["Wall"]))
+        app.loader.set_next_run(with_obstacles(app.run_controller.next_run, OBSTACLES["Wall"]))
         view = app.query_one(WorldView)
         await until(pilot, lambda: view._scene is not None and view._scene.marked == 0)
         before = view._cells.copy()
@@ -171,7 +171,7 @@ async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.Mon
 async def test_obstacles_are_not_changed_during_a_run() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RUNNING)
         await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
         await until(pilot, lambda: "Not during a run: S stops it" in notices(app))
         assert boxes(app) == ()
@@ -183,14 +183,14 @@ async def test_a_blocked_motor_is_shown_as_stalled() -> None:
         app = await ready(pilot)
         from tuisim.app.setup.next_run import with_values
 
-        plan = with_values(app.bridge.plan, solid=True)
-        start = app.bridge.pose
-        app.loading.take(with_obstacles(plan, (Obstacle(start.x_mm + 60, start.y_mm - 100, 50, 200),)))
+        plan = with_values(app.run_controller.next_run, solid=True)
+        start = app.run_controller.pose
+        app.loader.set_next_run(with_obstacles(plan, (Obstacle(start.x_mm + 60, start.y_mm - 100, 50, 200),)))
         await pilot.press("R")
-        await until(pilot, lambda: app.bridge.snapshot().stalled == (True, True))
+        await until(pilot, lambda: app.run_controller.snapshot().stalled == (True, True))
         await until(pilot, lambda: screen_text(app).count("stalled") == 2)
         await pilot.press("S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         await until(pilot, lambda: "stalled" not in screen_text(app))
 
 

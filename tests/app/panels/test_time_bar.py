@@ -32,8 +32,8 @@ async def a_run(text: str = LOGS, size: tuple[int, int] = (120, 40)) -> AsyncIte
     """A run that is over, in the app."""
     async with LabApp(settings(text, autorun=True, speed=0.0)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        recording = app.bridge.timeline.recording
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        recording = app.run_controller.timeline.recording
         assert recording is not None
         await until(pilot, lambda: not recording.rows.take(1) and not app._last_words)
         yield pilot, app
@@ -41,7 +41,7 @@ async def a_run(text: str = LOGS, size: tuple[int, int] = (120, 40)) -> AsyncIte
 
 async def test_keys_go_back_and_forward() -> None:
     async with a_run() as (pilot, app):
-        timeline, newest = app.bridge.timeline, app.bridge.timeline.newest
+        timeline, newest = app.run_controller.timeline, app.run_controller.timeline.newest
         steps = [
             ("comma", newest - 1), ("comma", newest - 2), ("full_stop", newest - 1), ("less_than_sign", newest - 101),
             ("greater_than_sign", newest - 1), ("full_stop", None), ("home", 0), ("greater_than_sign", 100),
@@ -56,19 +56,19 @@ async def test_keys_go_back_and_forward() -> None:
 
 async def test_a_former_instant_is_shown_as_it_was() -> None:
     async with a_run(size=(200, 60)) as (pilot, app):
-        recording, mat = app.bridge.timeline.recording, app.bridge.mat
+        recording, mat = app.run_controller.timeline.recording, app.run_controller.mat
         assert recording is not None
         assert mat is not None
         await pilot.press("g")
         app.screen.query_one(Input).value = "2 s"
         await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.timeline.at == 200)
+        await until(pilot, lambda: app.run_controller.timeline.at == 200)
         record = recording.telemetry.record(200)
         then = instant_of(record, recording.spec, recording.spec.world.noise)
         expected = snapshot_of(
             then, recording.spec, mat.field, state=ENDED, end=End.FINISHED, line=record.line, speed=0.0, pen_down=False
         )
-        shown = app.bridge.snapshot()
+        shown = app.run_controller.snapshot()
         plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None)
         assert plain == expected
         last = recording.telemetry.last()
@@ -76,12 +76,12 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         assert shown.now_pose == last.pose
         await until(pilot, lambda: "past 2.00 s" in screen_text(app))
         printed = [row.text for row in recording.rows.rows(0) if row.tick <= 200]
-        output = app.desk.output
+        output = app.panel_area.output
         assert output is not None
         assert [row.text for row in output._past_log._rows] == printed
         assert len(printed) < len(recording.rows)
-        assert app.desk.chart is not None
-        assert app.desk.chart._state.cursor_s == 2.0
+        assert app.panel_area.chart is not None
+        assert app.panel_area.chart._state.cursor_s == 2.0
         await pilot.press("end")
         await until(pilot, lambda: not output._past_log.display and output._log.display)
 
@@ -89,65 +89,65 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
 async def test_the_pen_has_drawn_no_more_than_then() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.bridge.set_pen(True)
-        await until(pilot, lambda: app.bridge.timeline.newest > 300)
+        app.run_controller.set_pen(True)
+        await until(pilot, lambda: app.run_controller.timeline.newest > 300)
         await pilot.press("comma")
-        await until(pilot, lambda: app.bridge.state == PAUSED)
-        app.bridge.timeline.go(150)
+        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        app.run_controller.timeline.go(150)
         app.draw(force=True)
-        world = app.desk.world
+        world = app.panel_area.world
         assert world is not None
         assert world._view.past_trace is not None
-        recording = app.bridge.timeline.recording
+        recording = app.run_controller.timeline.recording
         assert recording is not None
         drawn = [piece.xs_mm for piece in world._view.past_trace.pieces(0)]
         if drawn:
             ahead = recording.spec.robot.pen.y_mm
             assert max(float(xs[-1]) for xs in drawn) <= recording.telemetry.record(150).x_mm + abs(ahead)
         await pilot.press("end", "S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         assert world._view.past_trace is None
 
 
 async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.timeline.newest > 60)
+        await until(pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.timeline.newest > 60)
         await pilot.press("less_than_sign", "home")
-        await until(pilot, lambda: app.bridge.state == PAUSED)
-        newest = app.bridge.timeline.newest
-        assert app.bridge.timeline.at == 0
+        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        newest = app.run_controller.timeline.newest
+        assert app.run_controller.timeline.at == 0
         # Slowly, so that the past is not over before anybody looks.
         await pilot.press(*["left_square_bracket"] * 3, "space")
-        await until(pilot, lambda: 0 < (app.bridge.timeline.at or 0))
+        await until(pilot, lambda: 0 < (app.run_controller.timeline.at or 0))
         await pilot.press("space")
-        at = app.bridge.timeline.at
+        at = app.run_controller.timeline.at
         assert at is not None
         await pilot.press("full_stop")
-        assert (app.bridge.timeline.at, app.bridge.timeline.newest) == (at + 1, newest)
+        assert (app.run_controller.timeline.at, app.run_controller.timeline.newest) == (at + 1, newest)
         await pilot.press("space")
-        await until(pilot, lambda: app.bridge.state == RUNNING and app.bridge.timeline.newest > newest)
-        assert not app.bridge.in_past
+        await until(pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.timeline.newest > newest)
+        assert not app.run_controller.in_past
         await pilot.press("S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
 
 
 async def test_the_bar_is_clicked_and_dragged() -> None:
     async with a_run() as (pilot, app):
-        world = app.desk.world
+        world = app.panel_area.world
         assert world is not None
         bar = world.time_bar
         await until(pilot, lambda: bar.display and bar.region.width > 0)
         await pilot.mouse_down(bar, offset=(0, 0))
-        await until(pilot, lambda: app.bridge.timeline.at == 0)
+        await until(pilot, lambda: app.run_controller.timeline.at == 0)
         await pilot.hover(bar, offset=(20, 0))
-        await until(pilot, lambda: (app.bridge.timeline.at or 0) > 0)
+        await until(pilot, lambda: (app.run_controller.timeline.at or 0) > 0)
         await pilot.mouse_up(bar, offset=(20, 0))
-        at = app.bridge.timeline.at
+        at = app.run_controller.timeline.at
         await pilot.hover(bar, offset=(5, 0))
-        assert app.bridge.timeline.at == at
+        assert app.run_controller.timeline.at == at
         await pilot.mouse_down(bar, offset=(bar.size.width - 2, 0))
-        await until(pilot, lambda: not app.bridge.in_past)
+        await until(pilot, lambda: not app.run_controller.in_past)
 
 
 async def test_words_that_are_no_place_are_answered() -> None:
@@ -158,15 +158,15 @@ async def test_words_that_are_no_place_are_answered() -> None:
         "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is no number",
     }  # fmt: skip
     async with a_run() as (_, app):
-        app.bridge.timeline.go(200)
+        app.run_controller.timeline.go(200)
         for text, answer in table.items():
             with pytest.raises(ConfigError, match=re.escape(answer)):
-                find(text, app.bridge.timeline)
+                find(text, app.run_controller.timeline)
 
 
 async def test_words_find_their_instants() -> None:
     async with a_run(PEN) as (_, app):
-        timeline, recording = app.bridge.timeline, app.bridge.timeline.recording
+        timeline, recording = app.run_controller.timeline, app.run_controller.timeline.recording
         assert recording is not None
         rows = list(recording.rows.rows(0))
         dark = next(row.tick for row in rows if row.text.startswith("Colour: ") and float(row.text[8:]) < 90)
@@ -199,11 +199,11 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         await pilot.press("enter")
         await until(pilot, lambda: "'nowhere' is not an instant" in screen_text(app))
         await pilot.press("escape", "home")
-        recording = app.bridge.timeline.recording
+        recording = app.run_controller.timeline.recording
         assert recording is not None
         ticks = sorted({row.tick for row in recording.rows.rows(0)})
         await pilot.press("right_parenthesis", "right_parenthesis", "right_parenthesis", "left_parenthesis")
-        assert app.bridge.timeline.at == ticks[1]
+        assert app.run_controller.timeline.at == ticks[1]
 
 
 BAR = Moment(tick=200, newest=400, tick_hz=100, past=True, over=True)

@@ -32,7 +32,7 @@ NOTICES = {
 async def test_notices_cover_neither_mat_nor_readings_nor_keys(texts: list[str]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:
         app = await ready(pilot)
-        world, readings = app.query_one(World).region, app.desk.panels["instrumentation"].region
+        world, readings = app.query_one(World).region, app.panel_area.panels["instrumentation"].region
         read = rows_with_text(app, readings)
         for text in texts:
             app.say(text)

@@ -60,10 +60,10 @@ async def test_random_and_back_to_the_start() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("j")
-        assert app.bridge.pose != Pose(150, 500, 0)
-        assert fits(app.bridge.spec, app.bridge.pose)
+        assert app.run_controller.pose != Pose(150, 500, 0)
+        assert fits(app.run_controller.spec, app.run_controller.pose)
         await pilot.press("m")
-        assert app.bridge.pose == Pose(150, 500, 0)
+        assert app.run_controller.pose == Pose(150, 500, 0)
 
 
 @pytest.mark.usefixtures("home")
@@ -107,7 +107,7 @@ def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str, home
 async def test_saved_poses_in_the_app() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        app.bridge.place(Pose(700, 300, 45))
+        app.run_controller.place(Pose(700, 300, 45))
         await pilot.press("P")
         await until(pilot, lambda: isinstance(app.focused, Input))
         assert "None yet" in screen_text(app)
@@ -117,7 +117,7 @@ async def test_saved_poses_in_the_app() -> None:
         await until(pilot, lambda: isinstance(app.focused, OptionList))
         await pilot.press("down", "enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
-        assert app.bridge.pose == Pose(700, 300, 45)
+        assert app.run_controller.pose == Pose(700, 300, 45)
         await pilot.press("P")
         await until(pilot, lambda: isinstance(app.focused, OptionList))
         await pilot.press("down", "delete")
@@ -128,36 +128,36 @@ async def test_saved_poses_in_the_app() -> None:
 async def test_a_place_during_a_run_is_an_action_of_the_user() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RUNNING)
         await pilot.press("j")
-        run = app.bridge.run
+        run = app.run_controller.run
         assert run is not None
         await until(pilot, lambda: bool((last := run.telemetry.last()) and last.actions == 1))
         await pilot.press("S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
 
 
 async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
     async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        chart, world = app.desk.chart, app.desk.world
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        chart, world = app.panel_area.chart, app.panel_area.world
         assert chart is not None
         assert world is not None
         await until(
             pilot, lambda: chart._picture is not None and chart._picture.columns > 0 and chart._traces.end_s() > 5
         )
         chart.focus()
-        now = app.bridge.pose
+        now = app.run_controller.pose
         await pilot.press("left", *["shift+left"] * 2)
-        await until(pilot, lambda: app.bridge.snapshot().past)
+        await until(pilot, lambda: app.run_controller.snapshot().past)
         await pilot.pause()
-        snapshot, cursor_s = app.bridge.snapshot(), chart._state.cursor_s
+        snapshot, cursor_s = app.run_controller.snapshot(), chart._state.cursor_s
         assert cursor_s == snapshot.time_s
         assert 150 < snapshot.instant.pose.x_mm < now.x_mm
         assert snapshot.now_pose == now
         assert world._view._scene is not None
         assert (world._view._scene.pose, world._view._scene.ghost) == (snapshot.instant.pose, now)
         await pilot.press("escape")
-        await until(pilot, lambda: not app.bridge.snapshot().past)
+        await until(pilot, lambda: not app.run_controller.snapshot().past)
         assert chart._state.cursor_s is None

@@ -53,11 +53,13 @@ async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
         assert "‹ Default_Robot ›" in screen_text(app)
         assert row(app, "wheel_spacing_mm").entry.value == "180"
         assert row(app, "left.port").entry.value == "in2"
-        assert [panel for panel in app.desk.panels if app.desk.panels[panel].has_class("-hears-keys")] == ["settings"]
+        assert [panel for panel in app.panel_area.panels if app.panel_area.panels[panel].has_class("-hears-keys")] == [
+            "settings"
+        ]
         # Letters are still keys of the app.
         await pilot.press("Z")
-        assert not app.desk.shown("settings")
-        assert app.focused is app.desk.world
+        assert not app.panel_area.shown("settings")
+        assert app.focused is app.panel_area.world
 
 
 @pytest.mark.slow
@@ -65,25 +67,25 @@ async def test_a_value_is_taken_at_once() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
         await enter(pilot, "left.x_mm", "-100")
-        assert app.bridge.spec.robot.color_sensors[0].x_mm == -100
+        assert app.run_controller.spec.robot.color_sensors[0].x_mm == -100
         assert row(app, "preset").entry.value == "Default_Robot, edited"
         await enter(pilot, "ultrasonic.used", "on")
-        await until(pilot, lambda: app.bridge.snapshot().ultrasonic_mm is None)
+        await until(pilot, lambda: app.run_controller.snapshot().ultrasonic_mm is None)
         await pilot.press("ctrl+n")
         await until(pilot, lambda: row(app, "preset").entry.value == "Default_Robot")
-        assert app.bridge.snapshot().ultrasonic_mm is not None
+        assert app.run_controller.snapshot().ultrasonic_mm is not None
 
 
 async def test_a_wrong_value_is_told_below_its_field_and_nothing_is_changed() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
-        before = app.bridge.plan
+        before = app.run_controller.next_run
         await enter(pilot, "wheel_diameter_mm", "999")
         assert "must be from 1 to 500, got 999" in screen_text(app)
-        assert app.bridge.plan == before
+        assert app.run_controller.next_run == before
         await enter(pilot, "wheel_diameter_mm", "60")
         assert "must be" not in screen_text(app)
-        assert app.bridge.plan.spec.robot.wheel_diameter_mm == 60
+        assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 60
 
 
 async def test_a_field_that_is_left_is_entered() -> None:
@@ -93,7 +95,7 @@ async def test_a_field_that_is_left_is_entered() -> None:
         entry.focus()
         entry.value = "-99"
         await pilot.press("tab")
-        await until(pilot, lambda: app.bridge.plan.spec.robot.back_mm == -99)
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.back_mm == -99)
 
 
 @pytest.mark.slow
@@ -101,28 +103,28 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
         await pilot.press("right")
-        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Small_Robot")
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Small_Robot")
         await pilot.press("left", "left", "left")
-        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Sensor_Diameter_Config")
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Sensor_Diameter_Config")
         # New diameters have to be prepared; until then nothing starts.
-        await until(pilot, lambda: app.loading.mat_is_ready)
-        assert app.bridge.mat is not None
-        assert app.bridge.mat.key[2] == {30, 10}
-        assert app.bridge.pose.x_mm == 150
+        await until(pilot, lambda: app.loader.mat_is_ready)
+        assert app.run_controller.mat is not None
+        assert app.run_controller.mat.key[2] == {30, 10}
+        assert app.run_controller.pose.x_mm == 150
 
 
 @pytest.mark.slow
 async def test_settings_are_not_changed_during_a_run() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
-        await until(pilot, lambda: app.bridge.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RUNNING)
         await enter(pilot, "wheel_diameter_mm", "60")
         assert "Not during a run: S stops it" in screen_text(app)
-        assert app.bridge.plan.spec.robot.wheel_diameter_mm == 56
+        assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 56
         await pilot.press("escape", "S")
-        await until(pilot, lambda: app.bridge.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == ENDED)
         await enter(pilot, "wheel_diameter_mm", "60")
-        assert app.bridge.spec.robot.wheel_diameter_mm == 60
+        assert app.run_controller.spec.robot.wheel_diameter_mm == 60
 
 
 @pytest.mark.slow
@@ -140,12 +142,12 @@ async def test_a_robot_is_saved_edited_and_loaded_again(tmp_path: Path, monkeypa
         robots = app.screen.query_one(OptionList)
         robots.highlighted = robots.get_option_index("Small_Robot")
         await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.plan.spec.robot.name == "Small_Robot")
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Small_Robot")
         await pilot.press("r")
         robots = app.screen.query_one(OptionList)
         robots.highlighted = robots.get_option_index(str(tmp_path / "mine.toml"))
         await pilot.press("enter")
-        await until(pilot, lambda: app.bridge.plan.spec.robot.wheel_diameter_mm == 77)
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.wheel_diameter_mm == 77)
         assert row(app, "preset").entry.value == "mine.toml"
 
 
@@ -154,14 +156,14 @@ async def test_a_wrong_robot_file_changes_nothing(tmp_path: Path, monkeypatch: p
     monkeypatch.chdir(tmp_path)
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        before = app.bridge.plan
+        before = app.run_controller.next_run
         await pilot.press("r")
         entry = app.screen.query_one(Input)
         entry.focus()
         entry.value = "bad.toml"
         await pilot.press("enter")
         await until(pilot, lambda: any("bad.toml: wheels: no such key" in notice for notice in notices(app)))
-        assert app.bridge.plan == before
+        assert app.run_controller.next_run == before
 
 
 async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
@@ -172,7 +174,7 @@ async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
         profiles.highlighted = profiles.get_option_index("ev3")
         await pilot.press("enter")
         await until(pilot, lambda: "ev3, seed 0" in screen_text(app))
-        assert app.bridge.plan.spec.world.solid
+        assert app.run_controller.next_run.spec.world.solid
 
 
 @pytest.mark.slow
@@ -183,10 +185,10 @@ async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
         for field, text in (("pen.color", "teal"), ("pen.width_mm", "40"), ("pen.x_mm", "150")):
             await enter(pilot, field, text)
         await enter(pilot, "pen.down", "off")
-        assert app.bridge.pen_down
+        assert app.run_controller.pen_down
         await pilot.press("escape", "R")
-        await until(pilot, lambda: app.bridge.state == ENDED)
-        world = app.desk.world
+        await until(pilot, lambda: app.run_controller.state == ENDED)
+        world = app.panel_area.world
         assert world is not None
         await until(pilot, lambda: len(world._view.trace) > 0)
         pieces = list(world._view.trace.pieces(0))
@@ -198,5 +200,5 @@ async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: 
     (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        app.loading.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
+        app.loader.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
         await until(pilot, lambda: sum("ignored unknown keys: owner" in notice for notice in notices(app)) == 1)

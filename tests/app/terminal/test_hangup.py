@@ -216,7 +216,7 @@ async def test_where_ctrl_z_suspends(keys: tuple[str, ...], suspends: bool, monk
         await pilot.press(*keys, "ctrl+z")
         await pilot.pause()
         assert suspended == [app] * suspends
-        assert not app.work.dirty
+        assert not app.document.dirty
 
 
 async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm() -> None:

@@ -59,7 +59,7 @@ async def test_what_is_not_seen_is_not_clicked_on() -> None:
             for kind in (events.MouseDown, events.MouseUp):
                 app.post_message(kind(None, x, 17, 0, 0, 1, False, False, False, screen_x=x, screen_y=17))
         await pilot.pause()
-        assert (len(app.screen_stack), app.bridge.run) == (1, None)
+        assert (len(app.screen_stack), app.run_controller.run) == (1, None)
 
 
 @pytest.mark.tmux

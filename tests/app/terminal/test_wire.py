@@ -98,9 +98,9 @@ async def test_where_nothing_happens_nothing_is_sent(keys: list[str]) -> None:
 async def test_a_run_that_stands_still_or_is_over_sends_nothing(key: str, panels: frozenset[str]) -> None:
     async with on_wire(LabApp(settings(ENDLESS, panels_on=panels, autorun=True))) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.bridge.state == "running")
+        await until(pilot, lambda: app.run_controller.state == "running")
         await pilot.press(key)
-        await until(pilot, lambda: app.bridge.state in ("paused", "ended"))
+        await until(pilot, lambda: app.run_controller.state in ("paused", "ended"))
         app.clear_notifications()
 
         assert await sent_at_rest(pilot) == ""
@@ -129,7 +129,7 @@ async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch
     async with on_wire(LabApp(settings())) as pilot:
         app = await ready(pilot)
         app.pacer = Pacer(app.settings.fps, clock=partial(next, count(0.0, 1.0)))
-        monkeypatch.setattr(app.bridge, "poll", lambda: RunUpdate([], held=(Resumed(),)))
+        monkeypatch.setattr(app.run_controller, "poll", lambda: RunUpdate([], pauses=(Resumed(),)))
         drawn: list[bool] = []
         monkeypatch.setattr(app, "draw", lambda: drawn.append(True))
 

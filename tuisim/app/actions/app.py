@@ -45,11 +45,11 @@ def suspend(lab: LabApp) -> None:
 
 def leave(lab: LabApp) -> None:
     """Quit; with unsaved changes or a running program, ask first."""
-    lab.work.when_safe(lambda: _leave(lab))
+    lab.document.when_safe(lambda: _leave(lab))
 
 
 def _leave(lab: LabApp) -> None:
-    if not lab.bridge.in_run:
+    if not lab.run_controller.in_run:
         lab.exit()
         return
     from tuisim.app.dialogs.question import LeaveQuestion

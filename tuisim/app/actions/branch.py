@@ -109,7 +109,7 @@ def first_difference(before: Recording, now: Recording, tick: int) -> int | None
     return both if both <= tick else None
 
 
-def told(branch: Branch, now: Recording) -> str:
+def branch_message(branch: Branch, now: Recording) -> str:
     """Return the message for a branch that has reached its instant, or has ended before."""
     differs = first_difference(branch.of, now, branch.tick)
     words = f"This is a {branch.title}" + (", of the edited program" if branch.edited else "")
@@ -133,41 +133,41 @@ def _what(action: protocol.Message | None) -> str:
             return ""
 
 
-def propose(lab: LabApp, then: protocol.Message | None, anew: bool = False) -> None:
+def propose(lab: LabApp, then: protocol.Message | None, restart: bool = False) -> None:
     """Ask whether to branch from the instant in view.
 
     Args:
         lab: The app.
         then: The user's action there.
-        anew: Whether the dialog also offers to run the program from its start.
+        restart: Whether the dialog also offers to run the program from its start.
     """
-    from tuisim.app.dialogs.question import ANEW, BRANCH, BranchQuestion
+    from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion
 
-    timeline = lab.bridge.timeline
+    timeline = lab.run_controller.timeline
     recording, tick = timeline.recording, timeline.at
     if isinstance(lab.screen, BranchQuestion):
         return
-    if recording is None or tick is None or not lab.work.apply() or (program := lab.bridge.program) is None:
+    if recording is None or tick is None or not lab.document.apply() or (program := lab.run_controller.program) is None:
         return
-    timeline.stand()
-    branch = Branch(recording, tick, program, then, lab.bridge.state != PAUSED)
+    timeline.stop_playback()
+    branch = Branch(recording, tick, program, then, lab.run_controller.state != PAUSED)
 
     def answered(answer: str | None) -> None:
         if answer == BRANCH:
             _start(lab, branch)
-        elif answer == ANEW:
-            lab.bridge.stop_now()
+        elif answer == RESTART:
+            lab.run_controller.stop_now()
             lab.start_run()
         else:
             # Panels that showed the requested change show the past again.
             lab.draw(force=True)
 
-    lab.push_screen(BranchQuestion(branch, _what(then), lab.bridge.in_run, anew), answered)
+    lab.push_screen(BranchQuestion(branch, _what(then), lab.run_controller.in_run, restart), answered)
 
 
 def _start(lab: LabApp, branch: Branch) -> None:
     try:
-        lab.bridge.branch(branch)
+        lab.run_controller.branch(branch)
     except TuisimError as error:
         lab.complain(error)
         return
@@ -182,7 +182,7 @@ def from_here(lab: LabApp) -> None:
 
 def run(lab: LabApp) -> None:
     """Start the program; in the past, ask whether to start from that instant."""
-    if lab.bridge.in_past:
-        propose(lab, None, anew=True)
+    if lab.run_controller.in_past:
+        propose(lab, None, restart=True)
     else:
         lab.start_run()

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def clear_log(lab: LabApp) -> None:
     """Clear the logged data from the output and the chart; the run keeps its log."""
-    lab.desk.clear_log()
+    lab.panel_area.clear_log()
     lab.say("Output and chart are clear; the run keeps its log: l analyses it, e exports it")
 
 
@@ -28,7 +28,7 @@ def open_program(lab: LabApp) -> None:
 
     def take(path: str | None) -> None:
         if path:
-            lab.loading.open_file(path)
+            lab.loader.open_file(path)
 
     lab.push_screen(program_chooser(), take)
 
@@ -39,11 +39,11 @@ def save_robot(lab: LabApp) -> None:
     from tuisim.config.robots import save_robot as write
 
     def save(path: Path) -> None:
-        write(plans.robot_to_save(lab.bridge.plan), path)
-        lab.loading.saved(path)
+        write(plans.robot_to_save(lab.run_controller.next_run), path)
+        lab.loader.saved(path)
 
-    proposed = lab.bridge.plan.words.get("robot", "")
-    name = proposed if proposed.endswith(".toml") else f"{lab.bridge.plan.robot_choice.spec.name}.toml"
+    proposed = lab.run_controller.next_run.words.get("robot", "")
+    name = proposed if proposed.endswith(".toml") else f"{lab.run_controller.next_run.robot_choice.spec.name}.toml"
     lab.push_screen(SaveDialog("robot", name, save))
 
 
@@ -53,10 +53,10 @@ def save_obstacles(lab: LabApp) -> None:
     from tuisim.config.obstacles import save_obstacles as write
 
     def save(path: Path) -> None:
-        write(lab.bridge.plan.spec.world.obstacles, path)
-        lab.loading.saved(path)
+        write(lab.run_controller.next_run.spec.world.obstacles, path)
+        lab.loader.saved(path)
 
-    proposed = lab.bridge.plan.words.get("obstacles", "")
+    proposed = lab.run_controller.next_run.words.get("obstacles", "")
     lab.push_screen(SaveDialog("obstacles", proposed if proposed.endswith(".toml") else "obstacles.toml", save))
 
 
@@ -66,50 +66,50 @@ def save_world(lab: LabApp) -> None:
     from tuisim.config.worlds import save_world as write
 
     def save(path: Path) -> None:
-        program = lab.bridge.program
-        plan = lab.bridge.plan
+        program = lab.run_controller.program
+        plan = lab.run_controller.next_run
         write(plan.spec, path, program.path if program and program.path else None, plan.settings.arguments)
-        lab.loading.saved_world(path)
+        lab.loader.saved_world(path)
 
-    lab.push_screen(SaveDialog("world", str(lab.loading.world_file or "lab.toml"), save))
+    lab.push_screen(SaveDialog("world", str(lab.loader.world_file or "lab.toml"), save))
 
 
 def export(lab: LabApp) -> None:
     """Ask for a file and write the log to it."""
     from tuisim.app.dialogs.save import ExportDialog
 
-    run_id = lab.bridge.run_id
-    program = lab.bridge.program
+    run_id = lab.run_controller.run_id
+    program = lab.run_controller.program
     if run_id and program:
         lab.push_screen(ExportDialog(run_id, program.name))
 
 
 def edit(lab: LabApp) -> None:
     """Show the code, and start typing in it."""
-    if not lab.desk.shown("code"):
-        lab.desk.toggle("code")
+    if not lab.panel_area.shown("code"):
+        lab.panel_area.toggle("code")
     lab.call_after_refresh(_type, lab)
 
 
 def _type(lab: LabApp) -> None:
-    if lab.desk.shown("code") and (code := lab.desk.code):
+    if lab.panel_area.shown("code") and (code := lab.panel_area.code):
         # A newly mounted panel has not received the program yet.
-        lab.work.introduce()
+        lab.document.introduce()
         code.start_typing(at_error=True)
 
 
 def new_program(lab: LabApp) -> None:
     """Start a new program in the code panel."""
-    if not lab.desk.shown("code"):
-        lab.desk.toggle("code")
-    lab.call_after_refresh(lab.work.new)
+    if not lab.panel_area.shown("code"):
+        lab.panel_area.toggle("code")
+    lab.call_after_refresh(lab.document.new)
 
 
 def compare(lab: LabApp) -> None:
     """Ask for a run and show where the current one differs from it."""
     from tuisim.app.dialogs.runs import RunChooser
 
-    recording = lab.bridge.timeline.recording
+    recording = lab.run_controller.timeline.recording
     if recording is None:
         return
 
@@ -137,7 +137,7 @@ def _show(lab: LabApp, recording: Recording, compared: tuple[str, RunDiff]) -> N
     other, diff = compared
 
     def go(there: bool | None) -> None:
-        if there and diff.tick and lab.bridge.timeline.recording is recording:
+        if there and diff.tick and lab.run_controller.timeline.recording is recording:
             to_tick(lab, diff.tick.tick)
 
     lab.push_screen(Differences(recording.name.capitalize(), other, diff), go)
@@ -149,4 +149,4 @@ def analyse(lab: LabApp) -> None:
     from tuisim.analysis.source import LogRequest
     from tuisim.app.analyser.screen import Analyser
 
-    lab.push_screen(Analyser(LogRequest(runs=(lab.bridge.run_id,))))
+    lab.push_screen(Analyser(LogRequest(runs=(lab.run_controller.run_id,))))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def toggle(lab: LabApp, panel: str) -> None:
     """Show a panel and focus it, or hide it."""
-    lab.desk.toggle(panel)
+    lab.panel_area.toggle(panel)
     lab.situation_changed()
     lab.call_after_refresh(lab.attend, panel)
 
@@ -22,17 +22,18 @@ def enlarge(lab: LabApp) -> None:
     """Maximize the panel with the focus, or restore the layout."""
     focused = lab.focused
     panel = next(
-        (name for name, widget in lab.desk.panels.items() if focused and widget in focused.ancestors_with_self), ""
+        (name for name, widget in lab.panel_area.panels.items() if focused and widget in focused.ancestors_with_self),
+        "",
     )
-    if panel or lab.desk.alone:
-        lab.desk.give_all("" if lab.desk.alone else panel)
+    if panel or lab.panel_area.alone:
+        lab.panel_area.give_all("" if lab.panel_area.alone else panel)
     else:
         lab.say("No panel has the focus: tab or a click gives it to one")
 
 
 def _world(lab: LabApp) -> World | None:
-    if lab.desk.shown("world"):
-        return lab.desk.world
+    if lab.panel_area.shown("world"):
+        return lab.panel_area.world
     lab.say(f"The world is hidden: {PANELS['world'].key} shows it")
     return None
 

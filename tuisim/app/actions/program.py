@@ -15,17 +15,17 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 
 def stop(lab: LabApp) -> None:
     """Stop the program."""
-    lab.bridge.stop()
+    lab.run_controller.stop()
 
 
 def _change_speed(lab: LabApp, by: int) -> None:
-    speed = lab.bridge.speed
+    speed = lab.run_controller.speed
     at = SPEEDS.index(speed) if speed in SPEEDS else min(range(6), key=lambda i: abs(SPEEDS[i] - speed))
     to = at + by
     if not 0 <= to < len(SPEEDS):
         lab.say(f"Speed is {speed_label(speed)} already: that is the {'slowest' if by < 0 else 'fastest'}")
         return
-    lab.bridge.set_speed(SPEEDS[to])
+    lab.run_controller.set_speed(SPEEDS[to])
     lab.situation_changed()
 
 

@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 def pen(lab: LabApp) -> None:
     """Put the pen up or down."""
-    lab.bridge.set_pen(not lab.bridge.pen_down)
+    lab.run_controller.set_pen(not lab.run_controller.pen_down)
 
 
 def home(lab: LabApp) -> None:
     """Put the robot back to the start pose of the mat or the command line."""
-    lab.bridge.place(lab.bridge.home)
+    lab.run_controller.place(lab.run_controller.home)
 
 
 def nudge(lab: LabApp, right_mm: float, up_mm: float, turn_deg: float) -> None:
     """Move the robot a little."""
-    pose = lab.bridge.pose
-    lab.bridge.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
+    pose = lab.run_controller.pose
+    lab.run_controller.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
 
 
 def clear_trace(lab: LabApp) -> None:
@@ -45,8 +45,8 @@ def random_place(lab: LabApp) -> None:
 
     from tuisim.app.setup.poses import random_pose
 
-    if pose := random_pose(lab.bridge.spec, Random()):
-        lab.bridge.place(pose)
+    if pose := random_pose(lab.run_controller.spec, Random()):
+        lab.run_controller.place(pose)
     else:
         lab.say("No free place was found: there are many obstacles, or the robot is large")
 
@@ -57,9 +57,9 @@ def saved_poses(lab: LabApp) -> None:
 
     def go(pose: Pose | None) -> None:
         if pose:
-            lab.bridge.place(pose)
+            lab.run_controller.place(pose)
 
-    lab.push_screen(SavedPoses(lab.bridge.pose), go)
+    lab.push_screen(SavedPoses(lab.run_controller.pose), go)
 
 
 def choose_mat(lab: LabApp) -> None:
@@ -67,7 +67,7 @@ def choose_mat(lab: LabApp) -> None:
     from tuisim.app.dialogs.chooser import MatPicker
     from tuisim.config.mats import mats
 
-    folder = lab.bridge.plan.settings.mats
+    folder = lab.run_controller.next_run.settings.mats
     try:
         known = mats(folder)
     except TuisimError as error:
@@ -76,9 +76,9 @@ def choose_mat(lab: LabApp) -> None:
 
     def lay(name: str | None) -> None:
         if name:
-            lab.loading.change_mat(name)
+            lab.loader.change_mat(name)
 
-    lab.push_screen(MatPicker(lab.bridge.spec.world.background, known, folder), lay)
+    lab.push_screen(MatPicker(lab.run_controller.spec.world.background, known, folder), lay)
 
 
 def _choose(lab: LabApp, chooser: Chooser, take: Callable[[NextRun, str], NextRun]) -> None:
@@ -86,7 +86,7 @@ def _choose(lab: LabApp, chooser: Chooser, take: Callable[[NextRun, str], NextRu
 
     def chosen(word: str | None) -> None:
         if word:
-            lab.loading.attempt(lambda plan: take(plan, word))
+            lab.loader.attempt(lambda plan: take(plan, word))
 
     lab.push_screen(chooser, chosen)
 
@@ -95,26 +95,26 @@ def choose_robot(lab: LabApp) -> None:
     """Ask for a robot."""
     from tuisim.app.dialogs.chooser import robot_chooser
 
-    _choose(lab, robot_chooser(lab.bridge.plan), plans.with_robot)
+    _choose(lab, robot_chooser(lab.run_controller.next_run), plans.with_robot)
 
 
 def choose_profile(lab: LabApp) -> None:
     """Ask for a profile."""
     from tuisim.app.dialogs.chooser import profile_chooser
 
-    _choose(lab, profile_chooser(lab.bridge.plan), plans.with_profile)
+    _choose(lab, profile_chooser(lab.run_controller.next_run), plans.with_profile)
 
 
 def choose_obstacles(lab: LabApp) -> None:
     """Ask for a set of obstacles."""
     from tuisim.app.dialogs.chooser import obstacle_chooser
 
-    _choose(lab, obstacle_chooser(lab.bridge.plan), plans.with_obstacle_set)
+    _choose(lab, obstacle_chooser(lab.run_controller.next_run), plans.with_obstacle_set)
 
 
 def reset_robot(lab: LabApp) -> None:
     """Undo the edits of the robot."""
-    if lab.bridge.plan.robot_is_edited:
-        lab.loading.attempt(plans.with_robot_as_chosen)
+    if lab.run_controller.next_run.robot_is_edited:
+        lab.loader.attempt(plans.with_robot_as_chosen)
     else:
         lab.say("Nothing of the robot is edited")

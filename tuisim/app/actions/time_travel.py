@@ -15,20 +15,20 @@ if TYPE_CHECKING:
 
 def to_tick(lab: LabApp, tick: int | None) -> None:
     """Go to a tick of the run; None and ticks beyond the newest mean now. A running program is paused first."""
-    recording = lab.bridge.timeline.recording
+    recording = lab.run_controller.timeline.recording
     if recording is None or (tick is not None and not _is_laid_out(lab, recording)):
         return
-    if tick is not None and lab.bridge.in_run and lab.bridge.state != PAUSED:
-        lab.bridge.pause()
+    if tick is not None and lab.run_controller.in_run and lab.run_controller.state != PAUSED:
+        lab.run_controller.pause()
     if tick is None:
-        lab.debugging.to_now()
-    lab.bridge.timeline.go(tick)
+        lab.debugger.to_now()
+    lab.run_controller.timeline.go(tick)
     _gone(lab)
 
 
 def _is_laid_out(lab: LabApp, recording: Recording) -> bool:
     """Return whether the current mat is that of the run; if not, say so."""
-    mat = lab.bridge.mat
+    mat = lab.run_controller.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
     lab.say(f"Another mat is in use now: h opens {recording.name} with the mat that it was on")
@@ -42,11 +42,11 @@ def _gone(lab: LabApp) -> None:
 
 def to_time(lab: LabApp, time_s: float | None) -> None:
     """Go to a time of the run, None for now."""
-    to_tick(lab, None if time_s is None else round(time_s * lab.bridge.timeline.tick_hz))
+    to_tick(lab, None if time_s is None else round(time_s * lab.run_controller.timeline.tick_hz))
 
 
 def _by(lab: LabApp, ticks: int) -> None:
-    timeline = lab.bridge.timeline
+    timeline = lab.run_controller.timeline
     at = timeline.newest if timeline.at is None else timeline.at
     if ticks < 0 and at <= 0:
         lab.say("This is the start of the run")
@@ -61,22 +61,22 @@ def tick_back(lab: LabApp) -> None:
 
 def tick_on(lab: LabApp) -> None:
     """Go forward one tick: as recorded in the past, else live; from an earlier line of the newest tick, go to now."""
-    if lab.bridge.in_past:
+    if lab.run_controller.in_past:
         _by(lab, 1)
-    elif lab.debugging.is_away:
+    elif lab.debugger.is_away:
         to_now(lab)
     else:
-        lab.bridge.step()
+        lab.run_controller.step()
 
 
 def second_back(lab: LabApp) -> None:
     """Go back one second."""
-    _by(lab, -lab.bridge.timeline.tick_hz)
+    _by(lab, -lab.run_controller.timeline.tick_hz)
 
 
 def second_on(lab: LabApp) -> None:
     """Go forward one second of the recording."""
-    _by(lab, lab.bridge.timeline.tick_hz)
+    _by(lab, lab.run_controller.timeline.tick_hz)
 
 
 def to_start(lab: LabApp) -> None:
@@ -91,32 +91,32 @@ def to_now(lab: LabApp) -> None:
 
 def pause(lab: LabApp) -> None:
     """Pause or continue: playback in the past, the program at the newest instant."""
-    timeline = lab.bridge.timeline
+    timeline = lab.run_controller.timeline
     if timeline.playing:
-        timeline.stand()
+        timeline.stop_playback()
         _gone(lab)
-    elif lab.bridge.in_past:
+    elif lab.run_controller.in_past:
         timeline.play(time.monotonic())
         _gone(lab)
-    elif lab.bridge.state == PAUSED:
-        lab.bridge.resume()
+    elif lab.run_controller.state == PAUSED:
+        lab.run_controller.resume()
     else:
-        lab.bridge.pause()
+        lab.run_controller.pause()
 
 
-def stand_still(lab: LabApp) -> None:
+def stop_time(lab: LabApp) -> None:
     """Stop playback, and pause a running program."""
-    lab.bridge.timeline.stand()
-    if lab.bridge.in_run and lab.bridge.state != PAUSED:
-        lab.bridge.pause()
+    lab.run_controller.timeline.stop_playback()
+    if lab.run_controller.in_run and lab.run_controller.state != PAUSED:
+        lab.run_controller.pause()
 
 
 def beat(lab: LabApp) -> None:
     """Continue playback; a paused run that has been played to its newest instant resumes automatically."""
-    if lab.bridge.timeline.beat(time.monotonic(), lab.bridge.speed):
-        if lab.bridge.state == PAUSED:
-            lab.bridge.resume()
-        elif lab.bridge.state == ENDED:
+    if lab.run_controller.timeline.beat(time.monotonic(), lab.run_controller.speed):
+        if lab.run_controller.state == PAUSED:
+            lab.run_controller.resume()
+        elif lab.run_controller.state == ENDED:
             lab.say("The recording has been played to its end")
         _gone(lab)
 
@@ -129,7 +129,7 @@ def ask_where(lab: LabApp) -> None:
         if tick is not None:
             to_tick(lab, tick)
 
-    lab.push_screen(GoTo(lab.bridge.timeline), go)
+    lab.push_screen(GoTo(lab.run_controller.timeline), go)
 
 
 def _to_sample(lab: LabApp, words: str) -> None:
@@ -137,7 +137,7 @@ def _to_sample(lab: LabApp, words: str) -> None:
     from tuisim.errors import TuisimError
 
     try:
-        to_tick(lab, find(words, lab.bridge.timeline))
+        to_tick(lab, find(words, lab.run_controller.timeline))
     except TuisimError as error:
         lab.say(error.message)
 
@@ -159,9 +159,9 @@ def choose_run(lab: LabApp) -> None:
 
     def take(run_id: str | None) -> None:
         if run_id:
-            lab.work.when_safe(lambda: open_run(lab, run_id))
+            lab.document.when_safe(lambda: open_run(lab, run_id))
 
     def ask() -> None:
         lab.push_screen(RunChooser(), take)
 
-    lab.work.when_safe(ask)
+    lab.document.when_safe(ask)

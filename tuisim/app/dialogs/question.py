@@ -55,30 +55,30 @@ class Question(Dialog[str]):
         self.dismiss(key)
 
 
-BRANCH, ANEW = "branch", "anew"
+BRANCH, RESTART = "branch", "restart"
 
 
 class BranchQuestion(Dialog[str]):
-    """Returns `BRANCH`, `ANEW` or None.
+    """Returns `BRANCH`, `RESTART` or None.
 
     Args:
         branch: The proposed branch.
         change: What differs there, in words, or empty.
         in_run: Whether the former run is still live, and ends with this.
-        anew: Whether to offer a run from the start.
+        restart: Whether to offer a run from the start.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y,enter", "branch", "Branch", show=False),
-        Binding("r", "anew", "From the start", show=False),
+        Binding("r", "restart", "From the start", show=False),
         Binding("n", "leave", "Stay", show=False),
     ]
 
-    def __init__(self, branch: Branch, change: str, in_run: bool, anew: bool) -> None:
+    def __init__(self, branch: Branch, change: str, in_run: bool, restart: bool) -> None:
         super().__init__()
         self.TITLE_TEXT = f"Branch from {branch.time_s:.2f} s?"
-        self.HINT = "y branches · r runs from the start · n stays" if anew else "y branches · n stays"
-        self._anew = anew
+        self.HINT = "y branches · r runs from the start · n stays" if restart else "y branches · n stays"
+        self._restart = restart
         program = "The edited program" if branch.edited else "The program"
         again = "run from its start to there" if branch.edited else "run again to there"
         ends = f" {branch.of.name.capitalize()} ends here, and is kept." if in_run else ""
@@ -89,18 +89,18 @@ class BranchQuestion(Dialog[str]):
         """Return what would happen, and the answers."""
         yield Static(self._text, markup=False)
         answers = ["[@click=screen.branch]  y  Branch  [/]", "[@click=screen.leave]  n  Stay  [/]"]
-        if self._anew:
-            answers.insert(1, "[@click=screen.anew]  r  Run from the start  [/]")
+        if self._restart:
+            answers.insert(1, "[@click=screen.restart]  r  Run from the start  [/]")
         yield Static("   ".join(answers))
 
     def action_branch(self) -> None:
         """Return `BRANCH`."""
         self.dismiss(BRANCH)
 
-    def action_anew(self) -> None:
-        """Return `ANEW`, if that is offered."""
-        if self._anew:
-            self.dismiss(ANEW)
+    def action_restart(self) -> None:
+        """Return `RESTART`, if that is offered."""
+        if self._restart:
+            self.dismiss(RESTART)
 
 
 class LeaveQuestion(Dialog[bool]):

@@ -55,7 +55,7 @@ class Document:
         self._form = Form()
         self._is_file = False
         """Whether the text came from the file, so that saving there needs no question."""
-        self._keeping = self._asking = False
+        self._draft_pending = self._asking = False
         self._error_line = 0
         """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
         self._ran: tuple[Recording, str] | None = None
@@ -76,7 +76,7 @@ class Document:
 
     def introduce(self) -> None:
         """Show the open program, which may have changed."""
-        program = self._lab.bridge.program
+        program = self._lab.run_controller.program
         if program is not self._program:
             same = program is not None and self._program is not None and program.path == self._path
             if not (same and program is not None and program.text == self._runnable()):
@@ -116,18 +116,18 @@ class Document:
 
     def show(self) -> None:
         """Update the code panel."""
-        if code := self._lab.desk.code:
+        if code := self._lab.panel_area.code:
             code.set_program(self._name, self._text, self._path or self._name)
             code.set_title(self._name, self.dirty)
             self.run_changed()
             if self._error_line and not code.error_line:
                 code.mark_run_error(self._error_line)
-        if controls := self._lab.desk.controls:
+        if controls := self._lab.panel_area.controls:
             controls.set_program(self._name)
 
     def run_changed(self) -> None:
         """Pass the text of the run in view to the code panel."""
-        code, recording = self._lab.desk.code, self._lab.bridge.timeline.recording
+        code, recording = self._lab.panel_area.code, self._lab.run_controller.timeline.recording
         if recording is None:
             self._ran = None
         elif self._ran is None or self._ran[0] is not recording:
@@ -141,7 +141,7 @@ class Document:
     def run_ended_at(self, line: int) -> None:
         """Mark the line of the current run's text at which it ended with an error; 0 for none."""
         self._error_line = line
-        if code := self._lab.desk.code:
+        if code := self._lab.panel_area.code:
             code.mark_run_error(line)
 
     def lines(self) -> LineMap:
@@ -154,17 +154,17 @@ class Document:
     def edited(self, text: str) -> None:
         """Handle an edit in the code panel."""
         self._text, self._error_line = text, 0
-        if code := self._lab.desk.code:
+        if code := self._lab.panel_area.code:
             code.set_title(self._name, self.dirty)
-        if not self._keeping:
-            self._keeping = True
-            self._lab.set_timer(DRAFT_AFTER_S, self.keep)
+        if not self._draft_pending:
+            self._draft_pending = True
+            self._lab.set_timer(DRAFT_AFTER_S, self.save_draft)
 
-    def keep(self) -> None:
+    def save_draft(self) -> None:
         """Store unsaved text as a draft, or drop the draft if all is saved."""
-        if not self._keeping:
+        if not self._draft_pending:
             return
-        self._keeping = False
+        self._draft_pending = False
         if not self.dirty:
             drop_draft(self._path)
             return
@@ -242,13 +242,13 @@ class Document:
         from tuisim.app.editor.syntax import mistake_in
 
         mistake = mistake_in(self._text, self._name)
-        if code := self._lab.desk.code:
+        if code := self._lab.panel_area.code:
             code.mark_error(mistake.line if mistake else 0)
         return mistake
 
     def _take_text(self) -> bool:
         try:
-            self._lab.loading.take_text(self._text, self._path, self._name)
+            self._lab.loader.apply_text(self._text, self._path, self._name)
         except TuisimError as error:
             self._lab.complain(error)
             return False
@@ -261,7 +261,7 @@ class Document:
             self._open_new()
             if draft := find_draft(""):
                 self._offer(draft)
-            elif code := self._lab.desk.code:
+            elif code := self._lab.panel_area.code:
                 code.start_typing()
 
         self.when_safe(begin)
@@ -270,7 +270,7 @@ class Document:
         self._take(None, offers=False)
         self._program = None
         self._name, self._text, self._saved = NEW_NAME, TEMPLATE, TEMPLATE
-        self._lab.loading.take_new(TEMPLATE, NEW_NAME)
+        self._lab.loader.open_new(TEMPLATE, NEW_NAME)
 
     # Saving
 
@@ -315,9 +315,9 @@ class Document:
         self._path, self._name = str(path), path.name
         self.show()
         mistake = self._mistake()
-        if not self._lab.bridge.in_run and not self._is_applied and (moved or not mistake):
+        if not self._lab.run_controller.in_run and not self._is_applied and (moved or not mistake):
             self._take_text()
-        self._lab.loading.saved(path)
+        self._lab.loader.saved(path)
         if mistake:
             self._lab.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))
         else:
@@ -326,7 +326,7 @@ class Document:
 
     # Changes of the file on disk
 
-    def stands_against(self, path: Path) -> bool:
+    def conflicts_with(self, path: Path) -> bool:
         """Return whether a file that changed on disk has unsaved edits here; if so, ask which version to keep."""
         if not self.dirty or Path(self._path) != path:
             return False
@@ -336,11 +336,11 @@ class Document:
 
             text = f"{self._name} was changed on disk, and has unsaved changes here."
             answers = (("k", "Keep mine"), ("t", "Take the file's"))
-            self._lab.push_screen(Question("Two versions", text, answers), self._stood)
+            self._lab.push_screen(Question("Two versions", text, answers), self._resolved)
         return True
 
-    def _stood(self, answer: str | None) -> None:
+    def _resolved(self, answer: str | None) -> None:
         self._asking = False
         if answer == "t":
             self._discard()
-            self._lab.loading.reload(Path(self._path))
+            self._lab.loader.reload(Path(self._path))

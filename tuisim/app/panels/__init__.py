@@ -31,10 +31,10 @@ class Panel(Protocol):
 
 
 @runtime_checkable
-class PlanPanel(Protocol):
+class NextRunPanel(Protocol):
     """The additional interface of a panel that edits the plan of the next run."""
 
-    def show_plan(self, plan: NextRun) -> None:
+    def show_next_run(self, plan: NextRun) -> None:
         """Show a plan."""
 
 

@@ -84,12 +84,12 @@ class Debug(Widget, can_focus=True):
 
     def show_debugging(self, debugging: AppDebugger) -> None:
         """Show where the program is paused."""
-        standing, busy = debugging.standing, debugging.busy
-        if standing is None:
+        view, busy = debugging.view, debugging.busy
+        if view is None:
             self._content = DebugView(busy=busy)
         else:
-            source = _line_of(standing.paused)
-            self._content = DebugView("", standing.paused, standing.looked, standing.past, busy, source)
+            source = _line_of(view.paused)
+            self._content = DebugView("", view.paused, view.inspected, view.past, busy, source)
         self._draw()
 
     def on_resize(self, event: events.Resize) -> None:

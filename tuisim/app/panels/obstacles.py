@@ -78,7 +78,7 @@ class Obstacles(Vertical):
     def show(self, snapshot: Snapshot) -> None:
         """Do nothing: this panel shows plans, not moments."""
 
-    def show_plan(self, plan: NextRun) -> None:
+    def show_next_run(self, plan: NextRun) -> None:
         """Show the obstacles of the next run."""
         boxes = plan.spec.world.obstacles
         if not self.is_mounted or (boxes == self._boxes and self.query_one(OptionList).option_count):

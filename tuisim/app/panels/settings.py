@@ -58,7 +58,7 @@ class Settings(VerticalScroll, can_focus=False):
     def show(self, snapshot: Snapshot) -> None:
         """Do nothing: this panel shows plans, not moments."""
 
-    def show_plan(self, plan: NextRun) -> None:
+    def show_next_run(self, plan: NextRun) -> None:
         """Show the plan of the next run."""
         self._plan = plan
         parts = sections(plan)
@@ -81,7 +81,7 @@ class Settings(VerticalScroll, can_focus=False):
                 row.add_class("form")
             await self.mount(Static(part.title, classes="form heading", markup=False), *rows)
         if self._plan:
-            self.show_plan(self._plan)
+            self.show_next_run(self._plan)
         for row in self.query(Row):
             if row.field == focused:
                 row.entry.focus()

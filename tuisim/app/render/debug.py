@@ -54,7 +54,7 @@ class DebugView:
     state: str = ""
     """Word for the state of the run when it is not paused."""
     paused: Paused | None = None
-    looked: Inspected | None = None
+    inspected: Inspected | None = None
     past: bool = False
     busy: bool = False
     """Whether a past instant is still being computed."""
@@ -90,13 +90,13 @@ def reason_label(reason: PauseReason) -> str:
 
 def debug_lines(view: DebugView, width: int) -> list[Line]:
     """Return the text for a panel of that inner width."""
-    if view.paused is None or view.looked is None:
+    if view.paused is None or view.inspected is None:
         if view.busy:
             return _told("", ("computing that instant …",), width)
         if view.state in DOES:
             return _told(view.state, DOES[view.state], width)
         return _told("", OVER if view.state == "ended" else EMPTY, width)
-    lines = _known(view, view.paused, view.looked, width)
+    lines = _known(view, view.paused, view.inspected, width)
     if view.is_elsewhere and view.now:
         # The known data belongs to another instant: it is dimmed until that of this one has arrived.
         tick, time_s = view.now
@@ -105,7 +105,7 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     return lines
 
 
-def _known(view: DebugView, paused: Paused, looked: Inspected, width: int) -> list[Line]:
+def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) -> list[Line]:
     """Return the known data of the instant at which the program is paused."""
     lines = [_where(view, paused, width)]
     if view.source:
@@ -115,28 +115,28 @@ def _known(view: DebugView, paused: Paused, looked: Inspected, width: int) -> li
         why += f": {paused.value}"
     if not view.past and paused.reason not in (PauseReason.ASKED, PauseReason.INSTANT):
         lines += [[(text, _CHANGED)] for text in textwrap.wrap(why, width)]
-    if looked.waiting:
-        lines += [[(f" {text} ", _WAITS)] for text in textwrap.wrap(looked.waiting, max(width - 2, 1))]
-    if looked.watches:
+    if inspected.waiting:
+        lines += [[(f" {text} ", _WAITS)] for text in textwrap.wrap(inspected.waiting, max(width - 2, 1))]
+    if inspected.watches:
         lines.append([("Watches", _HEAD)])
-        for watch in looked.watches:
+        for watch in inspected.watches:
             if watch.error:
                 lines += [[(f"  {text}", _ERROR)] for text in textwrap.wrap(f"{watch.text}: {watch.error}", width - 2)]
             else:
                 lines.append(_pair(watch.text, watch.value, _NAME, _VALUE, width))
-    frame = looked.stack[looked.frame] if looked.frame < len(looked.stack) else None
-    lines += _variables(_title(frame), looked.variables, width)
-    if looked.globals:
-        lines += _variables("Globals", looked.globals, width)
-    lines += _stack(looked, width)
-    if len(looked.threads) > 1:
+    frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
+    lines += _variables(_title(frame), inspected.variables, width)
+    if inspected.globals:
+        lines += _variables("Globals", inspected.globals, width)
+    lines += _stack(inspected, width)
+    if len(inspected.threads) > 1:
         lines.append([("Threads", _HEAD)])
-        for thread in looked.threads:
-            chosen = thread.name == looked.thread
+        for thread in inspected.threads:
+            chosen = thread.name == inspected.thread
             text = f"{'▸' if chosen else ' '} {thread.name} line {thread.line}" if thread.line else f"  {thread.name}"
             lines.append([(cut(f"{text} {thread.waiting}", width), _CHOSEN if chosen else _PLAIN)])
-    if looked.note:
-        lines += [[(text, _PALE)] for text in textwrap.wrap(looked.note, width)]
+    if inspected.note:
+        lines += [[(text, _PALE)] for text in textwrap.wrap(inspected.note, width)]
     return lines
 
 
@@ -177,16 +177,16 @@ def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Li
     return lines
 
 
-def _stack(looked: Inspected, width: int) -> list[Line]:
-    if len(looked.stack) < 2:
+def _stack(inspected: Inspected, width: int) -> list[Line]:
+    if len(inspected.stack) < 2:
         return []
     lines: list[Line] = [[("Calls", _HEAD)]]
-    for at, frame in enumerate(looked.stack):
+    for at, frame in enumerate(inspected.stack):
         where = f"{frame.line} of {Path(frame.file).name}" if frame.file else f"{frame.line}"
         module = "module" if frame.file else "program"
         name = module if frame.function == "<module>" else f"{frame.function}()"
-        style = _CHOSEN if at == looked.frame else _PLAIN
-        lines.append([(cut(f"{'▸' if at == looked.frame else ' '} {name} line {where}", width), style)])
+        style = _CHOSEN if at == inspected.frame else _PLAIN
+        lines.append([(cut(f"{'▸' if at == inspected.frame else ' '} {name} line {where}", width), style)])
     return lines
 
 
