@@ -260,3 +260,36 @@ def _flat(plain: Any, name: str = "") -> dict[str, Any]:
     else:
         return {name: plain}
     return {path: leaf for below, value in pairs for path, leaf in _flat(value, below).items()}
+
+
+def setup_in_words(found: RunDiff) -> Iterator[tuple[str, str]]:
+    """Yield a label and a text per difference of the setup, then the lines of the programs' diff without labels."""
+    for name, left, right in found.setup:
+        yield f"settings, {name}", f"{left} | {right}"
+    for line in found.program:
+        yield "", line
+
+
+def recording_in_words(found: RunDiff) -> Iterator[tuple[str, str]]:
+    """Yield a label and a text for each difference between the recordings, or one pair if they are identical."""
+    if found.same:
+        settings = "" if found.setup or found.program else ", settings"
+        yield "bit-identical", f"recording, output{settings}"
+        return
+    if found.by_time:
+        yield "tick rates differ", "compared by time, no record is the same"
+    for what, at in (("tick", found.tick), ("line", found.line)):
+        if at:
+            how = ", ".join(at.fields) if at.fields else "one recording ends"
+            yield f"first differing {what}", f"tick {at.tick}, {at.time_s:.2f} s: {how}"
+    for what, row in (("output row", found.output), ("sample", found.sample)):
+        if row:
+            sides = zip((row.first, row.second), row.times_s, strict=True)
+            left, right = ("no more" if text is None else f"{text!r} at {at_s:.3f} s" for text, at_s in sides)
+            yield f"first differing {what}", f"{row.row}: {left} | {right}"
+    if found.divergence:
+        apart = found.divergence
+        most = f"at most {apart.max_mm:.3f} mm apart, at {apart.max_at_s:.2f} s"
+        yield "poses", f"{most}; {apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s"
+        for limit, since_s in apart.exceeded:
+            yield f"over {limit:g} mm", "never" if since_s is None else f"from {since_s:.2f} s"

@@ -10,13 +10,12 @@ import pytest
 
 from tests.app.app_help import program
 from tests.running import PATIENCE_S
-from tuisim.app.dialogs.runs import lines_of
 from tuisim.app.timeline import Timeline
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.runs.brick_state import LED_NAMES, led_row
-from tuisim.runs.diff import diff_runs
+from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.mat import open_mat
 from tuisim.runs.recording import ERROR, SAMPLE, Recording, RowIndex
@@ -113,9 +112,10 @@ def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
 def test_the_difference_of_two_runs_is_told() -> None:
     text = "for speed in (30, 60):\n    tank_drive.on_for_seconds({}, speed, 0.5)\n    print('Speed: ' + str(speed))\n"
     one, two = stored(text.format(30), seed=1), stored(text.format("speed"), seed=2)
-    told = dict(lines_of(diff_runs(one, two)))
-    assert "differs in x_mm" in told["first tick"]
-    assert "mm apart at most" in told["robots"]
-    assert told["seed"] == "1 and 2"
-    assert told["program"].startswith("--- prog.py")
-    assert next(lines_of(diff_runs(one, one)))[1].startswith("the same to the last bit")
+    found = diff_runs(one, two)
+    recording, setup = dict(recording_in_words(found)), dict(setup_in_words(found))
+    assert "x_mm" in recording["first differing tick"]
+    assert "mm apart" in recording["poses"]
+    assert setup["settings, seed"] == "1 | 2"
+    assert "--- prog.py" in [line for label, line in setup_in_words(found) if not label]
+    assert list(recording_in_words(diff_runs(one, one))) == [("bit-identical", "recording, output, settings")]

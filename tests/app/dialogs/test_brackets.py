@@ -37,7 +37,7 @@ DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
     "poses": (_poses, ("door [/x]",)),
     "breaks": (lambda: BreaksDialog((parse_break("print matches [/b]"),), RobotSpec(), lambda _: None), ("[/b]",)),
     "watches": (lambda: WatchesDialog(("table[row]",), lambda _: None), ("table[row]",)),
-    "differences": (_differences, ("'[/x]' at 0.00 s and '[beep]' at 0.10 s", "[b] and 1", "-a[i]")),
+    "differences": (_differences, ("'[/x]' at 0.000 s | '[beep]' at 0.100 s", "[b] | 1", "-a[i]")),
 }
 
 

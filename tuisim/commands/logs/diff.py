@@ -8,7 +8,7 @@ from pathlib import Path
 from tuisim.commands.echo import echo_json, echo_lines
 from tuisim.commands.tables import table
 from tuisim.errors import ConfigError
-from tuisim.runs.diff import RowDifference, RunDiff, TickDifference, diff_runs
+from tuisim.runs.diff import RunDiff, diff_runs, recording_in_words, setup_in_words
 from tuisim.runs.store import RunStore
 
 
@@ -34,35 +34,10 @@ def diff(arguments: Namespace) -> int:
 
 def diff_text(found: RunDiff) -> str:
     """Return a comparison as readable text."""
-    if found.same and not found.setup and not found.program:
-        return "bit-identical: recording, output, settings"
-    lines = ["bit-identical: recording, output"] if found.same else []
-    lines += [f"settings, {name}: {left} | {right}" for name, left, right in found.setup]
-    lines += found.program
-    if found.by_time:
-        lines.append("tick rates differ: compared by time, no record is the same")
-    lines += [_tick("tick", found.tick)] if found.tick else []
-    lines += [_tick("line", found.line)] if found.line else []
-    lines += [_row("output row", found.output)] if found.output else []
-    lines += [_row("sample", found.sample)] if found.sample else []
+    recording, setup = recording_in_words(found), setup_in_words(found)
+    pairs = (*recording, *setup) if found.same else (*setup, *recording)
+    lines = [f"{label}: {words}" if label else words for label, words in pairs]
     if found.divergence and not found.same:
-        apart = found.divergence
-        lines.append(
-            f"poses: at most {apart.max_mm:.3f} mm apart, at {apart.max_at_s:.2f} s; "
-            f"{apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s"
-        )
-        lines += [f"over {limit:g} mm: {'never' if at is None else f'from {at:.2f} s'}" for limit, at in apart.exceeded]
-        rows = [[f"{at:.2f}", f"{mm:.3f}", f"{deg:.3f}"] for at, mm, deg in apart.table]
+        rows = [[f"{at:.2f}", f"{mm:.3f}", f"{deg:.3f}"] for at, mm, deg in found.divergence.table]
         lines.append(table(("SECONDS", "APART MM", "HEADING °"), rows))
     return "\n".join(lines)
-
-
-def _tick(what: str, found: TickDifference) -> str:
-    how = ", ".join(found.fields) if found.fields else "one recording ends"
-    return f"first differing {what}: tick {found.tick}, {found.time_s:.2f} s: {how}"
-
-
-def _row(what: str, found: RowDifference) -> str:
-    sides = zip((found.first, found.second), found.times_s, strict=True)
-    left, right = ("no more" if text is None else f"{text!r} at {at:.3f} s" for text, at in sides)
-    return f"first differing {what}: {found.row}: {left} | {right}"
