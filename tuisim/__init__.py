@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
     from tuisim.api import simulate
-    from tuisim.logs.export import read_log
+    from tuisim.logs.reader import read_log
     from tuisim.runs.store import load_run
 
 __version__ = "0.1.0"
@@ -20,7 +20,7 @@ __all__ = ["__version__", "load_run", "read_log", "simulate"]
 
 _HOMES = {
     "load_run": "tuisim.runs.store",
-    "read_log": "tuisim.logs.export",
+    "read_log": "tuisim.logs.reader",
     "simulate": "tuisim.api",
 }
 

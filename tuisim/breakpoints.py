@@ -5,7 +5,7 @@
 | `12` | line 12 is about to run |
 | `12 if x > 3` | … and the expression is true there |
 | `left.red% < 10`, `ultrasonic <= 200`, `gyro > 90`, `x_mm > 1000` | this becomes true, checked after each tick |
-| `right.color changes`, `left.color == Blue` | the value changes, or becomes the given colour |
+| `right.color changes`, `left.color = Blue` | the value changes, or becomes the given colour |
 | `sample Colour < 50`, `sample Colour changes`, `sample Colour` | a printed sample matches |
 | `print matches REGEX` | a printed line matches |
 | `time 3.5` | this simulated time in seconds is reached |
@@ -19,20 +19,16 @@ from __future__ import annotations
 
 import ast
 import math
-import operator
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
+from tuisim.core.comparison import COMPARE, comparison_form, comparison_in, finite_number
 from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import COLOR_NAMES
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, UltrasonicSpec
 from tuisim.errors import ConfigError
 
-OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
-    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
-}  # fmt: skip
-"""Comparison functions, by operator."""
 CHANGES, SEEN = "changes", "is seen"
 """Relations without a number: the value has changed; a sample was printed, with any value."""
 
@@ -41,8 +37,8 @@ WHEEL_NAMES = ("left_position_deg", "right_position_deg", "left_speed_dps", "rig
 COLOR_PARTS = ("red", "green", "blue", "red%", "mean%", "color")
 """Quantities of a colour sensor, after its name and a dot."""
 ALLOWED = (
-    "12 · 12 if x > 3 · left.red% < 10 · left.color changes · ultrasonic < 200 · x_mm > 1000 · "
-    "sample Colour < 50 · print matches REGEX · time 3.5 · stall"
+    f"{comparison_form()}, such as left.red% < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
+    "left.color changes · print matches REGEX · time 3.5 · stall"
 )
 
 
@@ -62,7 +58,7 @@ class ValueBreak:
     quantity: str
     """One of `quantities(robot)`."""
     relation: str
-    """A key of `OPERATORS`, or `CHANGES`."""
+    """An `Operator`, or `CHANGES`."""
     number: float = 0.0
 
 
@@ -72,7 +68,7 @@ class SampleBreak:
 
     name: str
     relation: str
-    """A key of `OPERATORS`, `CHANGES` or `SEEN`."""
+    """An `Operator`, `CHANGES` or `SEEN`."""
     number: float = 0.0
 
 
@@ -112,9 +108,7 @@ class Breakpoint:
         return f"# {self.text}" if self.disabled else self.text
 
 
-_SIGN = r"<=|>=|==|!=|<|>"
 _LINE = re.compile(r"(?:line\s+)?(\d+)(?:\s+if\s+(.*))?", re.DOTALL)
-_COMPARED = re.compile(rf"(.+?)\s*({_SIGN})\s*(\S+)")
 _WORDY = re.compile(r"(?:sensor\s+)?(\w+)\s+sensor(?:\s+(\w+)\s*(%)?)?")
 
 
@@ -247,7 +241,9 @@ def _print_rule(text: str, rest: str) -> PrintBreak:
 def _sample_rule(text: str, rest: str) -> SampleBreak:
     name, relation, value = _relation(rest)
     if not name.isidentifier():
-        raise _refuse(text, "a sample has a name", "such as: sample Colour < 50, sample Colour changes")
+        raise _refuse(
+            text, "a sample has a name", f"{comparison_form()}, such as: sample Colour < 50, sample Colour changes"
+        )
     return SampleBreak(name, relation or SEEN, _number(text, value) if value else 0.0)
 
 
@@ -270,8 +266,8 @@ def _relation(text: str) -> tuple[str, str, str]:
     words = text.split()
     if len(words) > 1 and words[-1] == CHANGES:
         return text[: -len(CHANGES)].strip(), CHANGES, ""
-    found = _COMPARED.fullmatch(text)
-    return (found[1], found[2], found[3]) if found else (text, "", "")
+    found = comparison_in(text)
+    return (found.name, found.operator, found.value) if found and found.operator in COMPARE else (text, "", "")
 
 
 def _quantity(written: str) -> str:
@@ -284,10 +280,10 @@ def _quantity(written: str) -> str:
 
 def _number(text: str, written: str, least: float = -math.inf) -> float:
     try:
-        value = float(written)
-    except ValueError:
-        raise _refuse(text, f"{written!r} is not a number") from None
-    if not math.isfinite(value) or value < least:
+        value = finite_number(written)
+    except ValueError as error:
+        raise _refuse(text, str(error)) from None
+    if value < least:
         raise _refuse(text, f"{written!r} is not possible here")
     return value
 
@@ -299,7 +295,7 @@ def _common_text(rule: BreakRule, written: str) -> str:
             return f"{line} if {condition}" if condition else str(line)
         case ValueBreak(quantity=name, relation=relation) | SampleBreak(name=name, relation=relation):
             head = f"sample {name}" if isinstance(rule, SampleBreak) else name
-            if relation in OPERATORS:
+            if relation in COMPARE:
                 return f"{head} {relation} {_shown_number(rule)}"
             return head if relation == SEEN else f"{head} {CHANGES}"
         case PrintBreak(pattern=pattern):

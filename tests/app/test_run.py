@@ -13,7 +13,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.panels.output import Answer
 from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, WAITING
 from tuisim.core.geometry import Pose
-from tuisim.logs.export import read_log
+from tuisim.logs.reader import read_log
 
 pytestmark = pytest.mark.usefixtures("home")
 

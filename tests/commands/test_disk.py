@@ -24,7 +24,8 @@ from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.state import TICK_RECORD
 from tuisim.errors import ExportError, LogError
-from tuisim.logs.export import export_samples, read_log
+from tuisim.logs.export import export_samples
+from tuisim.logs.reader import read_log
 from tuisim.runs import run_folder
 from tuisim.runs import store as store_module
 from tuisim.runs.handle import RunOptions, field_files, start_run

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,8 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.cli import run_command
-from tuisim.logs.export import EXPORTERS, companion_of, read_log, read_metadata
+from tuisim.logs.export import EXPORTERS, companion_of
+from tuisim.logs.reader import open_log, read_log
 from tuisim.runs.frames import samples_frame, telemetry_frame
 from tuisim.runs.store import RunStore
 
@@ -35,14 +37,14 @@ class Kept:
     runs: tuple[str, ...]
     """The words that name the runs for `tuisim log`."""
     frame: pd.DataFrame
-    metadata: dict[str, Any]
+    metadata: Mapping[str, Any]
     files: Path
     """Folder with `log.csv` and the like."""
 
     def check(self, path: Path) -> None:
         """Make sure that a file holds this and nothing else."""
         pd.testing.assert_frame_equal(read_log(path), self.frame, check_exact=True)
-        assert read_metadata(path) == self.metadata
+        assert open_log(path).metadata == self.metadata
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +69,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Kept]:
     frames = {"samples": samples_frame(runs), "telemetry": telemetry_frame(runs[0])}
     words_of = {"samples": tuple(run.id for run in runs), "telemetry": (runs[0].id, "--telemetry")}
     return {
-        name: Kept(words_of[name], frames[name], read_metadata(files / "log.parquet"), files)
+        name: Kept(words_of[name], frames[name], open_log(files / "log.parquet").metadata, files)
         for name, files in tables.items()
     }
 
@@ -130,4 +132,4 @@ def test_only_some_variables(here: Command, tmp_path: Path, kept: dict[str, Kept
     pd.testing.assert_frame_equal(read_log(tmp_path / "some.csv"), frame[wanted].reset_index(drop=True))
     here("log", "export", *kept["telemetry"].runs, "--variable", "gyro_deg", "--out", "gyro.arrow")
     assert list(read_log(tmp_path / "gyro.arrow")) == ["time", "gyro_deg", "line"]
-    assert set(read_metadata(tmp_path / "gyro.arrow")["units"]) == {"time", "gyro_deg"}
+    assert set(open_log(tmp_path / "gyro.arrow").metadata["units"]) == {"time", "gyro_deg"}

@@ -12,10 +12,20 @@ from tuisim.analysis.events import crossings
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import LogError
-from tuisim.logs.dead_reckoning import dead_reckoning, distance_mm, error_mm
+from tuisim.logs.bands import distance_mm
+from tuisim.logs.derived import dead_reckoning, error_mm
 from tuisim.logs.expressions import FUNCTIONS, evaluate
-from tuisim.logs.signals import HOLD, LINEAR, Between, derivative, integral, moving_average, resample, value_at
-from tuisim.logs.statistics import summary_of
+from tuisim.logs.signals import (
+    HOLD,
+    LINEAR,
+    Between,
+    derivative,
+    integral,
+    moving_average,
+    resample,
+    summary_of,
+    value_at,
+)
 
 NAN = float("nan")
 

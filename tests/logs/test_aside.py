@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from tuisim.errors import LogError
-from tuisim.logs.plateau_process import plateaus_aside
-from tuisim.logs.plateaus import plateaus
+from tuisim.logs.plateaus import plateaus, plateaus_aside
 
 
 def test_finds_the_same_as_here() -> None:

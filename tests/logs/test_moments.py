@@ -12,8 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tuisim.logs.columns import seconds_of
-from tuisim.logs.export import EXPORTERS
-from tuisim.logs.log_export import export_log
+from tuisim.logs.export import EXPORTERS, export_log
 from tuisim.logs.reader import open_log
 
 NAN = float("nan")

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tuisim.analysis.alignment import DISTANCE
 from tuisim.analysis.model import Model
-from tuisim.analysis.traces import LogTrace, held
+from tuisim.analysis.traces import DISTANCE, LogTrace, held
 from tuisim.charts.axes import Limits, value_limits
 from tuisim.charts.canvas import seen_points
 from tuisim.charts.layout import Chart, Line, with_unit

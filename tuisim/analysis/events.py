@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tuisim.core.comparison import NUMBER, Operator, comparison_form, comparison_in
 from tuisim.errors import LogError, listed
 from tuisim.logs.signals import known_in_order
 from tuisim.runs.arrays import FloatArray
@@ -74,11 +75,10 @@ def _meets(time_s: FloatArray, values: FloatArray, first: int, last: int, thresh
     return float(time_s[first]) + min(max(part, 0.0), 1.0) * float(time_s[last] - time_s[first])
 
 
-FORM = "such as `Colour < 50`, `Colour > 50 +- 2`, or `Colour = 50` for both ways; several with `,` between them"
-_NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_THRESHOLD = re.compile(
-    rf"\s*(?P<name>.+?)\s*(?P<op>[<>=])\s*(?P<value>{_NUMBER})\s*(?:(?:\+-|±)\s*(?P<width>{_NUMBER})\s*)?"
-)
+_OPERATORS = (Operator.LESS, Operator.GREATER, Operator.EQUAL)
+THRESHOLD_FORM = f"{comparison_form(_OPERATORS)}, such as `Colour > 50 +- 2`; `=` for both ways"
+FORM = f"{THRESHOLD_FORM}; several with `,` between them"
+_WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,15 +86,15 @@ class Threshold:
     """A threshold of a variable."""
 
     name: str
-    op: str
-    """`<`: comes below; `>`: comes above; `=`: either."""
+    op: Operator
+    """LESS: falls below; GREATER: rises above; EQUAL: either."""
     value: float
     hysteresis: float = 0.0
     """Hysteresis: the signal must pass the value by this margin on both sides."""
 
     def __str__(self) -> str:
         width = f" +- {self.hysteresis:g}" if self.hysteresis else ""
-        return f"{self.name} {self.op} {self.value:g}{width}"
+        return f"{self.name} {self.op.short} {self.value:g}{width}"
 
     def among(self, series: Sequence[Series]) -> list[Series]:
         """Return those that it is about: of several runs all, unless one of them is named."""
@@ -103,7 +103,7 @@ class Threshold:
     def crossings(self, series: Series) -> list[Crossing]:
         """Return where a series crosses it, in order of time."""
         found = crossings(series.time_s, series.values, self.value, self.hysteresis)
-        return [one for one in found if self.op == "=" or one.rising is (self.op == ">")]
+        return [one for one in found if self.op is Operator.EQUAL or one.rising is (self.op is Operator.GREATER)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,10 +127,13 @@ class Event:
 
 def threshold_of(text: str) -> Threshold | None:
     """Return what a text such as `Colour < 50` says, None if it says nothing of the kind."""
-    match = _THRESHOLD.fullmatch(text)
-    if match is None:
+    match = _WIDTH.fullmatch(text)
+    found = comparison_in(match["comparison"], value=NUMBER) if match else None
+    width = float(match["width"]) if match and found else 0.0
+    found = found or comparison_in(text, value=NUMBER)
+    if found is None or found.operator not in _OPERATORS:
         return None
-    return Threshold(match["name"], match["op"], float(match["value"]), float(match["width"] or 0.0))
+    return Threshold(found.name, found.operator, float(found.value), width)
 
 
 def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:

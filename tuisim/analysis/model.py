@@ -10,20 +10,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.analysis.alignment import TIME, aligned
 from tuisim.analysis.events import Events
 from tuisim.analysis.table import Rows
-from tuisim.analysis.traces import LogTrace, LogTraces
+from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
 from tuisim.charts.axes import Limits
 from tuisim.errors import LogError, listed
 from tuisim.logs.annotations import Note, read_notes, write_notes
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
 from tuisim.logs.columns import is_numeric
-from tuisim.logs.dead_reckoning import RECKONED, reckoned_series
-from tuisim.logs.derived import definition_of, derived
+from tuisim.logs.derived import RECKONED, definition_of, derived, reckoned_series
 from tuisim.logs.plateaus import Plateau, plateaus
-from tuisim.logs.signals import known_at
-from tuisim.logs.statistics import Summary, summary_of
+from tuisim.logs.signals import Summary, known_at, summary_of
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:

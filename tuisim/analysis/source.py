@@ -73,8 +73,7 @@ def opening(wanted: LogRequest) -> Iterator[OpenedLog]:
     Raises:
         LogError: there is no such run or file, or it cannot be read.
     """
-    from tuisim.logs.reader import read_pieces
-    from tuisim.logs.stored_runs import log_of_runs, telemetry_log
+    from tuisim.logs.reader import log_of_runs, read_pieces, telemetry_log
     from tuisim.runs.store import RunStore
 
     if not wanted.file:

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tuisim.core.comparison import Comparison, Operator, comparison_form, comparison_in
 from tuisim.errors import LogError, listed
+from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
 
 if TYPE_CHECKING:
-    import pyarrow as pa
-
-    from tuisim.logs.log import Log
+    from tuisim.logs.log import Log, LogTable
     from tuisim.runs.arrays import IntArray
 
 AT_ONCE = 200_000
@@ -35,29 +35,12 @@ class TableTask:
         return f"{self.word} {self.part:.0%}" if self.part else self.word
 
 
-FORM = "column, one of < <= > >= == != ~ and a value; several with `and`"
-_CONDITION = re.compile(r"\s*(?P<column>[^<>=!~]+?)\s*(?P<op><=|>=|==|!=|=|<|>|~)\s*(?P<value>.*?)\s*")
+FORM = f"{comparison_form(Operator)} and NAME a column; several with `and`"
 _STRETCH = 100_000
 """Rows searched at once."""
-_COMPARED: Mapping[str, str] = {
-    "<": "less", "<=": "less_equal", ">": "greater", ">=": "greater_equal", "==": "equal", "=": "equal",
-    "!=": "not_equal",
-}  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """A filter condition."""
-
-    column: str
-    op: str
-    value: str
-
-    def __str__(self) -> str:
-        return f"{self.column} {self.op} {self.value}"
-
-
-def conditions_of(text: str, columns: list[str]) -> list[Condition]:
+def conditions_of(text: str, columns: list[str]) -> list[Comparison]:
     """Return the conditions in a text such as `variable == Colour and value > 50`.
 
     Raises:
@@ -65,13 +48,12 @@ def conditions_of(text: str, columns: list[str]) -> list[Condition]:
     """
     found = []
     for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
-        match = _CONDITION.fullmatch(part)
-        if match is None:
+        condition = comparison_in(part, name=r"[^<>=!~]+?", value=".*?")
+        if condition is None:
             raise LogError(f"no condition: {part!r}", FORM)
-        condition = Condition(match["column"], match["op"], match["value"].strip("'\""))
-        if condition.column not in columns:
-            raise LogError(f"no column {condition.column!r}", f"there are {listed(columns)}")
-        found.append(condition)
+        if condition.name not in columns:
+            raise LogError(f"no column {condition.name!r}", f"there are {listed(columns)}")
+        found.append(replace(condition, value=condition.value.strip("'\"")))
     return found
 
 
@@ -79,7 +61,7 @@ def conditions_of(text: str, columns: list[str]) -> list[Condition]:
 class TableView:
     """Which rows of a log a table shows, in which order."""
 
-    conditions: tuple[Condition, ...]
+    conditions: tuple[Comparison, ...]
     fulfilled: IntArray | None
     """Rows that match the filter, increasing; None for all."""
     sorted_by: str
@@ -103,7 +85,7 @@ class Rows:
         """Number of pinned columns at the left."""
         self.column = 0
         """Position of the chosen one in `columns`."""
-        self.conditions: tuple[Condition, ...] = ()
+        self.conditions: tuple[Comparison, ...] = ()
         self.sorted_by = ""
         self.descending = False
         self._fulfilled: IntArray | None = None
@@ -133,22 +115,16 @@ class Rows:
 
     def text(self, row: int, column: str) -> str:
         """Return a cell as text."""
-        import pyarrow as pa
+        return cell_text(self._log.table.column(column)[row])
 
-        cell = self._log.table.column(column)[row]
-        if pa.types.is_duration(cell.type):
-            # As an object of Python's it would be one of pandas, whose import takes longer than a whole screen.
-            return f"{cell.value / _per_s(cell.type.unit):.3f}" if cell.is_valid else ""
-        return text_of(cell.as_py())
-
-    def shown(self) -> pa.Table:
+    def shown(self) -> LogTable:
         """Return what is shown as a table of its own."""
         table = self._log.table.select(self.columns)
         return table if self._order is None else table.take(self._order)
 
     # Which rows, in which order
 
-    def filter(self, conditions: tuple[Condition, ...]) -> None:
+    def filter(self, conditions: tuple[Comparison, ...]) -> None:
         """Show only the rows that fulfil all conditions.
 
         Raises:
@@ -160,13 +136,13 @@ class Rows:
         """Sort the rows by a column; empty for the order of the log."""
         self.arrange(self.sorted(column, descending))
 
-    def filtered(self, conditions: tuple[Condition, ...]) -> TableView:
+    def filtered(self, conditions: tuple[Comparison, ...]) -> TableView:
         """Return the rows that fulfil all conditions, in the order that they have. Slow for a long log.
 
         Raises:
             LogError: a value is none that its column could have.
         """
-        masks = [_mask(self._log.table.column(condition.column), condition) for condition in conditions]
+        masks = [mask_of(self._log.table.column(condition.name), condition) for condition in conditions]
         fulfilled = np.flatnonzero(np.logical_and.reduce(masks)) if masks else None
         return self._arrangement(conditions, fulfilled, self.sorted_by, self.descending)
 
@@ -181,18 +157,12 @@ class Rows:
         self._order = arrangement.order
 
     def _arrangement(
-        self, conditions: tuple[Condition, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
+        self, conditions: tuple[Comparison, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
     ) -> TableView:
-        import pyarrow as pa
-        import pyarrow.compute as pc
-
         order = fulfilled
         if sorted_by:
             column = self._log.table.column(sorted_by)
-            column = _texts(column) if pa.types.is_dictionary(column.type) else column
-            taken = column if order is None else column.take(order)
-            way = "descending" if descending else "ascending"
-            places = pc.sort_indices(taken, sort_keys=[("", way)]).to_numpy().astype(np.int64)
+            places = sorted_places(column if order is None else column.take(order), descending)
             order = places if order is None else order[places]
         return TableView(conditions, fulfilled, sorted_by, descending, order)
 
@@ -234,10 +204,10 @@ class Rows:
         self.columns = [name for name in self.columns if name in names] or list(names)
         self.columns += [name for name in names if name not in before and name not in self.columns]
         self.column = self.columns.index(chosen) if chosen in self.columns else 0
-        gone = [at for at in (self.sorted_by, *(one.column for one in self.conditions)) if at and at not in names]
+        gone = [at for at in (self.sorted_by, *(one.name for one in self.conditions)) if at and at not in names]
         if gone:
             self.sorted_by = "" if self.sorted_by in gone else self.sorted_by
-            self.filter(tuple(one for one in self.conditions if one.column not in gone))
+            self.filter(tuple(one for one in self.conditions if one.name not in gone))
 
     def take_over(self, other: Rows) -> None:
         """Show the same columns and conditions as another table of the same log."""
@@ -272,14 +242,11 @@ class Rows:
 
     def _places_with(self, text: str, first: int, last: int) -> IntArray:
         """The places from `first` to before `last` whose rows have a text."""
-        import pyarrow.compute as pc
-
         table = self._log.table.select(self.columns)
         part = table.slice(first, last - first) if self._order is None else table.take(self._order[first:last])
         found = np.zeros(last - first, bool)
         for column in part.columns:
-            matched = pc.match_substring(_texts(column), text, ignore_case=True)
-            found |= np.asarray(pc.fill_null(matched, False).to_numpy(), bool)
+            found |= contains(column, text)
         return first + np.flatnonzero(found)
 
 
@@ -289,47 +256,3 @@ def _stretches(from_place: int, count: int, step: int) -> Iterator[tuple[int, in
     onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]
     before = [(first, min(first + _STRETCH, middle)) for first in range(0, middle, _STRETCH)]
     yield from [*onwards, *before] if step > 0 else [*reversed(before), *reversed(onwards)]
-
-
-def _texts(column: Any) -> Any:
-    import pyarrow as pa
-
-    kind = column.type
-    if pa.types.is_duration(kind):
-        column = column.cast(pa.int64()).cast(pa.float64(), safe=False)
-    return column.cast(pa.string())
-
-
-def _mask(column: Any, condition: Condition) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    import pyarrow as pa
-    import pyarrow.compute as pc
-
-    if condition.op == "~":
-        made = pc.match_substring(_texts(column), condition.value, ignore_case=True)
-    else:
-        compare: Callable[[Any, Any], Any] = getattr(pc, _COMPARED[condition.op])
-        kind = column.type
-        if pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_duration(kind):
-            try:
-                value = float(condition.value)
-            except ValueError as error:
-                raise LogError(f"{condition}: no number", f"{condition.column} has numbers") from error
-            if pa.types.is_duration(kind):
-                column = pc.divide(column.cast(pa.int64()).cast(pa.float64(), safe=False), _per_s(kind.unit))
-            made = compare(column.cast(pa.float64(), safe=False), value)
-        else:
-            made = compare(_texts(column), condition.value)
-    return np.asarray(pc.fill_null(made, False).to_numpy(zero_copy_only=False), bool)
-
-
-def _per_s(unit: str) -> float:
-    return {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[unit]
-
-
-def text_of(value: Any) -> str:
-    """Return a value as a cell shows it."""
-    if value is None:
-        return ""
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    return str(value)

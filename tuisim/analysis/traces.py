@@ -1,4 +1,4 @@
-"""The variables of a log as traces of a chart: loaded on first use, decimated for drawing."""
+"""The variables of a log as traces of a chart: loaded on first use, aligned, decimated for drawing."""
 
 from __future__ import annotations
 
@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tuisim.analysis.events import THRESHOLD_FORM, threshold_of
 from tuisim.charts.axes import Limits
 from tuisim.charts.traces import Pyramid, Trace, Traces
+from tuisim.errors import LogError
+from tuisim.logs.bands import driven_mm
 from tuisim.logs.signals import value_at
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
+    from tuisim.runs.arrays import FloatArray
+
 
 MOST_ON = 4
 """Number of variables that are visible at first."""
@@ -182,3 +187,35 @@ class LogTraces(Traces):
         # Half a second more or less makes no difference to a very large time.
         room = max(0.5, size * _LEAST_OF_TIMES)
         return low - room, high + room
+
+
+TIME, DISTANCE = "time", "distance"
+FORM = f"time, distance, or an event: {THRESHOLD_FORM}"
+
+
+def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
+    """Return the x positions of the samples of each series; None: their times.
+
+    Args:
+        log: Where they come from.
+        series: Variables of its runs.
+        way: As `FORM` says.
+
+    Raises:
+        LogError: `way` is none, or the log cannot be aligned like that.
+    """
+    if way == TIME:
+        return [None] * len(series)
+    if way == DISTANCE:
+        driven = [driven_mm(log, one) for one in series]
+        if any(places is None for places in driven):
+            raise LogError("no distances: the log has no x_mm and y_mm in each row", FORM)
+        return driven
+    event = threshold_of(way)
+    if event is None:
+        raise LogError(f"cannot align by {way!r}", FORM)
+    found = {one.run: there[0].time_s for one in event.among(series) if (there := event.crossings(one))}
+    if not found:
+        raise LogError(f"no run comes to {way}", FORM)
+    # A run in which it never happens stays where the earliest one is.
+    return [one.time_s - found.get(one.run, min(found.values())) for one in series]

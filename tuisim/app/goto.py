@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import operator
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from textual.widgets import Input, Static
 
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.timeline import Timeline
+from tuisim.core.comparison import COMPARE, Comparison, comparison_form, comparison_in, finite_number, spelled
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.runs.records import TEXT_STREAMS, OutputRow
 from tuisim.runs.samples import parse_sample
@@ -30,20 +30,16 @@ FORMS = (
     ("tick 120", "a tick"),
     ("line 12", "the next time that line 12 runs"),
     ("sample Colour", "the next sample of that name, or of any"),
-    ("sample Colour < 90", "the next that matches: < <= > >= = !="),
+    ("sample Colour < 90", f"the next that matches: {spelled()}"),
     ("print REGEX", "the next printed line that matches"),
     ("start, end", "the first instant, and now"),
     ("… back", "line, sample or print: the last one before"),
 )
 """The accepted forms, with what they mean."""
 
-_HINT = "3.5, tick 120, line 12, sample NAME, sample NAME < 90, print REGEX, start or end"
+_HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, print REGEX, start or end"
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
-_SAMPLE = re.compile(r"(?P<name>[^\W\d]\w*)?\s*(?:(?P<sign><=|>=|!=|==?|<|>)\s*(?P<value>[+-]?[0-9.]+(?:e[+-]?\d+)?))?")
-_SIGNS: Mapping[str, Callable[[float, float], bool]] = {
-    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge,
-    "=": operator.eq, "==": operator.eq, "!=": operator.ne,
-}  # fmt: skip
+_NAME = r"(?:[^\W\d]\w*)?"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +99,10 @@ def find(text: str, timeline: Timeline) -> int:
     search = _Search(recording, at, bool(back) or at >= recording.newest)
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
-    if word == "sample" and (wanted := _SAMPLE.fullmatch(rest)):
-        return _sample(search, wanted)
+    if word == "sample" and re.fullmatch(_NAME, rest):
+        return _sample(search, rest, None)
+    if word == "sample" and (wanted := comparison_in(rest, _NAME)) and wanted.operator in COMPARE:
+        return _sample(search, wanted.name, wanted)
     if word == "print" and rest:
         return _printed(search, rest)
     raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "where to?", _HINT)
@@ -134,12 +132,11 @@ def _line(search: _Search, line: int) -> int:
     return tick
 
 
-def _sample(search: _Search, wanted: re.Match[str]) -> int:
-    name, sign = wanted["name"], wanted["sign"]
+def _sample(search: _Search, name: str, wanted: Comparison | None) -> int:
     try:
-        value = float(wanted["value"]) if sign else 0.0
+        value = finite_number(wanted.value) if wanted else 0.0
     except ValueError as error:
-        raise ConfigError(f"{wanted['value']} is no number", _HINT) from error
+        raise ConfigError(str(error), _HINT) from error
     seen: set[str] = set()
 
     def fits(row: OutputRow) -> bool:
@@ -147,11 +144,11 @@ def _sample(search: _Search, wanted: re.Match[str]) -> int:
         if sample is None:
             return False
         seen.add(sample[0])
-        return name in (None, sample[0]) and (not sign or _SIGNS[sign](sample[1], value))
+        return name in ("", sample[0]) and (wanted is None or COMPARE[wanted.operator](sample[1], value))
 
     tick = search.tick_of(fits)
     if tick is None:
-        what = " ".join(filter(None, ("sample", name, sign, wanted["value"])))
+        what = f"sample {wanted or name}".rstrip()
         hint = f"there are {', '.join(sorted(seen))}" if seen and name not in seen and name else ""
         raise ConfigError(f"no {what} {search.words}", hint)
     return tick

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.core.css_colors import Rgb
-from tuisim.logs.statistics import Summary, summary_of
+from tuisim.logs.signals import Summary, summary_of
 from tuisim.runs.arrays import FloatArray
 
 _COLORS: tuple[Rgb, ...] = (

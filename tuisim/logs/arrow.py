@@ -1,15 +1,29 @@
-"""Conversion of columns to and from Arrow, without pandas."""
+"""Arrow: its columns as arrays; Parquet and Arrow files, read piece by piece and written."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
+from tuisim.core.comparison import Comparison, Operator
+from tuisim.errors import LogError
 from tuisim.logs.warnings import Notes
-from tuisim.runs.arrays import FloatArray
+from tuisim.runs.arrays import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PER_S = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+"""Arrow's units of time, by their number per second."""
+
+METADATA_KEY = b"tuisim"
+"""Key of the metadata in the schema of Parquet and Arrow files."""
 
 
 def texts_array(texts: Sequence[str]) -> pa.Array:
@@ -55,6 +69,68 @@ def whole_numbers(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArr
     return pa.chunked_array([pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(numbers)])])
 
 
+BoolArray = np.ndarray[Any, np.dtype[np.bool_]]
+
+
+def texts_of(column: pa.ChunkedArray) -> pa.ChunkedArray:
+    """Return a column as texts; spans of time as their numbers."""
+    if pa.types.is_duration(column.type):
+        column = column.cast(pa.int64()).cast(pa.float64(), safe=False)
+    return column.cast(pa.string())
+
+
+def contains(column: pa.ChunkedArray, text: str) -> BoolArray:
+    """Return which cells contain a text, in any case of letters, shape (n,)."""
+    return _mask(pc.match_substring(texts_of(column), text, ignore_case=True))
+
+
+def mask_of(column: pa.ChunkedArray, condition: Comparison) -> BoolArray:
+    """Return which cells meet a condition, shape (n,); empty ones do not.
+
+    Numbers, and spans of time in seconds, are compared as numbers, all else as texts.
+
+    Raises:
+        LogError: the value of the condition is not a number, but the column has numbers.
+    """
+    if condition.operator is Operator.CONTAINS:
+        return contains(column, condition.value)
+    compare: Callable[[Any, Any], Any] = getattr(pc, condition.operator.name.lower())
+    kind = column.type
+    if not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_duration(kind)):
+        return _mask(compare(texts_of(column), condition.value))
+    try:
+        value = float(condition.value)
+    except ValueError as error:
+        message = f"{condition}: {condition.value!r} is not a number"
+        raise LogError(message, f"{condition.name} has numbers") from error
+    if pa.types.is_duration(kind):
+        column = pc.divide(column.cast(pa.int64()).cast(pa.float64(), safe=False), PER_S[kind.unit])
+    return _mask(compare(column.cast(pa.float64(), safe=False), value))
+
+
+def _mask(truths: Any) -> BoolArray:
+    return np.asarray(pc.fill_null(truths, False).to_numpy(zero_copy_only=False), bool)
+
+
+def sorted_places(column: pa.ChunkedArray, descending: bool) -> IntArray:
+    """Return the positions of the cells in sorted order, shape (n,)."""
+    column = texts_of(column) if pa.types.is_dictionary(column.type) else column
+    way = "descending" if descending else "ascending"
+    places: IntArray = pc.sort_indices(column, sort_keys=[("", way)]).to_numpy().astype(np.int64)
+    return places
+
+
+def cell_text(cell: pa.Scalar) -> str:
+    """Return a cell as text, spans of time in seconds."""
+    if pa.types.is_duration(cell.type):
+        # The Python object would be one of pandas, whose import takes longer than drawing a whole screen.
+        return f"{cell.value / PER_S[cell.type.unit]:.3f}" if cell.is_valid else ""
+    value = cell.as_py()
+    if value is None:
+        return ""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
 def unique_names(names: Sequence[str], notes: Notes) -> list[str]:
     """Return unique column names; renamed columns are noted."""
     unique: list[str] = []
@@ -66,3 +142,156 @@ def unique_names(names: Sequence[str], notes: Notes) -> list[str]:
             notes.say(f"two columns are named {name!r}: the second is renamed to {wanted!r}")
         unique.append(wanted)
     return unique
+
+
+PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC = b"PAR1", b"ARROW1", b"\xff\xff\xff\xff"
+_CUT_OFF = "the file was cut off: read as far as it goes"
+
+
+def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
+    """Return what our own exports say of themselves; empty for other files."""
+    try:
+        found = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    """Yield the row groups of a file, each with the part of the file that is read then.
+
+    Raises:
+        LogError: the file has no readable footer, without which nothing can be found in it.
+    """
+    import pyarrow.parquet as pq
+
+    try:
+        file = pq.ParquetFile(path)
+    except (pa.ArrowException, OSError, ValueError) as error:
+        hint = "a Parquet file that was cut off cannot be read: its table of contents is at its end"
+        raise LogError(f"no readable Parquet file: {_short(error)}", hint, file=str(path)) from error
+    with file:
+        count = file.metadata.num_row_groups
+        if not count:
+            yield 1.0, file.schema_arrow.empty_table()
+        first = 1
+        for at in range(count):
+            rows = file.metadata.row_group(at).num_rows
+            try:
+                part = file.read_row_group(at)
+            except (pa.ArrowException, OSError, ValueError):
+                notes.add("row is damaged and was left out", "rows are damaged and were left out", [first], rows)
+            else:
+                yield (at + 1) / count, _named(part, notes)
+            first += rows
+
+
+def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    """Yield the record batches of a file; of one that was cut off those that are whole.
+
+    Raises:
+        LogError: not even the names of the columns can be read.
+    """
+    with pa.memory_map(str(path)) as source:
+        try:
+            with pa.ipc.open_file(source) as reader:
+                count = reader.num_record_batches
+                if not count:
+                    yield 1.0, reader.schema.empty_table()
+                for at in range(count):
+                    try:
+                        part = _whole(reader.get_batch(at))
+                    except (pa.ArrowException, OSError, ValueError):
+                        notes.add(
+                            "batch of rows is damaged and was left out",
+                            "batches of rows are damaged and were left out",
+                            [],
+                            1,
+                        )
+                    else:
+                        yield (at + 1) / count, _named(part, notes)
+                return
+        except (pa.ArrowException, OSError, ValueError):
+            notes.say(_CUT_OFF)
+        # Behind eight bytes of magic an Arrow file is a stream of batches.
+        yield from _stream_parts(path, source, 8, notes)
+
+
+def arrow_stream_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    """Yield the record batches of an Arrow stream; of one that was cut off those that are whole.
+
+    Raises:
+        LogError: not even the names of the columns can be read.
+    """
+    with pa.memory_map(str(path)) as source:
+        yield from _stream_parts(path, source, 0, notes)
+
+
+def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+    size = max(path.stat().st_size, 1)
+    source.seek(start)
+    try:
+        stream = pa.ipc.open_stream(source)
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise LogError(f"no readable Arrow file: {_short(error)}", file=str(path)) from error
+    yield 0.0, stream.schema.empty_table()
+    while True:
+        try:
+            part = _whole(stream.read_next_batch())
+        except StopIteration:
+            return
+        except (pa.ArrowException, OSError, ValueError):
+            notes.say(_CUT_OFF)
+            return
+        yield source.tell() / size, _named(part, notes)
+
+
+def _whole(batch: pa.RecordBatch) -> pa.Table:
+    """Return a batch as a table, checked to its last value; dates in milliseconds keep their time of day."""
+    columns = [
+        column.view(pa.timestamp("ms")) if pa.types.is_date64(column.type) else column for column in batch.columns
+    ]
+    part = pa.Table.from_arrays(columns, batch.schema.names).replace_schema_metadata(batch.schema.metadata)
+    part.validate(full=True)
+    return part
+
+
+def _named(part: pa.Table, notes: Notes) -> pa.Table:
+    # Renaming alone would lose what the file says about itself.
+    renamed = part.rename_columns(unique_names(part.column_names, notes))
+    for at, field in enumerate(part.schema):
+        usual = _usual(field.type)
+        if usual != field.type:
+            renamed = renamed.set_column(at, renamed.field(at).with_type(usual), part.column(at).cast(usual))
+    return renamed.replace_schema_metadata(part.schema.metadata)
+
+
+def _usual(kind: pa.DataType) -> pa.DataType:
+    """Return the type that columns of a kind are worked with; most are their own."""
+    if pa.types.is_decimal(kind):
+        return pa.float64()
+    return pa.string() if pa.types.is_string_view(kind) else kind
+
+
+def _short(error: Exception) -> str:
+    return str(error).partition("\n")[0][:120] if str(error) else type(error).__name__
+
+
+def write_parquet(frame: pd.DataFrame, metadata: Mapping[str, Any], handle: BinaryIO) -> None:
+    """Write a frame as a Parquet file, with metadata in its schema."""
+    import pyarrow.parquet as pq
+
+    pq.write_table(_table(frame, metadata), handle)
+
+
+def write_arrow(frame: pd.DataFrame, metadata: Mapping[str, Any], handle: BinaryIO) -> None:
+    """Write a frame as an Arrow file, with metadata in its schema."""
+    table = _table(frame, metadata)
+    with pa.ipc.new_file(handle, table.schema) as writer:
+        writer.write_table(table)
+
+
+def _table(frame: pd.DataFrame, metadata: Mapping[str, Any]) -> pa.Table:
+    table = pa.Table.from_pandas(frame, preserve_index=False)
+    text = json.dumps(metadata, sort_keys=True).encode()
+    return table.replace_schema_metadata({**(table.schema.metadata or {}), METADATA_KEY: text})

@@ -13,7 +13,6 @@ import numpy as np
 
 from tuisim.core.css_colors import css_names
 from tuisim.errors import counted
-from tuisim.logs.dead_reckoning import distance_mm
 from tuisim.logs.log import Log, Series
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.runs.arrays import FloatArray
@@ -204,6 +203,13 @@ def driven_mm(log: Log, series: Series) -> FloatArray | None:
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
         return None
     return distance_mm(x_mm, y_mm)
+
+
+def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
+    """Return how far the robot has gone since the first place, shape (n,)."""
+    if not len(x_mm):
+        return np.empty(0)
+    return np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm)))))
 
 
 def in_words(report: BandReport) -> str:

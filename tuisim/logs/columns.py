@@ -13,7 +13,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from tuisim.errors import LogError, listed
-from tuisim.logs.arrow import numbers_of
+from tuisim.logs.arrow import PER_S, numbers_of
 from tuisim.logs.units import SECONDS
 from tuisim.runs.arrays import FloatArray
 
@@ -106,7 +106,6 @@ def _first(column: pa.ChunkedArray) -> float:
     return 0.0
 
 
-_PER_S = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 _SPAN = r"^(?P<sign>-?)(?:(?P<days>\d+) days? )?(?P<h>\d+):(?P<m>\d{2}):(?P<s>\d{2}(?:\.\d+)?)$"
 """A span as pandas prints it, or hours, minutes and seconds."""
 _REST = r":\d{2}(?P<part>\.\d+)? ?(?:(?P<sign>[+-])(?P<h>\d{2}):?(?P<m>\d{2})|Z|UTC)?$"
@@ -130,7 +129,7 @@ def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False
         if pa.types.is_timestamp(kind):
             # Before they become floats, which have no digits left for parts of a date in nanoseconds.
             wide = pc.subtract(wide, pc.first(wide))
-        return _floats(wide) / _PER_S[kind.unit]
+        return _floats(wide) / PER_S[kind.unit]
     if pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_dictionary(kind):
         return seconds_of_texts(column)
     if since_first and pa.types.is_integer(kind):

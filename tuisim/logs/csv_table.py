@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,6 +17,7 @@ import pyarrow.csv as pa_csv
 
 from tuisim.logs.arrow import texts_array, unique_names
 from tuisim.logs.blocks import Block
+from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 
 CODED = pa.dictionary(pa.int32(), pa.string())
@@ -295,18 +297,10 @@ class CsvReader:
         """Parse the block with pyarrow; None if a row has another number of cells, or a cell another type."""
         if block.text.isspace() or not block.text:
             return [pa.nulls(0, pa.string()) for _ in self._names]
+        types = {name: kinds.get(name, pa.string()) for name in self._names}
+        options = {"null_values": EMPTY_CELLS, "decimal_point": "," if self._decimal_comma else "."}
         try:
-            table = pa_csv.read_csv(
-                pa.BufferReader(block.text),
-                pa_csv.ReadOptions(column_names=list(self._names), use_threads=False, block_size=len(block.text) + 1),
-                pa_csv.ParseOptions(delimiter=self._separator, newlines_in_values=False),
-                pa_csv.ConvertOptions(
-                    column_types={name: kinds.get(name, pa.string()) for name in self._names},
-                    strings_can_be_null=False,
-                    null_values=EMPTY_CELLS,
-                    decimal_point="," if self._decimal_comma else ".",
-                ),
-            )
+            table = _parsed_csv(block.text, types, pa_csv.ParseOptions(delimiter=self._separator), **options)
         except pa.ArrowInvalid:
             return None
         if b'"' in block.text and table.num_rows != sum(1 for line in block.text.split(b"\n") if line.strip()):
@@ -398,3 +392,37 @@ def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
     # pyarrow counts a line of blanks as a row.
     rows = [row for row, line in enumerate(block.text.split(b"\n"), block.first_row) if line]
     return [rows[at] for at in positions]
+
+
+def _parsed_csv(text: bytes, kinds: Mapping[str, pa.DataType], parse: pa_csv.ParseOptions, **convert: Any) -> pa.Table:
+    """Parse rows without a header; the columns are the keys of `kinds`. Raises ArrowInvalid if a cell does not fit."""
+    return pa_csv.read_csv(
+        pa.BufferReader(text),
+        pa_csv.ReadOptions(column_names=list(kinds), use_threads=False, block_size=len(text) + 1),
+        parse,
+        pa_csv.ConvertOptions(column_types=dict(kinds), strings_can_be_null=False, **convert),
+    )
+
+
+def exported_csv(text: bytes) -> pa.Table:
+    """Return the table in a CSV export, each column with the type that all its cells have.
+
+    Raises:
+        ValueError: the text is not UTF-8, or its rows do not fit its header.
+    """
+    names = next(csv.reader(io.StringIO(text.decode("utf-8"), newline="")), [])
+    texts = _parsed_csv(text, dict.fromkeys(names, pa.string()), pa_csv.ParseOptions(newlines_in_values=True)).slice(1)
+    columns = [texts.column(name) if name in (*TIMEDELTA, *TEXT) else _exact(texts.column(name)) for name in names]
+    return pa.Table.from_arrays(columns, names)
+
+
+def _exact(texts: pa.ChunkedArray) -> pa.ChunkedArray:
+    """Return texts as whole numbers, numbers or truth values if all of them are; empty ones are missing numbers."""
+    cells = pc.if_else(pc.equal(texts, ""), pa.scalar(None, pa.string()), texts)
+    for kind in (pa.int64(), pa.float64()) if len(texts) else (pa.float64(),):
+        try:
+            return cells.cast(kind)
+        except pa.ArrowInvalid:
+            continue
+    truths = pc.is_in(texts, value_set=texts_array(("True", "False")))
+    return pc.equal(texts, "True") if pc.all(truths).as_py() else texts

@@ -9,17 +9,19 @@ from __future__ import annotations
 import ast
 import math
 import operator
+import re
 import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from tuisim.core.comparison import COMPARE, Operator, spelled
 from tuisim.errors import LogError, listed
 from tuisim.runs.arrays import FloatArray
 
 MAX_CHARS = 1000
-ALLOWED = "numbers, columns, + - * / // % ** < <= > >= == != and or not, a if b else c, and functions"
+ALLOWED = f"numbers, columns, + - * / // % ** {spelled()} and or not, a if b else c, and functions"
 
 _BINARY: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -35,14 +37,16 @@ _UNARY: Mapping[type[ast.AST], Callable[[Any], Any]] = {
     ast.UAdd: operator.pos,
     ast.Not: np.logical_not,
 }
-_COMPARE: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
+_OPERATORS: Mapping[type[ast.AST], Operator] = {
+    ast.Lt: Operator.LESS,
+    ast.LtE: Operator.LESS_EQUAL,
+    ast.Gt: Operator.GREATER,
+    ast.GtE: Operator.GREATER_EQUAL,
+    ast.Eq: Operator.EQUAL,
+    ast.NotEq: Operator.NOT_EQUAL,
 }
+_SINGLE_EQUAL = re.compile("(?<![<>=!:])=(?!=)")
+"""Another spelling of `==`."""
 
 
 def _shifted(values: FloatArray) -> FloatArray:
@@ -137,10 +141,12 @@ def _without_backticks(text: str, names: dict[str, str]) -> str:
 
 def _parse(source: str, text: str) -> ast.Expression:
     try:
-        return ast.parse(source.strip(), mode="eval")
+        return ast.parse(_SINGLE_EQUAL.sub("==", source.strip()), mode="eval")
     except SyntaxError as error:
-        where = f" at character {error.offset}" if error.offset else ""
-        raise LogError(f"cannot read the expression {text!r}{where}: {error.msg}") from error
+        at = error.offset or 0
+        where = f" at character {at - len(_SINGLE_EQUAL.findall(source.strip()[:at]))}" if at else ""
+        message = f"cannot read the expression {text!r}{where}: {error.msg}"
+        raise LogError(message, f"allowed are {ALLOWED}") from error
     # ValueError: a null character; the others: nested too deeply for the parser.
     except (ValueError, RecursionError, MemoryError) as error:
         raise LogError(f"cannot read the expression {text[:60]!r}") from error
@@ -183,7 +189,7 @@ class _Evaluation:
                 for part in parts[1:]:
                     value = join(value, self.value(part))
                 return value
-            case ast.Compare(left=left, ops=ops, comparators=others) if all(type(op) in _COMPARE for op in ops):
+            case ast.Compare(left=left, ops=ops, comparators=others) if all(type(op) in _OPERATORS for op in ops):
                 return self._compared([left, *others], ops)
             case ast.IfExp(test=test, body=body, orelse=other):
                 return np.where(self.value(test), self.value(body), self.value(other))
@@ -195,7 +201,7 @@ class _Evaluation:
         values = [self.value(part) for part in parts]
         held: Any = True
         for at, op in enumerate(ops):
-            held = np.logical_and(held, _COMPARE[type(op)](values[at], values[at + 1]))
+            held = np.logical_and(held, COMPARE[_OPERATORS[type(op)]](values[at], values[at + 1]))
         return held
 
     def _named(self, name: str) -> Any:

@@ -16,6 +16,9 @@ from tuisim.logs.arrow import numbers_of, whole_numbers, whole_numbers_of
 from tuisim.logs.columns import ROW, Layout, seconds_of
 from tuisim.runs.arrays import FloatArray, IntArray
 
+LogTable = pa.Table
+"""The type of tables."""
+
 _NO_ROWS: IntArray = np.empty(0, np.int64)
 
 

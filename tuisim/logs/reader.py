@@ -1,4 +1,4 @@
-"""Reading a log piece by piece, so that its beginning can be seen while the rest is still coming."""
+"""Opens logs: files, which are read piece by piece so that their beginning can be shown early, and stored runs."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import pyarrow as pa
 
 from tuisim.errors import LogError
-from tuisim.logs.arrow_files import (
+from tuisim.logs.arrow import (
     ARROW_MAGIC,
     ARROW_STREAM_MAGIC,
     PARQUET_MAGIC,
@@ -23,12 +23,19 @@ from tuisim.logs.arrow_files import (
     parquet_parts,
 )
 from tuisim.logs.blocks import BLOCK_BYTES, MAGIC_BYTES, MAGICS, Block, LineCutter, Readable, unpacked
-from tuisim.logs.columns import UNIT_NAMES, choose_columns, unread_time
-from tuisim.logs.csv_table import CsvReader
-from tuisim.logs.export import companion_of
+from tuisim.logs.columns import UNIT_NAMES, choose_columns, guess_columns, unread_time
+from tuisim.logs.csv_table import CsvReader, exported_csv
+from tuisim.logs.export import ALLOWED, EXPORTERS, companion_of, log_metadata, typed_frame
 from tuisim.logs.log import Log
 from tuisim.logs.text_lines import JsonReader, PrintedReader, looks_printed
+from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
+from tuisim.runs.frames import damage_note, samples_frame, telemetry_frame
+from tuisim.runs.run_folder import StoredRun
+
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 STDIN = "-"
 FIRST_BYTES = 1 << 18
@@ -74,6 +81,44 @@ def open_log(source: str | Path, time: str | None = None, values: Sequence[str] 
         last = loaded.log or last
     assert last is not None
     return last
+
+
+def read_log(path: str | Path) -> pd.DataFrame:
+    """Return the frame in an exported file: the same values and types as were written, to the last bit.
+
+    Raises:
+        LogError: no such file, unknown format, or it cannot be read.
+    """
+    source = Path(path)
+    if source.suffix.lower() not in EXPORTERS:
+        raise LogError(f"unknown format {source.suffix!r}", f"a log ends in {ALLOWED}", file=str(source))
+    if not source.is_file():
+        raise LogError("no such file", file=str(source))
+    notes, binary = Notes(), not EXPORTERS[source.suffix.lower()].companion
+    try:
+        table = _exported(source, notes)
+        frame = table.to_pandas() if binary else typed_frame(table)
+    # A text that is not UTF-8 or no JSON, and all errors of Arrow.
+    except (OSError, ValueError, KeyError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(source)) from error
+    if notes.texts():
+        raise LogError(f"cannot be read: {'; '.join(notes.texts())}", file=str(source))
+    return frame
+
+
+def _exported(source: Path, notes: Notes) -> pa.Table:
+    """Return the table in an exported file; `notes` receives what is wrong with it."""
+    suffix = source.suffix.lower()
+    if suffix == ".csv":
+        return exported_csv(source.read_bytes())
+    if suffix == ".jsonl":
+        table = JsonReader(notes, exact=True).read(Block(1, source.read_bytes()))
+        # Without a row, only the companion file names the columns.
+        names = () if table is not None else _metadata_beside(source).get("columns", ())
+        kinds = {name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names}
+        return pa.schema(kinds).empty_table() if table is None else table
+    parts = parquet_parts if suffix == ".parquet" else arrow_parts
+    return joined([table for _, table in parts(source, notes)])
 
 
 def read_pieces(
@@ -228,3 +273,30 @@ def _reader_for(block: Block, suffix: str, notes: Notes) -> BlockReader:
     if suffix not in _TABLES and looks_printed(lines):
         return PrintedReader(notes)
     return CsvReader(notes)
+
+
+def log_of_runs(runs: Sequence[StoredRun]) -> Log:
+    """Return the samples of one or more runs; a run without any gives an empty log.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    return _log_of_frame("samples", runs, samples_frame(runs))
+
+
+def telemetry_log(run: StoredRun) -> Log:
+    """Return the telemetry of a run.
+
+    Raises:
+        LogError: the recording is damaged, or the mat no longer exists.
+    """
+    return _log_of_frame("telemetry", [run], telemetry_frame(run))
+
+
+def _log_of_frame(kind: str, runs: Sequence[StoredRun], frame: pd.DataFrame) -> Log:
+    table = pa.Table.from_pandas(frame, preserve_index=False).replace_schema_metadata()
+    title = ", ".join(f"run {run.number or run.id}: {run.program.name}" for run in runs)
+    found = [note for run in runs for note in run.notes]
+    if kind == "telemetry":
+        found += filter(None, map(damage_note, runs))
+    return Log(title, table, guess_columns(table), tuple(found), 0, log_metadata(kind, frame, runs))

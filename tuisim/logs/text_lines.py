@@ -19,11 +19,12 @@ class JsonReader:
     """Reads blocks of one file; names and types of the columns are fixed by the first.
 
     Args:
-        notes: Where it says what was wrong.
+        notes: Receives warnings about bad input.
+        exact: Whether each column has the type that all its cells have, as in an export; else texts or numbers.
     """
 
-    def __init__(self, notes: Notes) -> None:
-        self._notes = notes
+    def __init__(self, notes: Notes, exact: bool = False) -> None:
+        self._notes, self._exact = notes, exact
         self._kinds: dict[str, bool] = {}
         """By column, whether it holds numbers; missing while it held nothing."""
 
@@ -56,6 +57,11 @@ class JsonReader:
 
     def _column(self, name: str, found: list[tuple[int, dict[str, Any]]]) -> pa.Array:
         cells = [cells.get(name) for _, cells in found]
+        if self._exact:
+            column = pa.array(cells)
+            # Of numbers and truth values, a missing one is not a number.
+            whole = column.null_count and (pa.types.is_null(column.type) or pa.types.is_boolean(column.type))
+            return column.cast(pa.float64()) if whole else column
         if name not in self._kinds:
             kinds = [_is_number(cell) for cell in cells if cell is not None]
             if not kinds:

@@ -1,9 +1,12 @@
-"""Units from the suffixes of column and variable names."""
+"""What the name of a column says: its type in our own frames, and its unit."""
 
 from __future__ import annotations
 
 import re
 from typing import NamedTuple
+
+TIMEDELTA, TEXT, WHOLE = ("index",), ("variable",), ("run", "line")
+"""Columns of the frames by type; all others are floating-point numbers."""
 
 
 class Unit(NamedTuple):

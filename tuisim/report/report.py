@@ -20,7 +20,7 @@ from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
 from tuisim.logs.export import check_place
 from tuisim.logs.plateaus import Plateau, plateaus
-from tuisim.logs.statistics import QUANTILES
+from tuisim.logs.signals import QUANTILES
 from tuisim.protocol import SetNoise
 from tuisim.report.html import code, facts, page, paragraph, section, table
 from tuisim.runs.arrays import FloatArray

@@ -19,7 +19,8 @@ from tuisim.app.analyser.prompt import LinePrompt
 from tuisim.app.analyser.screen import Analyser
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.logs.export import log_metadata, read_log, read_metadata
+from tuisim.logs.export import log_metadata
+from tuisim.logs.reader import open_log, read_log
 from tuisim.runs.frames import samples_frame
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
@@ -80,7 +81,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
         await until(pilot, lambda: "The report is in" in "".join(note.message for note in pilot.app._notifications))
     frame = samples_frame([run])
     pd.testing.assert_frame_equal(read_log(rows), frame, check_exact=True)
-    assert read_metadata(rows) == json.loads(json.dumps(log_metadata("samples", frame, [run])))
+    assert open_log(rows).metadata == json.loads(json.dumps(log_metadata("samples", frame, [run])))
     ticks = [float(node.text or "nan") for node in ElementTree.parse(svg).iter("{http://www.w3.org/2000/svg}text")
              if (node.text or "").replace(".", "").isdigit() and float(node.attrib["y"]) > 370]  # fmt: skip
     assert ticks and min(ticks) >= first_s > 1.0

@@ -26,7 +26,7 @@ from tuisim.config.program_file import parse_program
 from tuisim.core.spec import NoiseSpec
 from tuisim.errors import LogError
 from tuisim.logs.annotations import NOTES_FILE, read_notes
-from tuisim.logs.export import read_log
+from tuisim.logs.reader import read_log
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore

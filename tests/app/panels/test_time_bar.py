@@ -153,9 +153,9 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
 async def test_words_that_are_no_place_are_answered() -> None:
     table = {
         "": "where to?", "tomorrow": "not an instant", "9999": "run has reached", "tick 99999": "run has reached",
-        "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "not an instant",
+        "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "is not a number",
         "print [": "no regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
-        "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is no number",
+        "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is not a number",
     }  # fmt: skip
     async with a_run() as (_, app):
         app.run_controller.timeline.go(200)

@@ -7,7 +7,7 @@ import pytest
 
 from tuisim.charts.canvas import seen_points, xy_lines
 from tuisim.charts.traces import Pyramid
-from tuisim.logs.statistics import summary_of
+from tuisim.logs.signals import summary_of
 
 TIMES = np.arange(200_000) / 1000.0
 

@@ -10,7 +10,7 @@ from textual.worker import get_current_worker
 
 from tuisim.analysis.table import AT_ONCE, TableTask
 from tuisim.errors import TuisimError
-from tuisim.logs.plateau_process import plateaus_aside
+from tuisim.logs.plateaus import plateaus_aside
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model

@@ -11,8 +11,8 @@ from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.analysis.alignment import DISTANCE
 from tuisim.analysis.events import marks
+from tuisim.analysis.traces import DISTANCE
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at

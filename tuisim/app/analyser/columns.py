@@ -21,10 +21,8 @@ from tuisim.logs.columns import ROW, choose_columns, is_numeric, is_time
 from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
-    import pyarrow as pa
-
     from tuisim.app.analyser.screen import Analyser
-    from tuisim.logs.log import Log
+    from tuisim.logs.log import Log, LogTable
 
 _SHOWN_VALUES, _NAME_CELLS, _VALUE_CELLS = 4, 20, 12
 _COLUMNS_AT_MOST = 500
@@ -48,7 +46,7 @@ def columns_of(log: Log) -> Columns:
     return Columns(log.layout.time, unit, log.layout.values)
 
 
-def candidates(table: pa.Table) -> list[str]:
+def candidates(table: LogTable) -> list[str]:
     """Return the columns that can be time or values."""
     kinds = zip(table.column_names, table.schema.types, strict=True)
     return [name for name, kind in kinds if is_numeric(kind) or is_time(kind)][:_COLUMNS_AT_MOST]

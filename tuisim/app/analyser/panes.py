@@ -18,7 +18,7 @@ from tuisim.analysis.table import AT_ONCE
 from tuisim.app.snapshot import end_label
 from tuisim.charts.text_runs import Line, cut
 from tuisim.logs.bands import Band
-from tuisim.logs.statistics import QUANTILES
+from tuisim.logs.signals import QUANTILES
 
 if TYPE_CHECKING:
     import pandas as pd

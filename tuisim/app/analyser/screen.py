@@ -302,8 +302,7 @@ class Analyser(ActionHost, ClosesOnce[None]):
 
     def _write(self, model: Model, frame: pd.DataFrame | None, target: Path) -> None:
         """Write a frame, or the rows of the table."""
-        from tuisim.logs.export import LOG_FORMAT, export_frame
-        from tuisim.logs.log_export import export_log
+        from tuisim.logs.export import LOG_FORMAT, export_frame, export_log
 
         try:
             if frame is None:

@@ -12,7 +12,7 @@ from tuisim.commands.logs.results import show_rows
 from tuisim.commands.logs.sources import names_of, open_sources
 from tuisim.errors import ConfigError
 from tuisim.logs.bands import band_report, in_words
-from tuisim.logs.statistics import QUANTILES, summary_of
+from tuisim.logs.signals import QUANTILES, summary_of
 
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
 

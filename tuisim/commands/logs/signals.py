@@ -13,18 +13,16 @@ from tuisim.commands.logs.sources import names_of, the_source
 from tuisim.errors import ConfigError
 from tuisim.logs.arrow import numbers_of, unique_names
 from tuisim.logs.columns import is_numeric
-from tuisim.logs.dead_reckoning import reckoned_series
-from tuisim.logs.export import check_target
+from tuisim.logs.derived import reckoned_series
+from tuisim.logs.export import check_target, export_log
 from tuisim.logs.expressions import evaluate
-from tuisim.logs.log import Log, Series
-from tuisim.logs.log_export import export_log
+from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.signals import HOLD, Between, derivative, even_moments, integral, known_at, moving_average
 from tuisim.logs.warnings import Notes
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
     import pandas as pd
-    import pyarrow as pa
 
 
 def _each(arguments: Namespace, column: str, change: Callable[[Series], FloatArray]) -> int:
@@ -122,7 +120,7 @@ def export(arguments: Namespace) -> int:
     return 0
 
 
-def _chosen_part(log: Log, arguments: Namespace) -> pa.Table:
+def _chosen_part(log: Log, arguments: Namespace) -> LogTable:
     """Return the rows of the chosen variables; of a wide log, their columns and those that are not variables."""
     if not arguments.variable:
         return log.table

@@ -12,8 +12,7 @@ from tuisim.commands.progress import tell
 from tuisim.errors import ConfigError, LogError, listed
 from tuisim.logs.columns import choose_columns, time_in_words
 from tuisim.logs.log import Log
-from tuisim.logs.reader import STDIN, read_pieces
-from tuisim.logs.stored_runs import log_of_runs, telemetry_log
+from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
 from tuisim.runs.store import RunStore
 
 

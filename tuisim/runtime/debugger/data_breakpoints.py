@@ -9,7 +9,6 @@ from typing import Any
 
 from tuisim.breakpoints import (
     CHANGES,
-    OPERATORS,
     SEEN,
     Breakpoint,
     PrintBreak,
@@ -18,6 +17,7 @@ from tuisim.breakpoints import (
     TimeBreak,
     ValueBreak,
 )
+from tuisim.core.comparison import COMPARE
 from tuisim.core.sensors import SensorKind, gyro, mounted, ultrasonic
 from tuisim.core.sensors.color import COLOR_NAMES, ColorReading, reading
 from tuisim.core.simulation import NS_PER_S
@@ -55,7 +55,7 @@ class Relation:
         if self._relation == CHANGES:
             before, self._before = self._before, value
             return before is not None and before != value
-        met, self._met = self._met, OPERATORS[self._relation](value, self._number)
+        met, self._met = self._met, COMPARE[self._relation](value, self._number)
         return self._met and not met
 
 

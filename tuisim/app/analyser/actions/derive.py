@@ -9,8 +9,7 @@ from tuisim.analysis.model import RECKONING, derive, take, with_definition
 from tuisim.app.analyser.background import work
 from tuisim.app.analyser.prompt import Form, LinePrompt
 from tuisim.logs.columns import is_numeric
-from tuisim.logs.dead_reckoning import NEEDED
-from tuisim.logs.derived import SIGNALS, TIME
+from tuisim.logs.derived import NEEDED, SIGNALS, TIME
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 
 if TYPE_CHECKING:

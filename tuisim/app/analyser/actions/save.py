@@ -71,8 +71,7 @@ def _file(text: str, hint: str) -> Path:
 
 def _write(screen: Analyser, subject: OpenedLog, target: Path, names: Sequence[str]) -> None:
     """Write the report in the background."""
-    from tuisim.logs.plateau_process import plateaus_aside
-    from tuisim.logs.plateaus import plateaus
+    from tuisim.logs.plateaus import plateaus, plateaus_aside
     from tuisim.report.report import write_report
 
     worker = get_current_worker()

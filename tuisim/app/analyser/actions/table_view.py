@@ -10,6 +10,7 @@ from tuisim.app.analyser.background import work
 from tuisim.app.analyser.panes import PANES
 from tuisim.app.analyser.prompt import LinePrompt
 from tuisim.app.dialogs.save import typed_path
+from tuisim.core.comparison import spelled
 from tuisim.errors import LogError, counted
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ MOST_COPIED = 10_000
 
 _FILES = (("rows.csv", "text"), (".parquet .arrow .jsonl", "the same with all types and what the log says of its runs"))
 _FILTERS = (
-    ("value > 50", "the rows in which that holds; < <= > >= == !="),
+    ("value > 50", f"the rows in which that holds; {spelled()}"),
     ("variable ~ col", "those with that in their text"),
     ("value > 50 and time < 3", "those in which all holds"),
     ("(nothing)", "all rows"),

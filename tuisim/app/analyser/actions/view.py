@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.alignment import TIME
+from tuisim.analysis.traces import TIME
 from tuisim.app.analyser.chart import FACETS_ROWS
 from tuisim.app.analyser.prompt import LinePrompt
 from tuisim.app.analyser.world_at import tells_places
