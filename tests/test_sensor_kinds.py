@@ -23,8 +23,7 @@ from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, Worl
 from tuisim.protocol import Resume
 from tuisim.runs.frames import MOTION_COLUMNS, telemetry_frame
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.mat import open_mat
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import instant_of
 from tuisim.shim.brick import DEVICES

@@ -25,7 +25,7 @@ from tuisim.config.options import Settings
 from tuisim.protocol import End, SetNoise, UserAction
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.packed.compact import compact
+from tuisim.runs.packed_files import compact
 from tuisim.runs.store import RunStore
 
 pytestmark = pytest.mark.usefixtures("home")

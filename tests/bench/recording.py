@@ -18,9 +18,9 @@ from tests.bench.speed import LOADS
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.spec import RunSpec
-from tuisim.runs.handle import RunOptions, field_files, start_run
+from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.rerun import rerun, same
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, field_files
 from tuisim.runs.store import RunStore, compact_run
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program

@@ -20,16 +20,9 @@ from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.runs.catalogue import CATALOGUE_FILE
-from tuisim.runs.records import (
-    ACTIONS_FILE,
-    OUTPUT_FILE,
-    STOP_FILE,
-    TELEMETRY_FILE,
-    OutputWriter,
-    Stream,
-    TelemetryWriter,
-)
+from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter
 from tuisim.runs.run_folder import RUN_FILE
+from tuisim.runs.side_files import ACTIONS_FILE, STOP_FILE
 from tuisim.runs.store import RunStore, compact_run
 
 Damage = Callable[[Path], Any]

@@ -28,13 +28,11 @@ from tuisim.logs.export import export_samples
 from tuisim.logs.reader import read_log
 from tuisim.runs import run_folder
 from tuisim.runs import store as store_module
-from tuisim.runs.handle import RunOptions, field_files, start_run
-from tuisim.runs.packed import packer
-from tuisim.runs.packed.compact import PACKED_SUFFIX
-from tuisim.runs.packed.packer import LOCK_FILE
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.packed_files import PACKED_SUFFIX
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE, OutputWriter, TelemetryWriter
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
+from tuisim.runs.run_folder import StoredRun, field_files
+from tuisim.runs.store import PACKER_LOCK_FILE, PACKERS, RunStore
 from tuisim.runs.views import TelemetryView
 from tuisim.source import Program
 
@@ -220,7 +218,7 @@ def test_ctrl_c_while_the_export_is_written(
 
 def test_answer_does_not_wait_for_the_packing(home: Path) -> None:
     home.mkdir()
-    with open(home / LOCK_FILE, "wb") as lock:
+    with open(home / PACKER_LOCK_FILE, "wb") as lock:
         # As long as another one packs, this run's recording is not.
         fcntl.flock(lock, fcntl.LOCK_EX)
         handle = start_run(Program("p.py", ENDLESS), SPEC, RunOptions(time_limit_s=0.0))
@@ -229,6 +227,6 @@ def test_answer_does_not_wait_for_the_packing(home: Path) -> None:
         assert over(handle).ended.end == "stopped"
         assert handle.stored().state == "stopped"
         assert (handle.folder / TELEMETRY_FILE).exists()
-    for waiting in packer.AT_WORK:
+    for waiting in PACKERS:
         waiting.join()
     assert (handle.folder / (TELEMETRY_FILE + PACKED_SUFFIX)).exists()

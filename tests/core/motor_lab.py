@@ -27,7 +27,7 @@ from tuisim.core.profile import NBEV3DEVSIM
 from tuisim.core.simulation import NS_PER_S, Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
 from tuisim.core.state import TICK_RECORD
-from tuisim.runs.handle import field_files
+from tuisim.runs.run_folder import field_files
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.clock import loop_hook, patch_time
 from tuisim.runtime.control import RunControl

@@ -291,7 +291,7 @@ def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> Non
 
 
 @pytest.mark.parametrize(
-    "module", ["runs.records", "runs.samples", "runs.lock", "runs.views", "runs.store", "logs.export"]
+    "module", ["runs.records", "runs.samples", "runs.side_files", "runs.views", "runs.store", "logs.export"]
 )
 def test_importing_is_light(module: str) -> None:
     code = (

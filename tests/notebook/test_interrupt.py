@@ -76,12 +76,12 @@ def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
 
 
 def test_an_interrupt_before_the_run_leaves_everything_as_it_was(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
-    import tuisim.runs.handle
+    import tuisim.runs.run_folder
 
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell("%%sim_magic -RW\nprint('Colour: 1')\n")
     with monkeypatch.context() as patch:
-        patch.setattr(tuisim.runs.handle, "field_files", striking(tuisim.runs.handle.field_files))
+        patch.setattr(tuisim.runs.run_folder, "field_files", striking(tuisim.runs.run_folder.field_files))
         shown = cell("%%sim_magic -RW -x 900\nprint('never')\n")
     assert (shown.out, shown.err) == ("", "tuisim: interrupted; no program was running\n")
     check_that_all_is_well(cell)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.protocol import End, Ended
-from tuisim.runs.records import ACTIONS_FILE, OutputWriter, Stream, TelemetryWriter
+from tuisim.runs.records import OutputWriter, Stream, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.side_files import ACTIONS_FILE
 from tuisim.runs.store import NewRun, RunStore
 from tuisim.source import Program
 

@@ -17,23 +17,21 @@ from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.errors import LogError
-from tuisim.runs.packed import output_codec, telemetry_codec
-from tuisim.runs.packed.compact import PACKED_SUFFIX, compact
-from tuisim.runs.packed.telemetry_codec import RobotGeometry
+from tuisim.runs import packed_codec
+from tuisim.runs.packed_codec import TICK, RobotGeometry
+from tuisim.runs.packed_files import PACKED_SUFFIX, compact
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
     TELEMETRY_FILE,
-    TICK_FIELDS,
     OutputWriter,
     Stream,
     TelemetryWriter,
 )
 from tuisim.runs.views import OutputView, TelemetryView
 
-KIND = np.dtype(list(TICK_FIELDS))
 SPEC = RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"])
-GEAR = RobotGeometry.of(SPEC)
+GEOMETRY = RobotGeometry.of(SPEC)
 
 
 def _straight(sim: Simulation) -> None:
@@ -120,22 +118,22 @@ def test_every_bit_comes_back(tmp_path: Path, way: str, profile: str, noise: int
 def test_every_bit_comes_back_of_what_no_motion_makes() -> None:
     chance = np.random.default_rng(4)
     for count in (0, 1, 2, 3, 500):
-        records = np.frombuffer(chance.bytes(count * KIND.itemsize), KIND)
-        unfolded = telemetry_codec.unfold(telemetry_codec.fold(records, GEAR), count, GEAR, KIND)
-        assert unfolded.tobytes() == records.tobytes()
-    special = np.zeros(8, KIND)
+        records = chance.bytes(count * TICK.itemsize)
+        assert packed_codec.unfold_ticks(packed_codec.fold_ticks(records, GEOMETRY), count, GEOMETRY) == records
+    special = np.zeros(8, TICK)
     special["x_mm"] = [0.0, -0.0, np.nan, np.inf, -np.inf, 5e-324, 1.7e308, -1.7e308]
     special["left_speed_dps"] = [0.0, -0.0, np.nan, np.inf, -np.inf, 1e-45, 3e38, -3e38]
-    assert telemetry_codec.unfold(telemetry_codec.fold(special, GEAR), 8, GEAR, KIND).tobytes() == special.tobytes()
+    folded = packed_codec.fold_ticks(special.tobytes(), GEOMETRY)
+    assert packed_codec.unfold_ticks(folded, 8, GEOMETRY) == special.tobytes()
 
 
 def test_rows_in_several_pieces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(output_codec, "ROWS_AT_ONCE", 7)
+    monkeypatch.setattr(packed_codec, "ROWS_AT_ONCE", 7)
     _recorded(tmp_path / "run", "moves")
     data = (tmp_path / "run" / OUTPUT_FILE).read_bytes()[HEADER_BYTES:]
-    assert output_codec.unfold(output_codec.fold(data)) == data
+    assert packed_codec.unfold_rows(packed_codec.fold_rows(data)) == data
     with pytest.raises(ValueError, match="torn"):
-        output_codec.fold(data[:-1])
+        packed_codec.fold_rows(data[:-1])
 
 
 def test_a_reader_that_was_there_before_goes_on(tmp_path: Path) -> None:
@@ -259,12 +257,12 @@ def test_left_over_files_go_when_they_are_old(tmp_path: Path) -> None:
     assert not old.exists() and new.exists()
 
 
-def test_the_wrong_gear_costs_bytes_but_no_bits(tmp_path: Path) -> None:
+def test_the_wrong_geometry_costs_bytes_but_no_bits(tmp_path: Path) -> None:
     _recorded(tmp_path / "run", "steered")
     records = TelemetryView(tmp_path / "run").array()
-    wrong = replace(GEAR, mm_per_deg=0.1)
-    unfolded = telemetry_codec.unfold(telemetry_codec.fold(records, wrong), len(records), wrong, KIND)
-    assert unfolded.tobytes() == records.tobytes()
+    wrong = replace(GEOMETRY, mm_per_deg=0.1)
+    folded = packed_codec.fold_ticks(records.tobytes(), wrong)
+    assert packed_codec.unfold_ticks(folded, len(records), wrong) == records.tobytes()
 
 
 def test_what_would_not_come_back_is_not_packed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -272,7 +270,7 @@ def test_what_would_not_come_back_is_not_packed(tmp_path: Path, monkeypatch: pyt
     spec = _recorded(folder, "curves")
     kept = tmp_path / "kept"
     shutil.copytree(folder, kept)
-    monkeypatch.setattr(telemetry_codec, "unfold", lambda *_: np.zeros(1, KIND))
+    monkeypatch.setattr(packed_codec, "unfold_ticks", lambda *_: bytes(TICK.itemsize))
     with pytest.raises(LogError, match="would not come back"):
         compact(folder, spec)
     assert (folder / TELEMETRY_FILE).read_bytes() == (kept / TELEMETRY_FILE).read_bytes()

@@ -14,10 +14,9 @@ from tests.running import Start, over, until_tick
 from tuisim.cli import run_command
 from tuisim.errors import LogError
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.packed import packer
-from tuisim.runs.packed.compact import PACKED_SUFFIX
+from tuisim.runs.packed_files import PACKED_SUFFIX
 from tuisim.runs.records import TELEMETRY_FILE
-from tuisim.runs.store import RunStore, compact_run
+from tuisim.runs.store import PACKERS, RunStore, compact_run
 
 LONG = "tank_drive.on_for_seconds(20, 30, 61)\nprint('Far:', ultrasonic.distance_centimeters)\n"
 SHORT = "tank_drive.on_for_seconds(20, 30, 1)\n"
@@ -32,7 +31,7 @@ def packed(folder: Path) -> bool:
 
 def settle() -> None:
     """Wait until nothing is packed any more."""
-    for waiting in packer.AT_WORK:
+    for waiting in PACKERS:
         waiting.join()
 
 

@@ -20,10 +20,9 @@ from tuisim.core.sensors.color import reading
 from tuisim.core.spec import ColorSensorSpec, NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.core.state import TICK_RECORD, Instant
 from tuisim.errors import LogError
-from tuisim.runs.frames import SAMPLE_COLUMNS, samples_frame, telemetry_frame
+from tuisim.runs.frames import SAMPLE_COLUMNS, quiet_color_columns, samples_frame, telemetry_frame
 from tuisim.runs.records import TELEMETRY_FILE, TICK_FIELDS
 from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.sensor_columns import quiet_color_columns
 from tuisim.runs.views import instant_of
 
 TELEMETRY_COLUMNS = [

@@ -19,8 +19,9 @@ from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPo
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.diff import diff_runs
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.records import STOP_FILE, Stream
+from tuisim.runs.records import Stream
 from tuisim.runs.rerun import rerun, same
+from tuisim.runs.side_files import STOP_FILE
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 

@@ -19,9 +19,9 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import End, Ended, SetNoise, SetPen, Unended, UserAction
 from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo
-from tuisim.runs.lock import hold, is_held
-from tuisim.runs.records import ACTIONS_FILE, OUTPUT_FILE
+from tuisim.runs.records import OUTPUT_FILE
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at
+from tuisim.runs.side_files import ACTIONS_FILE, hold, is_held
 from tuisim.runs.store import RunStore, load_run
 
 FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)

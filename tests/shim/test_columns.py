@@ -6,7 +6,7 @@ import pytest
 
 from tests.shim.conftest import RunOn
 from tuisim.config.mat_cache import open_field
-from tuisim.runs.sensor_columns import sensor_columns
+from tuisim.runs.frames import sensor_columns
 
 PROGRAM = """
 from ev3dev2.motor import *

@@ -342,7 +342,7 @@ def world_at_end(run: StoredRun) -> Image:
         LogError: the recording is damaged, or the mat no longer exists.
     """
     from tuisim.config.mat_cache import mat_pixels
-    from tuisim.runs.mat import mat_files
+    from tuisim.runs.run_folder import mat_files
 
     last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
     # A damaged record may have no valid pose: the robot is then omitted.

@@ -22,8 +22,7 @@ from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError
 from tuisim.notebook.cells import is_notebook
-from tuisim.runs.handle import field_files
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, field_files
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 

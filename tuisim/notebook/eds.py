@@ -53,8 +53,8 @@ def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
 
 
 def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, float]]:
-    from tuisim.runs.mat import open_mat
     from tuisim.runs.records import Stream
+    from tuisim.runs.run_folder import open_mat
 
     field: Field | None = None
     for row in run.output.rows():

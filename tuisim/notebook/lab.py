@@ -163,7 +163,7 @@ class Lab:
         from tuisim.config.options import settings_of
         from tuisim.config.robots import choose_robot
         from tuisim.notebook.magic_line import lasting_after
-        from tuisim.runs.handle import field_files
+        from tuisim.runs.run_folder import field_files
         from tuisim.source import Program
 
         if isinstance(robot := words.settings.get("robot"), str):

@@ -22,7 +22,7 @@ from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, RunState
 
 CATALOGUE_FILE = "runs.db"
-LOCK_FILE = "runs.lock"
+LOCK_FILE = "runs.side_files"
 _SCHEMA_VERSION = 1
 _BUSY_S = 10.0
 

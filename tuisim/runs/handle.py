@@ -16,8 +16,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints
-from tuisim.config import mats
-from tuisim.config.mat_cache import FieldFiles, prepare
+from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.errors import HostError, LogError
 from tuisim.protocol import (
@@ -35,7 +34,6 @@ from tuisim.protocol import (
     Stop,
     UserAction,
 )
-from tuisim.runs.own_modules import copy_modules
 from tuisim.runs.process import (
     await_stack,
     decode_event,
@@ -47,7 +45,8 @@ from tuisim.runs.process import (
     what_ended,
     write_command,
 )
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, field_files
+from tuisim.runs.side_files import copy_modules
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
@@ -356,16 +355,6 @@ class RunHandle:
     def _signal(self, number: int) -> None:
         if self._process.poll() is None:
             self._process.send_signal(number)
-
-
-def field_files(spec: RunSpec) -> FieldFiles:
-    """Prepare the mat of a run for its robot's sensors, unless it is cached.
-
-    Raises:
-        BackgroundError: the mat does not exist, or its image cannot be read.
-    """
-    image = mats.background(spec.world.background).image
-    return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
 
 
 def _here() -> str:

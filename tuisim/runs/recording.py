@@ -17,8 +17,9 @@ from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.handle import program_again
 from tuisim.runs.records import TEXT_STREAMS, OutputRow, Stream
-from tuisim.runs.run_folder import noise_at, read_actions
+from tuisim.runs.run_folder import noise_at
 from tuisim.runs.samples import parse_sample
+from tuisim.runs.side_files import read_actions
 
 if TYPE_CHECKING:
     from tuisim.runs.handle import RunHandle

@@ -23,12 +23,6 @@ from tuisim.atomic import private
 from tuisim.core.state import TICK_RECORD
 from tuisim.errors import LogError
 
-ACTIONS_FILE = "actions.jsonl"
-"""The user's actions, one JSON object per line."""
-
-STOP_FILE = "stop.json"
-"""The tick before which the user's stop reached the program; missing if it was stopped elsewhere."""
-
 HEADER_BYTES = 64
 _HEADER = Struct("<8sIIQ")
 """Magic, format version, record size (0: variable), published length."""

@@ -6,7 +6,6 @@ and modules that are installed or compiled.
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ from tuisim.errors import LogError
 from tuisim.protocol import End, RunState, Stop, Unended, UserAction
 from tuisim.runs.diff import RunDiff, diff_runs
 from tuisim.runs.handle import RunHandle, RunOptions, program_again, start_run
-from tuisim.runs.records import STOP_FILE
+from tuisim.runs.side_files import read_stop_tick
 
 if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
@@ -52,22 +51,13 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
         return diff_runs(run, again, prefix=run.state in CUT_OFF)
     whole = diff_runs(run, again)
     # How far threads get during cleanup depends on the real clock.
-    return whole if whole.same else diff_runs(run, again, prefix=True, until=_stop_tick(run))
+    return whole if whole.same else diff_runs(run, again, prefix=True, until=read_stop_tick(run.folder))
 
 
 def _stopped_by_itself(run: StoredRun) -> bool:
     """Return whether the program obeyed a stop that can be repeated at the same position."""
     # The summary of a run that had to be killed says more than that.
-    return run.end is not None and run.end.summary == "stopped" and _stop_tick(run) is not None
-
-
-def _stop_tick(run: StoredRun) -> int | None:
-    try:
-        return int(json.loads((run.folder / STOP_FILE).read_text("utf-8"))["tick"])
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise LogError(f"cannot be read: {error}", file=str(run.folder / STOP_FILE)) from error
+    return run.end is not None and run.end.summary == "stopped" and read_stop_tick(run.folder) is not None
 
 
 def _options(run: StoredRun) -> RunOptions:
@@ -76,7 +66,7 @@ def _options(run: StoredRun) -> RunOptions:
         raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
     # A run that was stopped might never end by itself; any other ends before the tick after its last.
     enough_s = (last.tick + 1) / run.spec.profile.tick_hz
-    stored, stop_tick = run.options, _stop_tick(run)
+    stored, stop_tick = run.options, read_stop_tick(run.folder)
     stop = () if stop_tick is None else (UserAction(stop_tick, Stop()),)
     try:
         limit_s = float(stored.get("time_limit_s", 0.0))

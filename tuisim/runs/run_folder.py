@@ -1,4 +1,4 @@
-"""A run folder as data: contents of `run.json` and `actions.jsonl`, and the run that they describe."""
+"""A run folder as data: the contents of `run.json`, the run that it describes, and the mat of the run."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tuisim.atomic import replacing
+from tuisim.config.mat_cache import FieldFiles, open_field, prepare
+from tuisim.config.mats import background
+from tuisim.core.field import Field
 from tuisim.core.profile import MotorLaw, law_of_earlier
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
-from tuisim.errors import LogError, TuisimError
+from tuisim.errors import ConfigError, LogError, TuisimError
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
-from tuisim.runs.lock import is_held
-from tuisim.runs.records import ACTIONS_FILE
+from tuisim.runs.side_files import is_held, read_actions
 from tuisim.runs.views import OutputView, TelemetryView, TickRecord
 from tuisim.source import Program
 
@@ -151,32 +153,6 @@ def read_run_file(folder: Path) -> dict[str, Any]:
     return data
 
 
-def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
-    """Return the user's actions, and a note if the last one is incomplete, otherwise an empty string.
-
-    Raises:
-        LogError: a line other than the last is invalid.
-    """
-    path = folder / ACTIONS_FILE
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        return (), ""
-    except OSError as error:
-        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
-    *lines, rest = data.split(b"\n")
-    actions = []
-    for row, line in enumerate(lines, 1):
-        try:
-            action = UserAction.from_plain(json.loads(line))
-            if isinstance(action.command, SetNoise):
-                _noise_of(action.command)
-            actions.append(action)
-        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError, TuisimError) as error:
-            raise LogError("not a user action", file=str(path), row=row) from error
-    return tuple(actions), f"{ACTIONS_FILE}: the last line was torn and is left out" if rest else ""
-
-
 def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
     if not isinstance(value, kind):
         raise TypeError(f"{name} is {value!r}")
@@ -240,3 +216,56 @@ def _model_note(profile: Mapping[str, Any]) -> str:
     return (
         f"recorded with an earlier motor model of the profile {profile['name']}: run again, it may come out otherwise"
     )
+
+
+def field_files(spec: RunSpec) -> FieldFiles:
+    """Prepare the mat of a run for its robot's sensors, unless it is cached.
+
+    Raises:
+        BackgroundError: the mat does not exist, or its image cannot be read.
+    """
+    image = background(spec.world.background).image
+    return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
+
+
+def open_mat(run: StoredRun) -> Field:
+    """Return the mat of a run; prepares it again if it is no longer cached.
+
+    Raises:
+        LogError: the mat no longer exists, or its image has changed.
+    """
+    files = mat_files(run)
+    try:
+        return open_field(files)
+    except ConfigError as error:
+        raise _no_mat(run, error) from error
+
+
+def mat_files(run: StoredRun) -> FieldFiles:
+    """Return the files of the mat that `open_mat` opens; prepares them again if necessary.
+
+    Raises:
+        LogError: as `open_mat`.
+    """
+    try:
+        made_on = None if run.field is None else FieldFiles.from_plain(run.field)
+        if made_on is not None and _all_there(made_on):
+            return made_on
+        found = field_files(run.spec)
+        # The file names are derived from the contents of the image.
+        if made_on is not None and found.pixels.name != made_on.pixels.name:
+            name = run.spec.world.background
+            raise LogError(f"the mat {name} is not the one of the run any more", file=str(background(name).image))
+    except ConfigError as error:
+        raise _no_mat(run, error) from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
+    return found
+
+
+def _no_mat(run: StoredRun, error: ConfigError) -> LogError:
+    return LogError(f"the mat of the run: {error.message}", error.hint, file=str(run.folder))
+
+
+def _all_there(files: FieldFiles) -> bool:
+    return all(path.is_file() for path in (files.pixels, *(path for _, path in files.sums)))

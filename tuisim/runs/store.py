@@ -1,10 +1,18 @@
-"""The run store: one folder for each run, and the catalogue that lists them."""
+"""The run store: one folder for each run, and the catalogue that lists them.
+
+`python -m tuisim.runs.store FOLDER` packs a finished run. Each long run is packed so, in a process of its own, when it
+is over: nothing waits for it, neither the run nor the app, whose threads it would slow down.
+"""
 
 from __future__ import annotations
 
+import fcntl
 import os
 import secrets
 import shutil
+import subprocess
+import sys
+import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -12,16 +20,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from tuisim.atomic import make_private_folder
+from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
 from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, Ended, Unended
 from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
-from tuisim.runs.lock import is_held
-from tuisim.runs.packed.compact import compact
-from tuisim.runs.packed.packer import pack_later
+from tuisim.runs.packed_files import compact
 from tuisim.runs.run_folder import (
     RUN_FILE,
     RUN_FORMAT,
@@ -32,6 +38,7 @@ from tuisim.runs.run_folder import (
     write_run_file,
 )
 from tuisim.runs.samples import counts_of
+from tuisim.runs.side_files import is_held
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
@@ -46,6 +53,13 @@ _COUNT_A_LISTING_BYTES = 8 << 20
 COMPACT_TICKS = 6000
 """A run of at least this many ticks is packed in a separate process as soon as it is over; shorter runs gain
 little."""
+
+PACKER_LOCK_FILE = "packer.lock"
+PACKERS: list[threading.Thread] = []
+"""Each waits for the end of a packer that this process has started."""
+
+_NICENESS = 10
+"""Increment of a packer's niceness."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -458,3 +472,35 @@ def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
     except (LogError, KeyError, TypeError):
         return replace(info, ticks=last.tick)
     return replace(info, ticks=last.tick, time_s=-(-last.tick * NS_PER_S // tick_hz) / NS_PER_S)
+
+
+def pack_later(folder: Path) -> None:
+    """Pack the recordings of a run and count its samples in the background; errors are ignored."""
+    PACKERS[:] = [waiting for waiting in PACKERS if waiting.is_alive()]
+    with suppress(OSError):
+        packer = subprocess.Popen(
+            [sys.executable, "-s", "-P", "-m", "tuisim.runs.store", str(folder)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": str(Path(__file__).parent.parent.parent)},
+            cwd="/",
+            start_new_session=True,
+        )
+        PACKERS.append(threading.Thread(target=packer.wait, daemon=True))
+        PACKERS[-1].start()
+
+
+def pack(folder: Path) -> None:
+    """Pack the recordings of one run, after other packers have finished."""
+    os.nice(_NICENESS)
+    home = folder.parent.parent
+    # On failure it stays unpacked; `tuisim runs compact` shows the error.
+    with suppress(LogError, OSError), open(home / PACKER_LOCK_FILE, "ab", opener=private) as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        RunStore(home).count_samples(folder.name)
+        compact_run(read_run(folder))
+
+
+if __name__ == "__main__":
+    pack(Path(sys.argv[1]))

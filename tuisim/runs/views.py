@@ -8,7 +8,7 @@ contents are needed. Data that has been read stays valid, whatever happens to th
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import TICK_RECORD, Instant
 from tuisim.errors import LogError, counted
-from tuisim.runs.packed.compact import Packed, find_packed
+from tuisim.runs.packed_files import Packed, find_packed
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
@@ -119,6 +119,17 @@ class _Recording:
             self._read_on()
         return self._published, self._there
 
+    def note(self, lost: Callable[[int, int], str]) -> str:
+        """Return a description of what is missing, or empty.
+
+        Args:
+            lost: Returns the description if the file was cut off, from what is lost and what was published.
+        """
+        published, there = self.extent()
+        if self.damage or published == there:
+            return self.damage
+        return f"{self._path.name} was cut off: {lost(published - there, published)}"
+
     def known(self, count: int) -> memoryview | None:
         """Return the recording if `count` records that can no longer change have been read, else None."""
         if self.packed is not None or (count >= self._there and not self._unpacked):
@@ -205,15 +216,7 @@ class TelemetryView:
     @property
     def note(self) -> str:
         """A description of what is missing in a truncated file, or empty."""
-        published, there = self._file.extent()
-        if self._file.damage:
-            return self._file.damage
-        lost = published - there
-        return (
-            f"{TELEMETRY_FILE} was cut off: the last {lost} of {published} records {'is' if lost == 1 else 'are'} lost"
-            if lost
-            else ""
-        )
+        return self._file.note(lambda lost, of: f"the last {lost} of {of} records {'is' if lost == 1 else 'are'} lost")
 
     def last(self) -> TickRecord | None:
         """Return the newest record; None if there is none."""
@@ -274,11 +277,7 @@ class OutputView:
     @property
     def note(self) -> str:
         """A description of what is missing in a truncated file, or empty."""
-        published, there = self._file.extent()
-        if self._file.damage:
-            return self._file.damage
-        lost = published - there
-        return f"{OUTPUT_FILE} was cut off: its last {counted(lost, 'byte is', 'bytes are')} lost" if lost else ""
+        return self._file.note(lambda lost, _: f"its last {counted(lost, 'byte is', 'bytes are')} lost")
 
     def new_rows(self, limit: int | None = None) -> list[OutputRow]:
         """Return the rows since the last call, at most `limit`; the others follow with the next call."""

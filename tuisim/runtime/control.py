@@ -20,7 +20,7 @@ from tuisim.atomic import private
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Answer, End, Message, PauseReason, Reply, UserAction
-from tuisim.runs.records import ACTIONS_FILE, STOP_FILE
+from tuisim.runs.side_files import ACTIONS_FILE, write_stop_tick
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 
@@ -313,8 +313,8 @@ class RunControl:
     def write_down_stop(self, tick: int) -> None:
         """Record that the stop reaches the program right before the tick after `tick`."""
         # Without it a re-run compares what both runs have.
-        with suppress(OSError), open(self._folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
-            file.write(json.dumps({"tick": tick}))
+        with suppress(OSError):
+            write_stop_tick(self._folder, tick)
 
     def _write_down(self, tick: int, action: Message) -> None:
         if self._actions_fd < 0:

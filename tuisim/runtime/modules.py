@@ -11,7 +11,7 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from pathlib import Path
 from typing import Any, NoReturn
 
-from tuisim.runs.own_modules import OwnModule, note_module, read_modules
+from tuisim.runs.side_files import OwnModule, note_module, read_modules
 from tuisim.runtime.interrupts import PACKAGE_FOLDER
 
 _FOREIGN = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)

@@ -17,10 +17,9 @@ from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.runs.brick_state import LED_NAMES, led_row
 from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.mat import open_mat
 from tuisim.runs.recording import ERROR, SAMPLE, Recording, RowIndex
 from tuisim.runs.records import OutputWriter, Stream
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView
 

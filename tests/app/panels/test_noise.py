@@ -14,7 +14,7 @@ from tuisim.app.snapshot import ENDED, RUNNING
 from tuisim.app.widgets.slider import Slider
 from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import SetNoise
-from tuisim.runs.run_folder import read_actions
+from tuisim.runs.side_files import read_actions
 
 SHOWN = frozenset({"noise"})
 

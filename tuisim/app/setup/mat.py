@@ -66,7 +66,7 @@ def prepare_mat_of(run: StoredRun) -> Mat:
     Raises:
         LogError: it is no longer available.
     """
-    from tuisim.runs.mat import mat_files
+    from tuisim.runs.run_folder import mat_files
 
     return _opened(mat_key(run.spec), mat_files(run))
 

@@ -17,15 +17,12 @@ from tuisim.atomic import replacing, sweep
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import TICK_RECORD
 from tuisim.errors import LogError
-from tuisim.runs.packed import output_codec, telemetry_codec
-from tuisim.runs.packed.telemetry_codec import RobotGeometry
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
     OUTPUT_MAGIC,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
-    TICK_FIELDS,
     header,
     published_length,
 )
@@ -49,7 +46,8 @@ class Packed:
     length: int
     """Number of records of telemetry, number of bytes of output."""
     packed_bytes: int
-    gear: RobotGeometry
+    geometry: tuple[float, ...]
+    """The fields of `packed_codec.RobotGeometry`."""
     last_record: bytes
     """The last telemetry record; zeros for output, and if there is none."""
 
@@ -73,11 +71,12 @@ class Packed:
         return header(*_form(self.path.name.removesuffix(PACKED_SUFFIX)), self.length) + content
 
     def _unfolded(self, data: bytes) -> bytes:
-        import numpy as np
+        # Imported here and below: numpy is needed only for packed recordings.
+        from tuisim.runs import packed_codec
 
         if self.path.name.startswith(OUTPUT_FILE):
-            return output_codec.unfold(data)
-        return telemetry_codec.unfold(data, self.length, self.gear, np.dtype(list(TICK_FIELDS))).tobytes()
+            return packed_codec.unfold_rows(data)
+        return packed_codec.unfold_ticks(data, self.length, packed_codec.RobotGeometry(*self.geometry))
 
 
 def find_packed(path: Path) -> Packed | None:
@@ -108,7 +107,7 @@ def find_packed(path: Path) -> Packed | None:
         raise LogError(f"format version {version}, this tuisim reads {PACKED_VERSION}", file=str(packed))
     if check != zlib.crc32(head[: _HEADER.size]):
         raise LogError("the packed recording is damaged: its header is not as it was written", file=str(packed))
-    return Packed(packed, checksum, length, size, RobotGeometry(*numbers), last)
+    return Packed(packed, checksum, length, size, tuple(numbers), last)
 
 
 def compact(folder: Path, spec: RunSpec) -> None:
@@ -124,18 +123,18 @@ def compact(folder: Path, spec: RunSpec) -> None:
     for name in PACKED_MAGIC:
         path = folder / name
         try:
-            _compact_file(path, RobotGeometry.of(spec))
+            _compact_file(path, spec)
             sweep(folder, name + PACKED_SUFFIX)
         except OSError as error:
             raise LogError(f"cannot be packed: {error.strerror or error}", file=str(path)) from error
 
 
-def _compact_file(path: Path, gear: RobotGeometry) -> None:
+def _compact_file(path: Path, spec: RunSpec) -> None:
     try:
         data = path.read_bytes()
     except FileNotFoundError:
         return
-    packed = _packed(path, data, gear)
+    packed = _packed(path, data, spec)
     if packed is None:
         return
     with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True) as handle:
@@ -144,9 +143,9 @@ def _compact_file(path: Path, gear: RobotGeometry) -> None:
     path.unlink(missing_ok=True)
 
 
-def _packed(path: Path, data: bytes, gear: RobotGeometry) -> bytes | None:
+def _packed(path: Path, data: bytes, spec: RunSpec) -> bytes | None:
     """Return the bytes of the packed file; None for a recording that cannot be packed because its end is missing."""
-    import numpy as np
+    from tuisim.runs import packed_codec
 
     magic, record_bytes = _form(path.name)
     length = published_length(data, magic, str(path))
@@ -154,22 +153,21 @@ def _packed(path: Path, data: bytes, gear: RobotGeometry) -> bytes | None:
     content = data[HEADER_BYTES:end]
     if end > len(data):
         return None
-    last = bytes(TICK_RECORD.size)
+    geometry, last = packed_codec.RobotGeometry.of(spec), bytes(TICK_RECORD.size)
     if path.name == TELEMETRY_FILE:
-        kind = np.dtype(list(TICK_FIELDS))
-        folded = telemetry_codec.fold(np.frombuffer(content, kind), gear)
-        back = telemetry_codec.unfold(folded, length, gear, kind).tobytes()
+        folded = packed_codec.fold_ticks(content, geometry)
+        back = packed_codec.unfold_ticks(folded, length, geometry)
         last = content[-TICK_RECORD.size :] or last
     else:
         try:
-            folded = output_codec.fold(content)
+            folded = packed_codec.fold_rows(content)
         except ValueError as error:
             raise LogError(str(error), file=str(path)) from error
-        back = output_codec.unfold(folded)
+        back = packed_codec.unfold_rows(folded)
     if back != content:
         raise LogError("cannot be packed: it would not come back as it is", file=str(path))
     head = _HEADER.pack(
-        PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), *astuple(gear), last
+        PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), *astuple(geometry), last
     )
     return head + _CHECK.pack(zlib.crc32(head)) + folded
 

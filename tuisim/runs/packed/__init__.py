@@ -1,1 +1,0 @@
-"""Lossless compression of finished runs, to a few bytes per tick."""

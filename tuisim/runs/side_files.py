@@ -1,0 +1,178 @@
+"""The small files of a run folder: its lock, the user's actions, the place of a stop, the program's own modules.
+
+Pure Python: the child, which writes them, imports it.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import shutil
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from tuisim.atomic import private
+from tuisim.core.spec import NoiseSpec
+from tuisim.errors import LogError, TuisimError
+from tuisim.protocol import SetNoise, UserAction
+
+LOCK_FILE = "lock"
+"""Locked by the process that runs the program, as long as it lives.
+
+The kernel releases the lock when the process ends in any way, which distinguishes a run without an end from one that
+is still running.
+"""
+
+ACTIONS_FILE = "actions.jsonl"
+"""The user's actions, one JSON object per line."""
+
+STOP_FILE = "stop.json"
+"""The tick before which the user's stop reached the program; missing if it was stopped elsewhere."""
+
+MODULES_FILE = "modules.jsonl"
+"""Copies of the program's own modules that it has imported, one JSON object per line.
+
+They allow repeating the run after the modules have changed or are gone.
+"""
+
+
+def hold(folder: Path) -> int:
+    """Acquire the lock of a run folder and return its file descriptor; closing it releases the lock.
+
+    Blocks instead of failing: `is_held` acquires the lock for a moment.
+    """
+    descriptor = private(str(folder / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+    fcntl.flock(descriptor, fcntl.LOCK_EX)
+    return descriptor
+
+
+def is_held(folder: Path) -> bool | None:
+    """Return whether a living process holds the lock; None if it was never acquired."""
+    try:
+        descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_CLOEXEC)
+    except OSError:
+        return None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
+
+
+def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
+    """Return the user's actions, and a note if the last one is incomplete, otherwise an empty string.
+
+    Raises:
+        LogError: a line other than the last is invalid.
+    """
+    path = folder / ACTIONS_FILE
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return (), ""
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
+    *lines, rest = data.split(b"\n")
+    actions = []
+    for row, line in enumerate(lines, 1):
+        try:
+            action = UserAction.from_plain(json.loads(line))
+            if isinstance(action.command, SetNoise):
+                NoiseSpec(int(action.command.light), int(action.command.motor))
+            actions.append(action)
+        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError, TuisimError) as error:
+            raise LogError("not a user action", file=str(path), row=row) from error
+    return tuple(actions), f"{ACTIONS_FILE}: the last line was torn and is left out" if rest else ""
+
+
+def write_stop_tick(folder: Path, tick: int) -> None:
+    """Record the tick before which the user's stop reached the program.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    with open(folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
+        file.write(json.dumps({"tick": tick}))
+
+
+def read_stop_tick(folder: Path) -> int | None:
+    """Return the tick before which the user's stop reached the program; None if it was not stopped there.
+
+    Raises:
+        LogError: the file is damaged.
+    """
+    try:
+        return int(json.loads((folder / STOP_FILE).read_text("utf-8"))["tick"])
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(folder / STOP_FILE)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class OwnModule:
+    """Result of one import of a name."""
+
+    name: str
+    """Full name with packages, such as `tools.drive`."""
+    file: str = ""
+    """Its file; empty for a folder without a file, and for a name that was not found."""
+    folders: tuple[str, ...] | None = None
+    """Of a package: the folders of its modules."""
+    text: str = ""
+    """The source; bytes that are not valid UTF-8 as lone surrogates."""
+
+    @property
+    def missing(self) -> bool:
+        """Whether no module of that name was found."""
+        return not self.file and self.folders is None
+
+
+def note_module(run_folder: Path, module: OwnModule) -> None:
+    """Add a module to those of a run.
+
+    Raises:
+        LogError: it cannot be written.
+    """
+    try:
+        with open(run_folder / MODULES_FILE, "ab", opener=private) as file:
+            file.write(json.dumps(asdict(module)).encode() + b"\n")
+    except OSError as error:
+        raise LogError(f"cannot be written: {error.strerror or error}", file=str(run_folder / MODULES_FILE)) from error
+
+
+def read_modules(run_folder: Path) -> list[OwnModule]:
+    """Return the modules of a run in the order of their import; an incomplete last one is ignored.
+
+    Raises:
+        LogError: the file is damaged.
+    """
+    path = run_folder / MODULES_FILE
+    try:
+        *lines, _ = path.read_bytes().split(b"\n")
+        rows = [json.loads(line) for line in lines]
+        return [
+            OwnModule(row["name"], row["file"], None if row["folders"] is None else tuple(row["folders"]), row["text"])
+            for row in rows
+        ]
+    except FileNotFoundError:
+        return []
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(path)) from error
+
+
+def copy_modules(source: Path, target: Path) -> None:
+    """Copy the modules of another run, if it has any.
+
+    Raises:
+        LogError: they cannot be copied.
+    """
+    try:
+        with suppress(FileNotFoundError):
+            shutil.copy2(source / MODULES_FILE, target / MODULES_FILE)
+    except OSError as error:
+        raise LogError(f"cannot be copied: {error.strerror or error}", file=str(source / MODULES_FILE)) from error
