@@ -11,7 +11,7 @@ Limits = tuple[float, float]
 
 def nice_step(span: float, count: int) -> float:
     """Return a round distance that divides `span` (above 0) into about `count` parts, at most."""
-    # Parts of the smallest numbers come out as nothing.
+    # A part of the smallest numbers would be 0.
     rough = max(span / max(count, 1), 1e-300)
     magnitude = 10.0 ** math.floor(math.log10(rough))
     return next(step * magnitude for step in _STEPS if step * magnitude >= rough * 0.999)
@@ -23,13 +23,13 @@ def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
     Args:
         low: The least value.
         high: The greatest one.
-        from_zero: Whether 0 is to be seen.
+        from_zero: Whether the limits must include 0.
     """
     if from_zero:
         low = min(low, 0.0)
     size = max(abs(low), abs(high), 1.0)
     if high - low < 1e-9 * size:
-        # One more or less would make no difference to a number with more than sixteen digits.
+        # Adding 1 does not change a number with more than sixteen digits.
         room = max(1.0, 1e-6 * size)
         low, high = low - room, high + room
     step = nice_step(high - low, 4)
@@ -51,16 +51,11 @@ def label(value: float, step: float) -> str:
     return "0" if float(text) == 0 else text
 
 
-__all__ = [
-    "Limits", "at_column", "column_of", "growing_limits", "label", "nice_step", "row_labels", "ticks", "time_axis",
-    "time_limits", "value_limits",
-]  # fmt: skip
-
 _SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)
 
 
 def growing_limits(end_s: float) -> Limits:
-    """Return limits from 0 to soon after `end_s`, which grow in steps: a curve is not squeezed by each new point."""
+    """Return limits from 0 to shortly after `end_s`; they grow in steps, so that a new point rarely rescales curves."""
     step = nice_step(max(end_s, 1.0), 8)
     return 0.0, max(math.ceil(end_s / step - 1e-9) * step, 1.0)
 
@@ -92,7 +87,7 @@ def row_labels(limits: Limits, rows: int) -> dict[int, str]:
     """Return labels of a vertical axis by row, 0 at the top."""
     low, high = limits
     if rows < 7:
-        # Limits are round: the two ends say more than one tick somewhere between them.
+        # Limits are round numbers: labels at both ends are more useful than one tick between them.
         step = nice_step(high - low, 4)
         return {rows - 1: label(low, step), 0: label(high, step)}
     positions = ticks(limits, min(6, (rows - 1) // 2))

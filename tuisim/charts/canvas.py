@@ -44,7 +44,7 @@ def _plotext() -> Any:
     # Costs more than the rest of the app's start: imported when the first curve is drawn.
     import plotext
 
-    # Otherwise a chart is cut to what plotext takes for the size of the terminal.
+    # Otherwise plotext crops a chart to what it detects as the size of the terminal.
     plotext.terminal.limit(False, False)
     return plotext
 
@@ -84,7 +84,7 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
 
 
 def _runs(line: str, columns: int) -> list[TextRun]:
-    """Read a row with colour codes; it is cut or filled to `columns`."""
+    """Parse a row with colour codes; crop or pad it to `columns`."""
     runs: list[TextRun] = []
     rgb: Rgb | None = None
     left = columns
@@ -110,7 +110,7 @@ _DOTS_X, _DOTS_Y = 2, 4
 def seen_points(
     xs: FloatArray, ys: FloatArray, limits: Sequence[axes.Limits], columns: int, rows: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a path that a canvas can tell apart: of neighbours at the same dot only the first.
+    """Return the points of a path that a canvas can distinguish: only the first of neighbours at the same dot.
 
     Args:
         xs, ys: Finite, shape (n,).
@@ -123,7 +123,7 @@ def seen_points(
     dots = across * (_DOTS_Y * rows) + up
     moved = np.flatnonzero(np.diff(dots, prepend=dots[:1] - 1))
     if len(moved) > len(np.unique(dots)) * 4:
-        # It goes to and fro so often that no line could be followed: each dot once.
+        # The path moves to and fro so often that no line is discernible: draw each dot once.
         moved = np.unique(dots, return_index=True)[1]
     return xs[moved], ys[moved]
 
@@ -142,7 +142,7 @@ def xy_lines(
 
     Args:
         xs, ys: Shape (n,); pairs that are not finite are left out.
-        here: Which of the points is looked at, None for none.
+        here: Index of the point to mark, None for none.
         names: Of x and of y.
         rgb: Colour of the curve.
         marker: `braille`, or one character.

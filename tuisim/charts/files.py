@@ -82,15 +82,15 @@ def format_of(path: Path) -> ChartFormat:
 
 
 def save_chart(chart_of: Callable[[int, int], Chart], path: Path, size: Size | None = None) -> None:
-    """Write a chart to a file; one that is there is replaced.
+    """Write a chart to a file, replacing an existing one.
 
     Args:
         chart_of: Returns the chart for a width and a height, in pixels or in parts of characters.
-        path: The suffix says the format, one of `CHART_FORMATS`.
+        path: Its suffix selects the format, one of `CHART_FORMATS`.
         size: Width and height in the format's unit; None for its own.
 
     Raises:
-        ExportError: the file cannot be written; what was there is as it was.
+        ExportError: the file cannot be written; an existing one is unchanged.
         LogError: no such variable to draw against.
     """
     kind = format_of(path)
@@ -105,7 +105,7 @@ def write_whole(path: Path, content: bytes) -> None:
     """Write a file atomically.
 
     Raises:
-        ExportError: it cannot be written; what was there is as it was.
+        ExportError: it cannot be written; an existing file is unchanged.
     """
     try:
         with replacing(path) as handle:
@@ -116,8 +116,8 @@ def write_whole(path: Path, content: bytes) -> None:
 
 _SVG_INK, _SVG_PAPER = "#222", "#fff"
 _FONT = "system-ui, sans-serif"
-_NOWHERE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
-"""Control characters, halves of surrogate pairs, and what is no character at all."""
+_INVALID = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
+"""Control characters, lone surrogates and noncharacters."""
 
 
 def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
@@ -125,7 +125,7 @@ def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
 
     Args:
         drawing: The picture.
-        inside: Whether it becomes a part of a page, whose colours it then takes, instead of a file.
+        inside: Whether it is embedded in a page and uses its colours, instead of being a file.
     """
     size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'
     look = f'font-family="{_FONT}" font-size="{FONT_PX}" role="img"'
@@ -141,8 +141,8 @@ def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
 
 
 def clean(text: str) -> str:
-    """Return a text as XML and HTML take it; characters that have no place in either become a question mark."""
-    return escape(_NOWHERE.sub("\ufffd", text))
+    """Return a text escaped for XML and HTML; characters invalid in either become U+FFFD."""
+    return escape(_INVALID.sub("\ufffd", text))
 
 
 def _hex(rgb: Rgb) -> str:
@@ -167,7 +167,7 @@ def _svg_shape(shape: Shape) -> str:
             points = [f"{x:.1f} {y:.1f}" for x, y in shape.points.tolist()]
             color = _hex(shape.rgb)
             if shape.dots:
-                # A line of no length with round ends is a point, and a few letters long.
+                # A line of length 0 with round ends is a point, and short to write.
                 path = "".join(f"M{point}h0" for point in points)
                 return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="5" stroke-linecap="round"/>'
             path = "M" + "L".join(points)
@@ -176,7 +176,7 @@ def _svg_shape(shape: Shape) -> str:
 
 _INK, _FAINT, _SHADE = (34, 34, 34), (222, 222, 222), (238, 238, 238)
 _FINE = 2
-"""Times as large it is drawn and then reduced, for smooth lines."""
+"""The image is drawn this many times larger and then reduced, for smooth lines."""
 _ANCHORS = {"start": "lm", "middle": "mm", "end": "rm"}
 
 
@@ -199,7 +199,7 @@ def _paint(draw: ImageDraw, shape: Shape, font: FreeTypeFont | BitmapFont) -> No
             draw.line(ends, fill=_FAINT if shape.faint else _INK, width=_FINE)
         case Words():
             x, y = shape.x * _FINE, shape.y * _FINE
-            # The font has one weight: what is strong is written once more, half a pixel beside.
+            # The font has one weight: bold text is drawn twice, half a pixel apart.
             for place in ((x, y), (x + 1, y))[: 1 + shape.strong]:
                 draw.text(place, shape.text, fill=shape.rgb or _INK, font=font, anchor=_ANCHORS[shape.anchor])
         case Shade():

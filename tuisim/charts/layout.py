@@ -111,13 +111,13 @@ class Words:
     anchor: str = "start"
     """Anchor at x: `start`, `middle` or `end`."""
     rgb: Rgb | None = None
-    """None for the colour of the writing."""
+    """None for the default text colour."""
     strong: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Shade:
-    """An area that is set off."""
+    """A shaded area."""
 
     x: float
     y: float
@@ -150,7 +150,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """A rectangle that data are drawn in."""
+    """The rectangle in which data are drawn."""
 
     left: float
     top: float
@@ -175,9 +175,9 @@ def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> D
     """Return the picture of a chart.
 
     Args:
-        chart: What is to be seen.
+        chart: The chart.
         width, height: Size in pixels.
-        titled: Whether the title stands above it.
+        titled: Whether to draw the title above it.
     """
     shapes: list[Shape] = []
     top: float = _PAD
@@ -220,19 +220,19 @@ def _cut(text: str, width_px: float) -> str:
 
 
 def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape], int]:
-    """A stroke and the name of each line, and which have the scale on the right; how many lines of text that takes."""
+    """Return the legend and its number of text lines: a stroke and a name per line, and which use the right scale."""
     shapes: list[Shape] = []
     x, row = float(_PAD), 0
     two = _with_two_scales(lines)
     for line in lines:
         text = _cut(line.label + (", right scale" if two and line.other_scale else ""), width - 2 * _PAD - 30)
-        taken = 30 + len(text) * _LETTER_PX
-        if x > _PAD and x + taken > width - _PAD:
+        width_px = 30 + len(text) * _LETTER_PX
+        if x > _PAD and x + width_px > width - _PAD:
             x, row = float(_PAD), row + 1
         y = top + (row + 0.5) * _LINE_PX
         shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), color_of(line)))
         shapes.append(Words(x + 28, y, text))
-        x += taken + 14
+        x += width_px + 14
     return shapes, row + 1 if lines else 0
 
 
@@ -273,7 +273,7 @@ def _limits(lines: Sequence[Line], zoomed: bool) -> Limits:
 
 
 def _labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
-    """Round positions between limits and how they are written."""
+    """Return round positions between limits, with their labels."""
     positions = ticks(limits, max(count, 1))
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
     texts = [label(at, step) for at in positions]
@@ -283,7 +283,7 @@ def _labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
 
 
 def _widest(limits: Limits) -> float:
-    # The number of ticks follows from the height; twenty have the longest labels of all.
+    # The number of ticks depends on the height; with twenty, labels are longest.
     return max((len(text) for _, text in _labelled(limits, 20)), default=1) * _LETTER_PX + 8
 
 

@@ -17,7 +17,7 @@ LEAST_ROWS = 8
 
 
 class _Drawn(Traces):
-    """The lines of a chart as the painter of charts takes them."""
+    """The lines of a chart as traces for `ChartPainter`."""
 
     def __init__(self, lines: tuple[Line, ...]) -> None:
         super().__init__()
@@ -31,9 +31,9 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
     """Return a chart as text of a given size in characters.
 
     Args:
-        chart: What is to be seen.
-        width, height: Size in characters; facets take more lines if they must.
-        colors: Whether colours tell the lines apart, otherwise marks do.
+        chart: The chart.
+        width, height: Size in characters; facets use more lines if necessary.
+        colors: Whether colours distinguish the lines; otherwise marks do.
     """
     shown: list[list[Run]] = []
     if chart.path:

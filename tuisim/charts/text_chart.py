@@ -43,13 +43,13 @@ class ChartState:
     """Fixed limits while the chart is frozen, None to follow."""
     grey: bool = False
     other_s: float | None = None
-    """A second cursor, that the first is measured from."""
+    """The second cursor; distances are measured from it."""
     unit: str = "s"
-    """Of the horizontal axis."""
+    """Unit of the horizontal axis."""
     marks: bool = False
     """Draw the points as marks, not joined by lines."""
     grows: bool = False
-    """Whether more is to come, so that the horizontal axis goes on a little beyond the data."""
+    """Whether more data may follow, so that the horizontal axis extends a little beyond them."""
     zoomed: bool = False
     """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
@@ -86,7 +86,7 @@ class ChartPicture:
 
 @dataclass(slots=True)
 class ChartPainter:
-    """Draws charts; the canvas is kept for as long as its points and limits stay."""
+    """Draws charts; the canvas is cached while its points and limits stay the same."""
 
     _key: object = field(default=None, init=False)
     _canvas: list[list[TextRun]] = field(default_factory=list, init=False)
@@ -234,7 +234,7 @@ def _tick_boxes(
         made.append(runs)
     hidden = len(lines) - first - len(shown), first
     if made and any(hidden):
-        # More above, below, or both; the arrows have two columns of their own.
+        # More lines above, below, or both; two columns are reserved for the arrow.
         space = width - 1 - sum(len(text) for text, _ in made[-1])
         arrow = "↕" if all(hidden) else "↓" if hidden[0] else "↑"
         made[-1].append((" " * max(space, 0) + arrow, _AXIS))
@@ -249,7 +249,7 @@ def _box_runs(text: str, trace: Trace, selected: bool, grey: bool) -> list[Run]:
 
 
 def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> list[Run]:
-    """Return the line that says what each trace is at a time, as many as there is room for."""
+    """Return a line with the value of each trace at a time, as many as fit."""
     line: list[Run] = [(f"{cursor_s:.2f} {unit}", _STRONG)]
     used = len(line[0][0])
     for at, trace in enumerate(drawn):

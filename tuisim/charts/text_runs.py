@@ -31,7 +31,7 @@ def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
         if left < 0:
             return kept
         if left == 0:
-            # It is the next piece that is cut away: this one tells of it.
+            # The next piece is cut off completely, so this one gets the ellipsis.
             kept[-1] = (text[:-1] + "…", style)
             return kept
     return kept

@@ -53,7 +53,7 @@ class Trace:
         return self._values[: self._count]
 
     def add(self, times_s: Sequence[float], values: Sequence[float]) -> None:
-        """Append points; what is not a number is left out."""
+        """Append points; those that are not finite are left out."""
         new_times, new_values = np.array(times_s, float), np.array(values, float)
         good = np.isfinite(new_times) & np.isfinite(new_values)
         new_times, new_values = new_times[good], new_values[good]
@@ -66,7 +66,7 @@ class Trace:
         late = self._count and len(new_times) and new_times[0] < self._times_s[self._count - 1]
         self._count = end
         if late or (np.diff(new_times) < 0).any():
-            # A program may log times of its own; looking up needs them in order.
+            # A program may log its own times; lookups need them sorted.
             order = np.argsort(self.times_s, kind="stable")
             self._times_s[:end], self._values[:end] = self.times_s[order], self.values[order]
 
@@ -76,7 +76,7 @@ class Trace:
         return float(self._values[index]) if index >= 0 else None
 
     def clear(self) -> None:
-        """Drop the points; tick and colour stay."""
+        """Remove the points; keep visibility and colour."""
         self._count = 0
 
 
@@ -96,13 +96,13 @@ class Traces:
         """Add points to a trace, which is made if it is new."""
         trace = self._by_name.get(name)
         if trace is None:
-            # What is logged takes its colours from the front, telemetry from the back.
+            # Logged traces use colours from the front of the list, telemetry from the back.
             alike = sum((" " in known) == (" " in name) for known in self._by_name)
             trace = self._by_name[name] = Trace(name, -1 - alike if " " in name else alike)
         trace.add(times_s, values)
 
     def clear(self) -> None:
-        """Drop all points."""
+        """Remove all points."""
         for trace in self._by_name.values():
             trace.clear()
 
@@ -118,17 +118,16 @@ class Traces:
 def min_max(
     times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float], columns: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a trace that a chart of that width can tell apart.
+    """Return the points of a trace that a chart of this width can distinguish.
 
     Args:
         times_s: Rising times, shape (n,).
         values: Shape (n,).
-        x_limits: First and last time shown; of what lies outside, one point on each side stays,
-            so that lines run out of the picture.
+        x_limits: First and last time shown; one point beyond each is kept, so that lines extend to the edges.
         columns: Width of the chart, at least 1.
 
     Returns:
-        Times and values, each shape (m,), m at most 2 * columns + 2; all points if they are no more.
+        Times and values, each shape (m,), m at most 2 * columns + 2; all points if there are no more.
     """
     low, high = x_limits
     first = max(int(np.searchsorted(times_s, low, "left")) - 1, 0)
@@ -153,7 +152,7 @@ def min_max(
 _BLOCK = 16
 """Each level has this many times fewer blocks than the one below."""
 _ENOUGH = 4
-"""Blocks for each column of the chart: with fewer, edges would be seen at the wrong column."""
+"""Blocks per column of the chart: with fewer, edges would appear at the wrong column."""
 
 _SUMMED_AT_ONCE = 10_000
 """Up to this number of points, statistics are computed directly."""
@@ -167,7 +166,7 @@ class Pyramid:
 
     Args:
         times_s: Shape (n,).
-        values: Shape (n,); what is not finite, or beyond all measure, is left out.
+        values: Shape (n,); values that are not finite or exceed `LARGEST` are left out.
     """
 
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
@@ -191,7 +190,7 @@ class Pyramid:
         """Return times and values of at most a few thousand points that give the same drawing as all points.
 
         Args:
-            x_limits: First and last time shown; the neighbours of what lies between stay as well.
+            x_limits: First and last time shown; one point beyond each is kept.
             columns: Width of the chart, at least 1.
         """
         first = max(int(np.searchsorted(self.times_s, x_limits[0], "left")) - 1, 0)
@@ -254,7 +253,7 @@ class Pyramid:
         if self._sums is None:
             whole = self.values[: len(self.values) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
             means, squares = np.empty(len(whole)), np.empty(len(whole))
-            # Bit by bit, so that a long log needs no second place for all its values.
+            # In parts, so that a long log is not copied as a whole.
             for at in range(0, len(whole), _SUMMED_AT_ONCE):
                 part = slice(at, at + _SUMMED_AT_ONCE)
                 means[part] = whole[part].mean(axis=1)
@@ -265,5 +264,5 @@ class Pyramid:
 
 def _measurable(numbers: FloatArray) -> bool:
     """Return whether all numbers are within the limit, without a copy."""
-    # A single one that is not a number makes least and greatest none, and all comparisons false.
+    # One NaN makes minimum and maximum NaN, and all comparisons false.
     return not len(numbers) or bool(numbers.min() > -LARGEST and numbers.max() < LARGEST)

@@ -31,13 +31,13 @@ _SAMPLES = 4
 """Samples along each side of a pixel."""
 
 _MIN_PX = 6.0
-"""A robot narrower than this many pixels is drawn enlarged, or it could not be told from a dot."""
+"""A robot narrower than this many pixels is drawn enlarged, to be recognisable."""
 
 _FEW_PX = 8.0
-"""In a robot narrower than this many pixels the marker cannot be told from the body around it."""
+"""In a robot narrower than this many pixels the heading marker needs to project beyond the body."""
 
 _BUMPER_MM = 8.0
-"""How thick the bar of a touch sensor is drawn."""
+"""Thickness of the bar of a touch sensor."""
 
 _SPOT_MM = 10.0
 """Radius of a further sensor."""
@@ -85,7 +85,7 @@ GREY = RobotColors(
 )  # fmt: skip
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
-"""For a robot that is shown where it was."""
+"""For a robot at an earlier pose."""
 GREY_GHOST = RobotColors(body=(158, 158, 158), wheel=(88, 88, 88), sensor=(88, 88, 88), marker=(0, 0, 0))
 
 
@@ -98,7 +98,7 @@ def drawn_reach_mm(outline: RobotOutline) -> float:
 
 
 def drawn_scale(outline: RobotOutline, view: View) -> float:
-    """Return how much larger than life a robot is drawn, at least 1."""
+    """Return the factor by which a robot is drawn enlarged, at least 1."""
     return max(1.0, _MIN_PX * view.mm_per_px / (2 * outline.half_width_mm))
 
 
@@ -111,7 +111,7 @@ def draw_robot(
     opacity: float = 1.0,
     pressed: tuple[bool, ...] = (),
 ) -> None:
-    """Paint a robot into a picture; what lies outside it is left out.
+    """Paint a robot into a picture, clipped to it.
 
     Args:
         picture: Written in place, shape (view.height_px, view.width_px, 3).
@@ -120,7 +120,7 @@ def draw_robot(
         outline: Its body and parts.
         colors: Colours of its parts.
         opacity: 0 … 1.
-        pressed: Which of its bumpers are; empty for none.
+        pressed: Whether each bumper is pressed; empty for none.
     """
     scale = drawn_scale(outline, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
@@ -158,7 +158,7 @@ def _parts(outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: fl
     widest_mm = 0.62 * (outline.half_width_mm - outline.wheel_width_mm)
     flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), 0.4 * px_mm)
     parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
-    # Below about three pixels an eye would only blur the marker.
+    # A sensor of less than about three pixels would only blur the marker.
     for x_mm, y_mm, radius in outline.color_sensors_mm:
         if 2 * radius >= 1.5 * px_mm:
             parts[np.hypot(side - x_mm, ahead - y_mm) <= radius] = _SENSOR
@@ -173,10 +173,10 @@ def _mount(
     px_mm: float,
     pressed: tuple[bool, ...],
 ) -> None:
-    """Put on what not every robot has; the heading marker stays on top of it."""
+    """Add bumpers and other sensors; the heading marker stays on top."""
     free = parts != _MARKER
     for at, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
-        # A bar is never so thin, nor so short, that it would be lost.
+        # A bar is at least half a pixel thick and long, to stay visible.
         bar = np.abs(ahead - y_mm) <= max(_BUMPER_MM / 2, 0.5 * px_mm)
         bar = bar & (np.abs(side - x_mm) <= max(half, 0.5 * px_mm))
         parts[bar & free] = _PRESSED if at < len(pressed) and pressed[at] else _BUMPER
@@ -215,10 +215,10 @@ def _at(x_mm: float, y_mm: float) -> Point:
 
 @dataclass(frozen=True, slots=True)
 class WorldView:
-    """What a picture of the world shows: the field in its frame, and around it room for a robot on its edge."""
+    """The area of a picture of the world: the field with a frame, and a margin for a robot at its edge."""
 
     rim_px: int
-    """Width of that room."""
+    """Width of the margin."""
 
     @property
     def width_px(self) -> int:
@@ -236,13 +236,13 @@ class WorldView:
         return MM_PER_PX
 
     def to_px(self, x_mm: float, y_mm: float) -> Point:
-        """Return where a point of the world is in the picture; whole numbers are corners of pixels."""
+        """Return the picture column and row of a point of the world; whole numbers are pixel corners."""
         x_px, y_px = _at(x_mm, y_mm)
         return self.rim_px + x_px, self.rim_px + y_px
 
 
 def world_view(robot: RobotSpec) -> WorldView:
-    """Return what a picture shows in which a robot is wholly to be seen as long as its axle is on the field."""
+    """Return an area in which a robot is completely visible while its axle is on the field."""
     return WorldView(math.ceil(drawn_reach_mm(outline_of(robot)) / MM_PER_PX) + _FRAME_PX)
 
 
@@ -275,7 +275,7 @@ def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
     """Return the pen trace of a run.
 
     Args:
-        spec: What the run is made of.
+        spec: The run.
         telemetry: As from `runs.views.TelemetryView.array`.
     """
     pen = spec.robot.pen
@@ -287,7 +287,7 @@ def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
     for start, end in zip(starts, ends, strict=True):
         line = points[start:end]
         moved = np.any(np.diff(np.round(line * 2), axis=0) != 0, axis=1)
-        # Most ticks bring the pen less than half a pixel on.
+        # In most ticks the pen moves less than half a pixel.
         lines.append(tuple(map(tuple, line[np.concatenate([[True], moved])].tolist())))
     width_px = max(1, round(pen.width_mm / MM_PER_PX))
     return PenTrace(pen.color, width_px, tuple(line for line in lines if len(line) > 1))
@@ -300,18 +300,18 @@ def world_picture(
     """Return mat, obstacles, pen traces and robot.
 
     Args:
-        spec: What the run is made of.
+        spec: The run.
         mat: Shape (height, width, 3), rows from the top.
         pose: Where the robot is, by default at its start.
-        traces: What pens have drawn.
-        rays: Whether the ultrasonic sensor's rays are drawn.
+        traces: Pen traces.
+        rays: Whether to draw the rays of the ultrasonic sensor.
 
     Returns:
-        What `world_view` says of the robot, in that size.
+        The picture, in the size of `world_view`.
     """
     from PIL import Image, ImageDraw
 
-    # What is left of the last column, when each pixel is three mm, is less than one.
+    # The field is no multiple of three mm wide: the rest of the last column is left out.
     field = Image.fromarray(mat).reduce(MM_PER_PX, box=(0, 0, _FIELD_PX[0] * MM_PER_PX, _FIELD_PX[1] * MM_PER_PX))
     draw = ImageDraw.Draw(field)
     for box in spec.world.obstacles:

@@ -76,7 +76,7 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
     Args:
         wanted: The run.
         stage: Where it is shown.
-        begun: Called with the run as soon as its recording is there.
+        begun: Called with the run as soon as its recording exists.
 
     Raises:
         ConfigError: the responder has returned what a program cannot get; the run has been stopped.
@@ -91,8 +91,8 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
         begun(run)
         screen = _Screen(wanted, stage, run)
         try:
-            _Follower(wanted, handle, screen, interruption).to_the_end()
-        except BaseException:  # whatever a responder raises: its program must not outlive the cell
+            _Follower(wanted, handle, screen, interruption).follow()
+        except BaseException:  # whatever a responder raises, the program must not outlive the cell
             handle.stop()
             handle.wait(STOP_WAIT_S)
             raise
@@ -100,18 +100,18 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
             handle.close()
             done = handle.stored()
             begun(done)
-            # The user who has interrupted a flood of lines does not wait for all of them to be read.
+            # A user who has interrupted a flood of lines does not wait until all are read.
             hurry = interruption.count > 0
-            screen.draw(told_end(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
+            screen.draw(end_text(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
     return done
 
 
-def told_end(run: StoredRun, *, hurry: bool = False) -> str:
+def end_text(run: StoredRun, *, hurry: bool = False) -> str:
     """Return a status line of a finished run: state, simulated time, samples.
 
     Args:
         run: The run.
-        hurry: Leave out the samples, if they would take long to count.
+        hurry: Omit the number of samples if counting them would be slow.
     """
     what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
     status = f"{run.state}{what} · {run.time_s:.3f} s"
@@ -124,7 +124,7 @@ def told_end(run: StoredRun, *, hurry: bool = False) -> str:
 class Interruption:
     """Counts interrupts instead of raising at any point, such as between starting and storing a child.
 
-    Only where the code of others runs are they what they always are, see `call`.
+    Only in user code do they raise KeyboardInterrupt as usual, see `call`.
     """
 
     def __init__(self) -> None:
@@ -134,9 +134,9 @@ class Interruption:
         self._before: Any = None
 
     def __enter__(self) -> Interruption:
-        # Python lets signals come to the main thread only.
+        # Python delivers signals to the main thread only.
         if threading.current_thread() is threading.main_thread():
-            self._before = signal.signal(signal.SIGINT, self._strike)
+            self._before = signal.signal(signal.SIGINT, self._on_signal)
         return self
 
     def __exit__(
@@ -145,7 +145,7 @@ class Interruption:
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)
 
-    def _strike(self, _number: int, _frame: FrameType | None) -> None:
+    def _on_signal(self, _number: int, _frame: FrameType | None) -> None:
         self.count += 1
         if self._allowed:
             raise KeyboardInterrupt
@@ -156,7 +156,7 @@ class Interruption:
         try:
             return None if self.count else act()
         except KeyboardInterrupt:
-            # It may also have raised one by itself.
+            # The function may also have raised it itself.
             self.count = max(1, self.count)
             return None
         finally:
@@ -167,10 +167,10 @@ class _Follower:
     """Follows one run.
 
     Args:
-        wanted: What it is.
+        wanted: The run.
         handle: Its process.
         screen: Draws it.
-        interruption: Tells when it is to be stopped.
+        interruption: Counts the interrupts, which stop the run.
     """
 
     def __init__(self, wanted: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
@@ -179,11 +179,11 @@ class _Follower:
         """Answers of the responder that have not been sent to the program."""
         self._stopping = False
 
-    def to_the_end(self) -> None:
+    def follow(self) -> None:
         """Block until the run ends; relay its output and events meanwhile."""
         handle, interruption = self._handle, self._interruption
-        # Before anything is printed: what a cell shows stands in the same order however fast the program is.
-        self._screen.draw_now_and_then()
+        # Before anything is printed, so that the order of a cell's outputs does not depend on the program's speed.
+        self._screen.draw_if_due()
         more = False
         while handle.ended is None:
             if interruption.count > 1:
@@ -193,16 +193,16 @@ class _Follower:
                 handle.stop()
             handle.wait_for_event(0.0 if more else POLL_S)
             handle.pump()
-            more = self._pass_on()
-            # An answer is one to all that was printed before the question.
+            more = self._relay()
+            # An answer must take into account everything printed before the question.
             if not more and not interruption.count:
                 self._reply()
             if not interruption.count:
-                self._screen.draw_now_and_then()
+                self._screen.draw_if_due()
         self._finish()
 
-    def _pass_on(self) -> bool:
-        """Show what was printed, let the responder hear what is meant for it, and return whether there is more."""
+    def _relay(self) -> bool:
+        """Show new output, pass lines to the responder, and return whether there is more."""
         rows = self._handle.output.new_rows(ROWS_AT_ONCE)
         show_rows(rows, quiet=self._wanted.quiet)
         if self._wanted.responder is not None:
@@ -226,7 +226,7 @@ class _Follower:
 
     def _finish(self) -> None:
         shown = 0
-        while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._pass_on():
+        while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._relay():
             shown += ROWS_AT_ONCE
         if self._handle.output.new_rows(1):
             print("… and more lines, which are in the log", file=sys.stderr)
@@ -245,12 +245,12 @@ class _Screen:
         self._position = 0
         """Position up to which the output has been searched for samples."""
 
-    def draw_now_and_then(self) -> None:
+    def draw_if_due(self) -> None:
         """Draw if the last drawing is missing or old; never if drawings cannot be updated in place."""
         if not self._stage.redraws or time.monotonic() < self._due:
             return
         self.draw(f"running · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
-        # Counted from the end of the drawing: what is slow to draw must not be all that is done.
+        # Counted from the end of the drawing, so that slow drawing does not use up all the time.
         self._due = time.monotonic() + self._wanted.refresh_s
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
@@ -258,7 +258,7 @@ class _Screen:
 
         Args:
             status: One line about it.
-            most_rows: So many of its lines are searched for further samples, None for all.
+            most_rows: Maximum number of new lines searched for samples, None for all.
         """
         wanted, run = self._wanted, self._run
         if self._stage.shows("chart"):
@@ -299,7 +299,7 @@ def _ask(prompt: str) -> str | None:
 
     try:
         return input(prompt)
-    # A kernel says the first, a shell at its end the second, one without any stdin the third.
+    # Raised by a kernel, by a shell at end of input, and without any stdin.
     except (StdinNotImplementedError, EOFError, OSError):
         print("tuisim: the program waits in input(), but nobody can be asked here", file=sys.stderr)
         return None

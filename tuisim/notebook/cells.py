@@ -38,7 +38,7 @@ class NotebookProgram:
     """The nearest heading above it, empty if there is none."""
     source: ProgramSource
     unknown: str = ""
-    """A notebook variable in its magic line, such as `$x`: it runs only in the notebook. Empty if there is none."""
+    """A notebook variable in its magic line, such as `$x`; it can run only in the notebook. Empty if there is none."""
     notes: tuple[str, ...] = ()
     """Warnings about skipped parts of the cells between the previous program and this one."""
 
@@ -117,7 +117,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
             lasting = lasting_after(lasting, said)
             if words.magic["cell"]:
                 number = len(found) + 1
-                # The magic's line stays, empty, so that lines count as in the cell.
+                # The magic's line is left empty, so that line numbers are those of the cell.
                 at = text.index("%%")
                 body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
                 prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
@@ -131,7 +131,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
 
 
 def _magics(text: str, where: str) -> Iterator[_Words]:
-    """Yield each magic that sets the world, with what it says; a cell's own magic is its first line."""
+    """Yield each magic that sets the world, parsed; a cell magic is the first line of its cell."""
     stripped = text.lstrip()
     lines = source_lines(stripped)
     if stripped.startswith("%%"):
@@ -151,10 +151,10 @@ def _magics(text: str, where: str) -> Iterator[_Words]:
 
 
 def _without_variables(words: str) -> tuple[str, str]:
-    """Return the words of a magic line without those that need a variable and their switches, and what they need."""
+    """Return a magic line without the words that contain variables and their switches, and those variables."""
     unknown = ", ".join(_VARIABLE.findall(words))
     kept: list[str] = []
-    # A word that holds a variable, also if blanks are in its braces.
+    # A word may contain a variable with blanks in its braces.
     for word in re.findall(rf"(?:{_VARIABLE.pattern}|\S)+", words) if unknown else ():
         if not _VARIABLE.search(word):
             kept.append(word)

@@ -31,7 +31,7 @@ from tuisim.source import source_lines
 _LEFT_RIGHT = ("left", "right")
 
 _UNITS = (("_mm", " ", "mm"), ("_dps", " ", "°/s"), ("_deg", "", "°"))
-"""By the end of a column's name, what stands between number and unit, and the unit."""
+"""Suffix of a column's name, separator between number and unit, and unit."""
 
 Row = tuple[str, str]
 
@@ -47,9 +47,9 @@ def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) 
     """Return rows of name and value as a displayable table.
 
     Args:
-        title: What the table is about.
+        title: The caption.
         rows: Name and value.
-        keep_blanks: Whether blanks mean something in the values, as in a program: a browser folds them.
+        keep_blanks: Whether to preserve blanks in the values, as in a program; a browser collapses them.
     """
     begin, end = ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
     wide = max((len(name) for name, _ in rows), default=0)
@@ -83,7 +83,7 @@ class Scene:
     """Pen traces on the mat up to then."""
     samples: Sequence[Sample] = ()
     printed: Sequence[str] | None = None
-    """The lines of the last run, where they are not in the cell already."""
+    """The lines of the last run, unless they are in the cell already."""
 
 
 def start_record(spec: RunSpec) -> TickRecord:
@@ -140,7 +140,7 @@ _TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
     "settings": _settings,
     "code": _code,
 }
-"""By panel, what its table shows."""
+"""The rows of each panel's table."""
 
 
 CHART_SIZE = (760, 300)
@@ -167,7 +167,7 @@ class Stage:
     """The panels of one cell, each a display that is updated in place.
 
     Args:
-        settings: Which panels are on and off.
+        settings: The panels that are on and off.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -181,7 +181,7 @@ class Stage:
             self._handles[panel].update(bundle, raw=True)
         else:
             handle = display(bundle, raw=True, display_id=True)
-            # A display that swallows what it is given returns none.
+            # A display hook that discards its input returns None.
             if handle is not None:
                 self._handles[panel] = handle
 
@@ -193,10 +193,10 @@ class Stage:
         """Draw all panels.
 
         Args:
-            scene: What there is to show.
+            scene: The state to show.
             status: One line about the run.
         """
-        # A kernel sends what is printed now and then, but displays at once.
+        # A kernel sends printed text with a delay, but displays immediately.
         sys.stdout.flush()
         sys.stderr.flush()
         on, off, spec = self._settings.panels_on, self._settings.panels_off, scene.spec

@@ -1,6 +1,6 @@
 """The logs of a notebook's runs as DataFrames and images.
 
-What these functions need is imported in them: a notebook loads this module whether it uses it or not.
+The functions import what they need: a notebook loads this module even if it does not use it.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
 
     Args:
         frame: As from `get_image_data_from_datalog`.
-        index: Which moment, from 0; -1 is the last.
+        index: Index of the moment, from 0; -1 is the last.
 
     Raises:
         LogError: there is no such moment.
@@ -130,7 +130,7 @@ def bw_image_data(
         frame: As from `get_image_data_from_datalog`.
         index: Row of the frame, from 0; -1 is the last.
         threshold: The lightest grey, 0 … 255, that counts as dark.
-        crop: Left, top, right and bottom of the part that is wanted, in pixels; None for all.
+        crop: Left, top, right and bottom of a part, in pixels; None for the whole image.
 
     Raises:
         LogError: there is no such row.

@@ -1,6 +1,6 @@
 """The simulator of a notebook: the world that its cells set, the program, the runs and their log.
 
-What runs and draws is imported by the first cell that needs it: a notebook loads all of this at once.
+Code that runs and draws is imported by the first cell that needs it, so that loading the extension is fast.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ class Lab:
         self.autorun = False
         """Whether executing a program cell also runs its program, as with `-R`."""
         self.responder: Callable[[str], object] | None = None
-        """In collaborative mode: called with each line that a program prints for the notebook, `PY::` left out.
+        """In collaborative mode: called with each line that a program prints for the notebook, without `PY::`.
 
-        What it returns is an answer, unless it is None; `pyState()` in the program gets all of them.
+        A return value other than None is an answer; `pyState()` in the program returns all of them.
         """
         self._lasting: Mapping[str, Any] = {}
         self._program: Program | None = None
@@ -71,7 +71,7 @@ class Lab:
 
     @property
     def results_log(self) -> list[StoredRun]:
-        """The runs since the log was cleared; `eds` makes frames of them."""
+        """The runs since the log was cleared; `eds` converts them to frames."""
         return list(self._runs)
 
     def clear_datalog(self) -> None:
@@ -125,7 +125,7 @@ class Lab:
 
     # Cells
 
-    def take(self, words: MagicWords, text: str | None, prelude: str) -> None:
+    def apply(self, words: MagicWords, text: str | None, prelude: str) -> None:
         """Apply a cell's magic; on an error nothing changes.
 
         Args:
@@ -134,7 +134,7 @@ class Lab:
             prelude: none, imports or preloaded.
 
         Raises:
-            ConfigError: a mat, robot, value or so is wrong, or there is no program to run.
+            ConfigError: a mat, robot or value is invalid, or there is no program to run.
         """
         from tuisim.notebook.display import Stage
 
@@ -174,7 +174,7 @@ class Lab:
         spec = build_run_spec(settings)
         program = self._program
         if text is not None:
-            # The first line is that of the magic, so that the program's lines count as in the cell.
+            # The first line is that of the magic, so that line numbers are those of the cell.
             program = Program("cell", "\n" + text, settings.preload or prelude)
         return _Plan(lasting, settings, spec, field_files(spec), program)
 
@@ -190,20 +190,20 @@ class Lab:
         )  # fmt: skip
 
         def note(run: StoredRun) -> None:
-            # The log has it from its start, for a responder, which may also have started runs of its own.
+            # The run is in the log from its start, for a responder, which may have started runs itself.
             places = [at for at, known in enumerate(self._runs) if known.id == run.id] or [len(self._runs)]
             self._last, self._runs[places[0] : places[0] + 1] = run, [run]
 
         try:
             run_cell(wanted, stage, note)
         finally:
-            # Also of a run that a responder's error has ended.
+            # Also after a responder's error has ended the run.
             if self._last is not None:
                 self._traces = (*self._traces, pen_trace(self._last.spec, self._last.telemetry.array()))
 
     def _scene(self, plan: _Plan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
-        from tuisim.notebook.cell_run import told_end
+        from tuisim.notebook.cell_run import end_text
         from tuisim.notebook.display import Scene, start_record
         from tuisim.runs.records import TEXT_STREAMS, line_of
         from tuisim.runs.samples import samples_of
@@ -215,7 +215,7 @@ class Lab:
         rows = self._last.output.all_rows()
         printed = [line_of(row) for row in rows if row.stream in TEXT_STREAMS]
         last, samples = self._last.telemetry.last() or start, list(samples_of(rows))
-        return Scene(plan.spec, plan.files, text, last, self._traces, samples, printed), told_end(self._last)
+        return Scene(plan.spec, plan.files, text, last, self._traces, samples, printed), end_text(self._last)
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so

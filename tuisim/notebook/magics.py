@@ -1,6 +1,6 @@
 """The magics of `%load_ext tuisim`.
 
-Loading them is to cost next to nothing: what they need is imported by the first cell that needs it.
+Loading them must be fast: what they need is imported by the first cell that needs it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def _guarded(act: Handler) -> Callable[..., Any]:
         except TuisimError as error:
             print("tuisim:", " ".join(str(error).split("\n")), file=sys.stderr)
         except KeyboardInterrupt:
-            # One that comes during a run stops that run; this is one between two.
+            # An interrupt during a run stops that run; this one came between two.
             print("tuisim: interrupted; no program was running", file=sys.stderr)
         return None
 
@@ -69,7 +69,7 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
             if cell is None:
                 return None
         lab = _lab(shell, words.sim)
-        lab.take(words, cell, PRELUDES[magic])
+        lab.apply(words, cell, PRELUDES[magic])
         if words.preview:
             print(lab.program_text)
         return None

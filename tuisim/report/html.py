@@ -43,7 +43,7 @@ pre { padding: .5rem; white-space: pre-wrap; }
 
 
 def page(title: str, body: Sequence[str]) -> str:
-    """Return a whole page; `body` is HTML, the title is text."""
+    """Return a complete page; `body` is HTML, the title is text."""
     return "\n".join((
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
@@ -54,7 +54,7 @@ def page(title: str, body: Sequence[str]) -> str:
 
 
 def section(title: str, *parts: str) -> str:
-    """Return a part of a page; what is empty is left out, and so is the whole if all is."""
+    """Return a section of a page without its empty parts; empty if all are."""
     filled = [part for part in parts if part]
     return "\n".join((f"<section>\n<h2>{clean(title)}</h2>", *filled, "</section>")) if filled else ""
 
@@ -72,9 +72,9 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]], numbers: int) -> 
     """Return rows of text as a table, empty if there are none.
 
     Args:
-        heads: Of the columns.
+        heads: The column headings.
         rows: The cells.
-        numbers: Columns from this one on, from 0, stand at the right.
+        numbers: Index of the first right-aligned column.
     """
     if not rows:
         return ""
@@ -90,7 +90,7 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]], numbers: int) -> 
 
 
 def facts(rows: Sequence[Sequence[str]]) -> str:
-    """Return a table whose first column says what the others are."""
+    """Return a table whose first column holds the names of the rows."""
     lines = ("".join(f"<td>{clean(cell)}</td>" for cell in cells) for _, *cells in rows)
     heads = (f'<th class="name" scope="row">{clean(row[0])}</th>' for row in rows)
     return "\n".join((

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 Search = Callable[[FloatArray], list[Plateau]]
 SUFFIXES = (".html", ".htm")
 MOST_BANDS = 300
-"""Rows of the table of bands; what has more of them has none that a reader could use."""
+"""Maximum number of rows of the table of bands."""
 _WIDTH_PX = 960
 _WAY, _HALO = (230, 90, 0), (255, 255, 255)
 
@@ -60,20 +60,20 @@ def check_report(path: Path) -> None:
 
 
 def write_report(subject: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = plateaus) -> None:
-    """Write the report of a log; a file that is there is replaced.
+    """Write the report of a log, replacing an existing file.
 
     Args:
         subject: The log, and its runs if they are in the store.
-        path: Where to.
+        path: The file.
         names: Variables of chart and bands, none for those that the analyser shows first.
         search: Finds the bands; `analysis.aside` has one that leaves the other threads their time.
 
     Raises:
-        ExportError: the file cannot be written; what was there is as it was.
+        ExportError: the file cannot be written; an existing one is unchanged.
         LogError: a recording is damaged, or there is nothing to report on.
     """
     check_report(path)
-    # A program may hold any characters, also halves of pairs, which `clean` has replaced.
+    # A program may contain lone surrogates, which `clean` has replaced.
     write_whole(path, report_of(subject, names, search).encode())
 
 
@@ -152,7 +152,7 @@ def _way_picture(run: StoredRun) -> Image:
     way = [view.to_px(x, y) for x, y in zip(records["x_mm"].tolist(), records["y_mm"].tolist(), strict=True)]
     draw = ImageDraw.Draw(picture)
     drawn = bool((records["flags"] & FLAG_PEN_DOWN).any())
-    # The halo makes it seen on bright and dark mats alike, but would cover what a pen drew along it.
+    # The halo makes the path visible on bright and dark mats, but would cover a pen trace along it.
     for color, width in ((_HALO, 5), (_WAY, 2))[drawn:]:
         if len(way) > 1:
             draw.line(way, fill=color, width=width, joint="curve")
@@ -192,8 +192,8 @@ def _number(value: float, how: str) -> str:
 
 def _bands(model: Model) -> list[str]:
     heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
-    told = zip(model.reports(), model.bands_in_words(), strict=True)
-    parts = [paragraph(words) for report, words in told if report.bands]
+    pairs = zip(model.reports(), model.bands_in_words(), strict=True)
+    parts = [paragraph(words) for report, words in pairs if report.bands]
     bands = model.bands()
     rows = [
         [
@@ -242,7 +242,7 @@ Fact = tuple[str, ...]
 
 def run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
     """Return the facts of stored runs; facts that apply to no run are omitted."""
-    rows = [(name, *(tell(run) for run in runs)) for name, tell in _FACTS.items()]
+    rows = [(name, *(fact(run) for run in runs)) for name, fact in _FACTS.items()]
     return [row for row in rows if any(row[1:])]
 
 

@@ -1,4 +1,4 @@
-"""What `%load_ext nbev3devsim` means in the kernel `RoboLab (tuisim)`."""
+"""The extension that `%load_ext nbev3devsim` loads in the kernel `RoboLab (tuisim)`."""
 
 from tuisim import load_ipython_extension
 
