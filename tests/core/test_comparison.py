@@ -20,7 +20,7 @@ from tuisim.logs.columns import Layout
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log
 from tuisim.runs.records import OutputRow, Stream
-from tuisim.runtime.debugger.data_breakpoints import Relation
+from tuisim.runtime.debugger.conditions import Relation
 
 VALUES = (40.0, 50.0, 60.0)
 

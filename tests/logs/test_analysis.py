@@ -16,8 +16,6 @@ from tuisim.logs.bands import distance_mm
 from tuisim.logs.derived import dead_reckoning, error_mm
 from tuisim.logs.expressions import FUNCTIONS, evaluate
 from tuisim.logs.signals import (
-    HOLD,
-    LINEAR,
     Between,
     derivative,
     integral,
@@ -64,7 +62,7 @@ class TestSignals:
         assert np.isnan(derivative(values, values)).all()
 
     @pytest.mark.parametrize(
-        ("between", "expected"), [(LINEAR, [0, 1.5, 6.5]), (HOLD, [0, 1, 5])], ids=["linear", "hold"]
+        ("between", "expected"), [(Between.LINEAR, [0, 1.5, 6.5]), (Between.HOLD, [0, 1, 5])], ids=["linear", "hold"]
     )
     def test_integral(self, between: Between, expected: list[float]) -> None:
         assert_allclose(integral(column(0, 1, 3), column(1, 2, 3), between), expected)
@@ -103,7 +101,7 @@ class TestSignals:
         assert len(times) == 31
 
     def test_value_before_the_first_sample(self) -> None:
-        got = value_at(column(1, 2), column(5, 7), column(0.5, 1.5, 9), LINEAR)
+        got = value_at(column(1, 2), column(5, 7), column(0.5, 1.5, 9), Between.LINEAR)
         assert_allclose(got, [NAN, 6, 7])
 
     @pytest.mark.parametrize("period", [0.0, -1.0, NAN, math.inf, 1e-9])
@@ -122,9 +120,9 @@ class TestOrder:
     def test_empty_cells_are_passed_over(self) -> None:
         assert_allclose(derivative(*SPARSE), [1, NAN, 1.5, NAN, 2, NAN])
         assert_allclose(integral(*SPARSE), [0, NAN, 4, NAN, 14, NAN])
-        assert_allclose(integral(*SPARSE, HOLD), [0, NAN, 2, NAN, 8, NAN])
+        assert_allclose(integral(*SPARSE, Between.HOLD), [0, NAN, 2, NAN, 8, NAN])
         assert_allclose(resample(*SPARSE, 1)[1], [1, 1, 3, 3, 7, 7])
-        assert_allclose(resample(*SPARSE, 1, LINEAR)[1], [1, 2, 3, 5, 7, 7])
+        assert_allclose(resample(*SPARSE, 1, Between.LINEAR)[1], [1, 2, 3, 5, 7, 7])
 
     def test_times_may_go_back(self) -> None:
         assert_allclose(derivative(*BACK), [1, 4, 2, 5])

@@ -131,14 +131,14 @@ def cell_text(cell: pa.Scalar) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def unique_names(names: Sequence[str], notes: Notes) -> list[str]:
+def unique_names(names: Sequence[str], notes: Notes | None = None) -> list[str]:
     """Return unique column names; renamed columns are noted."""
     unique: list[str] = []
     for at, name in enumerate(names, 1):
         wanted, again = name or f"column {at}", 2
         while wanted in unique:
             wanted, again = f"{name or f'column {at}'} ({again})", again + 1
-        if name and wanted != name:
+        if name and wanted != name and notes:
             notes.say(f"two columns are named {name!r}: the second is renamed to {wanted!r}")
         unique.append(wanted)
     return unique

@@ -8,6 +8,7 @@ import lzma
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from gzip import GzipFile
 from typing import Any, Protocol
 
 import pyarrow as pa
@@ -143,51 +144,20 @@ class Readable(Protocol):
         """Return at most so many more bytes, none at the end."""
 
 
-class _Decompressor(Protocol):
-    """What `bz2` and `lzma` have in common."""
-
-    @property
-    def eof(self) -> bool: ...
-    @property
-    def needs_input(self) -> bool: ...
-    @property
-    def unused_data(self) -> bytes: ...
-    def decompress(self, data: bytes, max_length: int = -1) -> bytes: ...
-
-
-class _Gzip:
-    """`zlib`'s decompressor with the names of the other two."""
-
-    _BITS = 31
-    """A gzip header and trailer, and the largest window."""
-
-    def __init__(self) -> None:
-        self._inner = zlib.decompressobj(self._BITS)
-
-    @property
-    def eof(self) -> bool:
-        return self._inner.eof
-
-    @property
-    def needs_input(self) -> bool:
-        return not self._inner.unconsumed_tail
-
-    @property
-    def unused_data(self) -> bytes:
-        return self._inner.unused_data
-
-    def decompress(self, data: bytes, max_length: int = -1) -> bytes:
-        return self._inner.decompress(self._inner.unconsumed_tail + data, max(max_length, 0))
-
+_UNPACKED_BYTES = 1 << 18
+"""Unpacked at once."""
+_CUT_OFF = "the compressed file was cut off or is damaged: read as far as it goes"
 
 _ERRORS = (zlib.error, OSError, EOFError, lzma.LZMAError, pa.ArrowException)
 
-_FORMATS: Mapping[bytes, Callable[[], _Decompressor]] = {
-    b"\x1f\x8b": _Gzip,
-    b"BZh": bz2.BZ2Decompressor,
-    b"\xfd7zXZ\0": lzma.LZMADecompressor,
+_FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
+    b"\x1f\x8b": lambda handle: GzipFile(fileobj=handle),
+    b"BZh": bz2.BZ2File,
+    b"\xfd7zXZ\0": lzma.LZMAFile,
+    b"\x28\xb5\x2f\xfd": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "zstd"),
+    b"\x04\x22\x4d\x18": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "lz4"),
 }
-_ARROW_CODECS = {b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4"}
+"""Compressed formats by their first bytes: what opens a file in them."""
 _REFUSED = {
     b"PK\x03\x04": "a ZIP archive, as a spreadsheet is, too",
     b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",
@@ -196,10 +166,10 @@ _REFUSED = {
     b"SQLite format 3": "an SQLite database",
     b"\x1f\x9d": "a file of the old compress",
 }
-"""By their first bytes: files that hold no text and that nothing here reads."""
+"""Formats that cannot be read, by their first bytes."""
 
-MAGICS = (*_FORMATS, *_ARROW_CODECS, *_REFUSED)
-"""First bytes of everything that is known here."""
+MAGICS = (*_FORMATS, *_REFUSED)
+"""First bytes of all known formats."""
 MAGIC_BYTES = max(map(len, MAGICS))
 
 
@@ -218,71 +188,35 @@ def unpacked(title: str, head: bytes, handle: Any, notes: Notes) -> Readable | N
     refused = next((what for magic, what in _REFUSED.items() if head.startswith(magic)), "")
     if refused:
         raise LogError(f"is {refused}, which cannot be read", "a log is CSV, Parquet, JSONL, Arrow or text", file=title)
-    make = next((make for magic, make in _FORMATS.items() if head.startswith(magic)), None)
-    if make is not None:
-        return _Unpacked(handle, make, notes)
-    codec = next((codec for magic, codec in _ARROW_CODECS.items() if head.startswith(magic)), "")
-    return _ArrowUnpacked(handle, codec, notes) if codec else None
+    open_file = next((one for magic, one in _FORMATS.items() if head.startswith(magic)), None)
+    return None if open_file is None else _Unpacked(open_file(handle), notes)
 
 
 class _Unpacked:
-    """A compressed file, read as far as it goes; parts that were compressed apart may stand one behind the other.
+    """A compressed file, read as far as it is intact.
 
     Args:
-        handle: The compressed bytes.
-        make: Makes a decompressor.
-        notes: What was wrong.
+        file: Returns what it unpacks; raises one of `_ERRORS` where it is damaged or cut off.
+        notes: Receives warnings about bad input.
     """
 
-    def __init__(self, handle: Readable, make: Callable[[], _Decompressor], notes: Notes) -> None:
-        self._handle, self._make, self._notes = handle, make, notes
-        self._inner = make()
-
-    def read(self, count: int, /) -> bytes:
-        """Return some more bytes, none at the end."""
-        while True:
-            packed = b""
-            if self._inner.eof:
-                packed = self._inner.unused_data or self._handle.read(BLOCK_BYTES) or b""
-                self._inner = self._make()
-                if not packed.strip(b"\0"):
-                    return b""
-            elif self._inner.needs_input:
-                packed = self._handle.read(BLOCK_BYTES) or b""
-                if not packed:
-                    return self._cut_off()
-            try:
-                data = self._inner.decompress(packed, count)
-            except _ERRORS:
-                return self._cut_off()
-            if data:
-                return data
-
-    def _cut_off(self) -> bytes:
-        self._notes.say(_CUT_OFF)
-        return b""
-
-
-class _ArrowUnpacked:
-    """A file in one of the forms that only Arrow unpacks, read as far as it goes.
-
-    Args:
-        handle: The compressed bytes.
-        codec: Name of the form.
-        notes: What was wrong.
-    """
-
-    def __init__(self, handle: Any, codec: str, notes: Notes) -> None:
-        self._stream = pa.CompressedInputStream(pa.PythonFile(handle, "r"), codec)
+    def __init__(self, file: Any, notes: Notes) -> None:
         self._notes = notes
+        # `read` of Python's files would lose what was unpacked before an error.
+        self._unpack: Callable[[int], bytes] = getattr(file, "read1", file.read)
 
     def read(self, count: int, /) -> bytes:
-        """Return some more bytes, none at the end."""
+        """Return up to `count` bytes, none at the end."""
+        parts: list[bytes] = []
+        while count > 0 and (part := self._part(min(count, _UNPACKED_BYTES))):
+            parts.append(part)
+            count -= len(part)
+        return b"".join(parts)
+
+    def _part(self, count: int) -> bytes:
         try:
-            return bytes(self._stream.read(count))
+            return bytes(self._unpack(count))
         except _ERRORS:
             self._notes.say(_CUT_OFF)
+            self._unpack = lambda _: b""
             return b""
-
-
-_CUT_OFF = "the compressed file was cut off or is damaged: read as far as it goes"

@@ -24,10 +24,9 @@ from tuisim.logs.arrow import (
 )
 from tuisim.logs.blocks import BLOCK_BYTES, MAGIC_BYTES, MAGICS, Block, LineCutter, Readable, unpacked
 from tuisim.logs.columns import UNIT_NAMES, choose_columns, guess_columns, unread_time
-from tuisim.logs.csv_table import CsvReader, exported_csv
 from tuisim.logs.export import ALLOWED, EXPORTERS, companion_of, log_metadata, typed_frame
 from tuisim.logs.log import Log
-from tuisim.logs.text_lines import JsonReader, PrintedReader, looks_printed
+from tuisim.logs.text_tables import CsvReader, JsonReader, PrintedReader, exported_csv, looks_printed
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 from tuisim.runs.frames import damage_note, samples_frame, telemetry_frame

@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Literal
+from enum import StrEnum
 
 import numpy as np
 
 from tuisim.errors import LogError
 from tuisim.runs.arrays import FloatArray, IntArray
 
-Between = Literal["hold", "linear"]
-"""Interpolation between two samples: hold the last value, or linear."""
 
-HOLD: Final = "hold"
-LINEAR: Final = "linear"
+class Between(StrEnum):
+    """Interpolation between two samples."""
+
+    HOLD = "hold"
+    """The last value."""
+    LINEAR = "linear"
+
 
 MAX_RESAMPLED = 50_000_000
 
@@ -56,7 +59,7 @@ def derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
     return slopes
 
 
-def integral(time_s: FloatArray, values: FloatArray, between: Between = LINEAR) -> FloatArray:
+def integral(time_s: FloatArray, values: FloatArray, between: Between = Between.LINEAR) -> FloatArray:
     """Return the integral from the first sample to each, in units times seconds, shape (n,).
 
     Args:
@@ -69,7 +72,7 @@ def integral(time_s: FloatArray, values: FloatArray, between: Between = LINEAR) 
     moments, heights = time_s[known], np.asarray(values[known], np.float64)
     if not len(moments):
         return sums
-    heights = heights[:-1] if between == HOLD else heights[:-1] / 2.0 + heights[1:] / 2.0
+    heights = heights[:-1] if between == Between.HOLD else heights[:-1] / 2.0 + heights[1:] / 2.0
     with np.errstate(over="ignore", invalid="ignore"):
         sums[known] = np.concatenate(([0.0], np.cumsum(heights * np.diff(moments))))
     return sums
@@ -116,7 +119,7 @@ def _window_sums(values: FloatArray, width: int) -> FloatArray:
 
 
 def resample(
-    time_s: FloatArray, values: FloatArray, period_s: float, between: Between = HOLD
+    time_s: FloatArray, values: FloatArray, period_s: float, between: Between = Between.HOLD
 ) -> tuple[FloatArray, FloatArray]:
     """Resample a signal at a fixed period, from the first sample to the last.
 
@@ -154,7 +157,9 @@ def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
     return moments
 
 
-def known_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
+def known_at(
+    time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = Between.HOLD
+) -> FloatArray:
     """Return the values of an unsorted signal at given times, shape (m,); see `value_at`.
 
     Args:
@@ -167,7 +172,9 @@ def known_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, betw
     return value_at(time_s[known], values[known], moments_s, between)
 
 
-def value_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = HOLD) -> FloatArray:
+def value_at(
+    time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = Between.HOLD
+) -> FloatArray:
     """Return the values of a sorted signal at given times, shape (m,); NaN before its first sample.
 
     Args:
@@ -178,7 +185,7 @@ def value_at(time_s: FloatArray, values: FloatArray, moments_s: FloatArray, betw
     """
     if not len(values):
         return np.full(len(moments_s), np.nan)
-    if between == LINEAR:
+    if between == Between.LINEAR:
         return np.interp(moments_s, time_s, values, left=np.nan)
     # Of several samples at the same time the last one counts. A small margin for rounding of the times.
     at = np.searchsorted(time_s, moments_s + 1e-9, side="right") - 1

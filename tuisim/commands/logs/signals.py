@@ -17,8 +17,7 @@ from tuisim.logs.derived import reckoned_series
 from tuisim.logs.export import check_target, export_log
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, LogTable, Series
-from tuisim.logs.signals import HOLD, Between, derivative, even_moments, integral, known_at, moving_average
-from tuisim.logs.warnings import Notes
+from tuisim.logs.signals import Between, derivative, even_moments, integral, known_at, moving_average
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -67,11 +66,11 @@ def even(arguments: Namespace) -> int:
     return 0
 
 
-def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Between = HOLD) -> pd.DataFrame:
+def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD) -> pd.DataFrame:
     """Return the values of each series at given times: one column each, with unique names."""
     import pandas as pd
 
-    names = unique_names(["time", *(series.name for series in all_series)], Notes())
+    names = unique_names(["time", *(series.name for series in all_series)])
     columns = [moments_s, *(known_at(series.time_s, series.values, moments_s, between) for series in all_series)]
     return pd.DataFrame(dict(zip(names, columns, strict=True)))
 
@@ -83,7 +82,7 @@ def calculate(arguments: Namespace) -> int:
     log = the_source(arguments)
     frame = wide_frame(log)
     columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
-    result = unique_names([*columns, "result"], Notes())[-1]
+    result = unique_names([*columns, "result"])[-1]
     show_frame(frame.assign(**{result: evaluate(arguments.expression, columns)}), arguments)
     return 0
 

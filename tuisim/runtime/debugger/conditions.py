@@ -1,13 +1,33 @@
-"""Breakpoint conditions: evaluated in place if no code of the program can run, otherwise in a copy of the process."""
+"""When breakpoints match: expressions of line breakpoints, values after each tick, printed rows."""
 
 from __future__ import annotations
 
 import ast
+import re
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
+from tuisim.breakpoints import (
+    CHANGES,
+    SEEN,
+    Breakpoint,
+    PrintBreak,
+    SampleBreak,
+    StallBreak,
+    TimeBreak,
+    ValueBreak,
+)
+from tuisim.core.comparison import COMPARE
+from tuisim.core.sensors import SensorKind, gyro, mounted, ultrasonic
+from tuisim.core.sensors.color import COLOR_NAMES, ColorReading, reading
+from tuisim.core.simulation import NS_PER_S
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
+from tuisim.runs.records import Stream
+from tuisim.runs.samples import parse_sample
 from tuisim.runtime.debugger.value_text import evaluate_truth
+from tuisim.runtime.session import Session
 
 _SCALARS = (bool, int, float, str, types.NoneType)
 _PLAIN_NODES = (
@@ -20,7 +40,9 @@ Apart = Callable[[Callable[[], bytes]], bytes | None]
 
 
 class Condition:
-    """The condition of one breakpoint.
+    """The condition of one line breakpoint.
+
+    It is evaluated in place if no code of the program can run, otherwise in a copy of the process.
 
     Args:
         text: A syntactically valid expression.
@@ -63,3 +85,177 @@ class Condition:
             return ""
         except Exception as error:  # an expression can fail in any way; worth pausing for
             return f"cannot be evaluated: {type(error).__name__}: {error}"
+
+
+Value = Callable[[], float]
+
+_COLOR_PARTS: dict[str, Callable[[ColorReading], float]] = {
+    "red": lambda seen: seen.red,
+    "green": lambda seen: seen.green,
+    "blue": lambda seen: seen.blue,
+    "red%": lambda seen: seen.red_percent,
+    "mean%": lambda seen: seen.mean_percent,
+    "color": lambda seen: seen.code,
+}
+
+
+class Relation:
+    """Edge detection for a value: it matches when the relation becomes true, not while it stays true."""
+
+    __slots__ = ("_before", "_met", "_number", "_relation")
+
+    def __init__(self, relation: str, number: float) -> None:
+        self._relation, self._number = relation, number
+        self._before: float | None = None
+        self._met = False
+
+    def meets(self, value: float) -> bool:
+        """Process the next value; return whether the run has to pause."""
+        if self._relation == SEEN:
+            return True
+        if self._relation == CHANGES:
+            before, self._before = self._before, value
+            return before is not None and before != value
+        met, self._met = self._met, COMPARE[self._relation](value, self._number)
+        return self._met and not met
+
+
+class Watcher:
+    """The breakpoints of one run that have no line. They cost nothing while there are none.
+
+    Args:
+        session: The run.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._after_tick: dict[str, Callable[[], str]] = {}
+        """By text, a function that returns the value that matches now; empty without a match."""
+        self._on_row: dict[str, Callable[[str], str]] = {}
+
+    @property
+    def ticks(self) -> bool:
+        """Whether each tick must be checked."""
+        return bool(self._after_tick)
+
+    @property
+    def rows(self) -> bool:
+        """Whether each printed row must be checked."""
+        return bool(self._on_row)
+
+    def set(self, breaks: Iterable[Breakpoint]) -> None:
+        """Replace the breakpoints; those that stay keep their state."""
+        ticks, rows = self._after_tick, self._on_row
+        self._after_tick, self._on_row = {}, {}
+        for one in breaks:
+            match one.rule:
+                case SampleBreak() | PrintBreak():
+                    self._on_row[one.text] = rows.get(one.text) or self._row_check(one.rule)
+                case ValueBreak() | TimeBreak() | StallBreak():
+                    check = ticks.get(one.text) or self._tick_check(one.rule)
+                    if check is not None:
+                        self._after_tick[one.text] = check
+
+    def after_tick(self) -> tuple[str, str] | None:
+        """Return text and value of a breakpoint that matches after this tick."""
+        return _first((text, check()) for text, check in self._after_tick.items())
+
+    def after_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
+        """Return text and value of a breakpoint that matches this printed row."""
+        if stream != Stream.STDOUT:
+            return None
+        return _first((text, check(row)) for text, check in self._on_row.items())
+
+    # Checks
+
+    def _row_check(self, rule: SampleBreak | PrintBreak) -> Callable[[str], str]:
+        if isinstance(rule, PrintBreak):
+            pattern = re.compile(rule.pattern)
+            return lambda row: row if pattern.search(row) else ""
+        relation = Relation(rule.relation, rule.number)
+
+        def check(row: str) -> str:
+            sample = parse_sample(row)
+            if sample is None or sample[0] != rule.name:
+                return ""
+            return row if relation.meets(sample[1]) else ""
+
+        return check
+
+    def _tick_check(self, rule: ValueBreak | TimeBreak | StallBreak) -> Callable[[], str] | None:
+        match rule:
+            case TimeBreak(time_s=time_s):
+                value: Value | None = self._time_s
+                relation = Relation(">=", time_s - 0.5 / NS_PER_S)
+                if self._time_s() >= time_s:
+                    # That time has passed already and does not come again.
+                    relation.meets(time_s)
+            case StallBreak():
+                value, relation = self._stalled, Relation(">", 0.0)
+            case ValueBreak():
+                value, relation = self._value_of(rule.quantity), Relation(rule.relation, rule.number)
+        if value is None:
+            return None
+        shown = partial(_shown, color=isinstance(rule, ValueBreak) and rule.quantity.endswith(".color"))
+
+        def check() -> str:
+            number = value()
+            return shown(number) if relation.meets(number) else ""
+
+        return check
+
+    def _time_s(self) -> float:
+        return self._session.sim.due_ns(self._session.sim.tick) / NS_PER_S
+
+    def _stalled(self) -> float:
+        sim = self._session.sim
+        return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in (sim.left, sim.right, *sim.others)))
+
+    def _value_of(self, quantity: str) -> Value | None:
+        """Return a function that reads a quantity; None if this robot does not have it."""
+        session = self._session
+        sim = session.sim
+        for kind, sensor in mounted(sim.spec.robot):
+            if quantity in kind.columns(sensor):
+                return partial(self._column, kind, sensor, kind.columns(sensor).index(quantity))
+            name, _, part = quantity.partition(".")
+            if sensor.name != name:
+                continue
+            match sensor:
+                case ColorSensorSpec():
+                    of = _COLOR_PARTS.get(part)
+                    if of is None:
+                        return None
+                    seen = of
+                    color = sensor
+                    return lambda: seen(reading(color, sim.instant(), session.field))
+                case UltrasonicSpec():
+                    sonar = sensor
+                    return lambda: float(ultrasonic.reading_mm(sonar, sim.instant(), sim.spec.world))
+                case GyroSpec():
+                    measure = gyro.rate_dps if part == "rate" else gyro.angle_deg
+                    return lambda: float(measure(sim.instant()))
+        return self._motion(quantity)
+
+    def _column(self, kind: SensorKind, sensor: Any, at: int) -> float:
+        """Return one telemetry value of a sensor."""
+        sim = self._session.sim
+        return kind.measure(sensor, sim.instant(), sim.spec, self._session.field)[at]
+
+    def _motion(self, quantity: str) -> Value | None:
+        sim = self._session.sim
+        if quantity in ("x_mm", "y_mm", "heading_deg"):
+            return lambda: float(getattr(sim.pose, quantity))
+        if quantity.endswith(("_position_deg", "_speed_dps")):
+            return lambda: float(getattr(sim.instant(), quantity))
+        return None
+
+
+def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
+    """Return the first match; every check is called nevertheless."""
+    met = [(text, value) for text, value in found if value]
+    return met[0] if met else None
+
+
+def _shown(number: float, color: bool) -> str:
+    return COLOR_NAMES[int(number)] if color else f"{number:.6g}"

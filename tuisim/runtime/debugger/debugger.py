@@ -13,8 +13,7 @@ from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused, Pause
 from tuisim.runs.records import Stream
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE
 from tuisim.runtime.debugger.code_lines import CodeLines
-from tuisim.runtime.debugger.conditions import Condition
-from tuisim.runtime.debugger.data_breakpoints import Watcher
+from tuisim.runtime.debugger.conditions import Condition, Watcher
 from tuisim.runtime.debugger.fork import apart
 from tuisim.runtime.debugger.inspection import Looker
 from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
