@@ -13,7 +13,7 @@ import pytest
 from tests.runtime.debugging import Driver
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import plan_of_spec
-from tuisim.app.snapshot import ENDED, further_readings, snapshot_of
+from tuisim.app.snapshot import RunPhase, further_readings, snapshot_of
 from tuisim.breakpoints import quantities
 from tuisim.config.robots import load_robot, save_robot
 from tuisim.core.geometry import Pose
@@ -151,7 +151,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     assert last is not None
     instant, field = instant_of(last, run.spec, run.spec.world.noise), open_mat(run)
     (sensor,) = run.spec.robot.sensors
-    now = snapshot_of(instant, run.spec, field, state=ENDED, end=None, line=0, speed=1.0, pen_down=False)
+    now = snapshot_of(instant, run.spec, field, state=RunPhase.ENDED, end=None, line=0, speed=1.0, pen_down=False)
     if mount_of(kind).usual:
         shown: dict[str, object] = {"color": now.colors, "ultrasonic": now.ultrasonic_mm, "gyro": now.spec.robot.gyro}
         assert shown[next(name for name, one in SENSORS.items() if one is kind)]

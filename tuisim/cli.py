@@ -94,8 +94,7 @@ def _open(arguments: Namespace) -> int:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
-    from tuisim.app.app import run_app
-    from tuisim.app.start_options import AppSettings
+    from tuisim.app.app import AppSettings, run_app
 
     settings = prepared.settings
     app_settings = AppSettings(

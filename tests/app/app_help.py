@@ -10,8 +10,7 @@ from typing import Any
 from textual.pilot import Pilot
 
 from tests.running import PATIENCE_S
-from tuisim.app.app import LabApp
-from tuisim.app.start_options import AppSettings
+from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.source import Program

@@ -11,7 +11,7 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.app.render.mat import Pixels
-from tuisim.app.snapshot import RUNNING, Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
@@ -40,7 +40,7 @@ def small_field() -> Field:
 def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: Any) -> Snapshot:
     """A moment of a run, with some fields changed."""
     now = Snapshot(
-        state=RUNNING,
+        state=RunPhase.RUNNING,
         end=None,
         spec=SPEC,
         field=None,

@@ -10,9 +10,8 @@ from textual.pilot import Pilot
 from textual.widgets import Input
 
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until, until_shown
-from tuisim.app.app import LabApp
-from tuisim.app.snapshot import ENDED, RUNNING
-from tuisim.app.start_options import AppSettings
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.worlds import load_world
@@ -63,7 +62,7 @@ async def open_path(pilot: Pilot[Any], path: str) -> LabApp:
 
 def look(app: LabApp) -> None:
     """As the timer does, without waiting for it."""
-    app.loader.check_files()
+    app.check_files()
 
 
 async def test_a_world_is_opened_whole(folder: Path) -> None:
@@ -222,14 +221,14 @@ async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) ->
     async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         path.write_text("print('Later: 2')\n")
         look(app)
         await until(pilot, lambda: notices(app) == ["mine.py changed on disk: reloaded when the run ends"])
         assert app.run_controller.program is not None
         assert app.run_controller.program.text == ENDLESS
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(
             pilot, lambda: app.run_controller.program is not None and "Later" in app.run_controller.program.text
         )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tuisim.app.panel_area import PanelBox, arrange, size_class
-from tuisim.app.panels import LARGE, MEDIUM, PANELS, SMALL, PanelInfo
+from tuisim.app.panels import PANELS, PanelInfo, TerminalSize
 
 SIZES = [(80, 23), (80, 40), (100, 30), (120, 39), (132, 43), (200, 59), (237, 70), (60, 18)]
 
@@ -54,7 +54,13 @@ def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: s
 
 
 @pytest.mark.parametrize(
-    ("size", "name"), [((80, 24), SMALL), ((111, 40), SMALL), ((120, 40), MEDIUM), ((200, 60), LARGE)]
+    ("size", "name"),
+    [
+        ((80, 24), TerminalSize.SMALL),
+        ((111, 40), TerminalSize.SMALL),
+        ((120, 40), TerminalSize.MEDIUM),
+        ((200, 60), TerminalSize.LARGE),
+    ],
 )
 def test_size_class(size: tuple[int, int], name: str) -> None:
     assert size_class(*size) == name

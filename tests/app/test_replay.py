@@ -16,10 +16,9 @@ from textual.widgets import Input, OptionList
 from tests.app.app_help import LOGS, notices, program, ready, screen_text, settings, until
 from tests.conftest import Command
 from tests.running import PATIENCE_S
-from tuisim.app.app import LabApp
+from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.runs import RunChooser, matching
-from tuisim.app.snapshot import ENDED
-from tuisim.app.start_options import AppSettings
+from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.protocol import End, SetNoise, UserAction
@@ -49,7 +48,7 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
     run_id = stored()
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED and "finished at" in screen_text(app))
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and "finished at" in screen_text(app))
         assert "Colour: " in screen_text(app)
         assert app.run_controller.run_id == run_id
         assert app.run_controller.next_run.spec == RunStore().load_run(run_id).spec
@@ -63,7 +62,7 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
         assert app.run_controller.snapshot().instant.noise.light == 0
         app.run_controller.set_speed(0.0)
         await pilot.press("R", "r")
-        await until(pilot, lambda: app.run_controller.run_id != run_id and app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.run_id != run_id and app.run_controller.state == RunPhase.ENDED)
         again, first = RunStore().load_run(app.run_controller.run_id), RunStore().load_run(run_id)
         assert again.program.text == first.program.text
         assert again.telemetry.array()[:100].tobytes() == first.telemetry.array()[:100].tobytes()
@@ -98,7 +97,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
     folder = RunStore().folder(run_id)
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         # The prepared mat is in the cache still.
         assert app.run_controller.snapshot().colors["left"].green > 150
         assert app.run_controller.program is not None
@@ -110,7 +109,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
         Path(name[1]).unlink()
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: any("the mat of the run" in notice for notice in notices(app)))
         await pilot.press("less_than_sign")
         assert app.run_controller.snapshot().past

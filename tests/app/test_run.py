@@ -11,7 +11,7 @@ from textual.widgets import Input
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.output import Answer
-from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, WAITING
+from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.logs.reader import read_log
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.usefixtures("home")
 async def test_a_run_shows_its_output_and_its_end() -> None:
     async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: "Colour: 0.0" in screen_text(app))
         assert "finished" in screen_text(app).splitlines()[-1]
         assert app.run_controller.pose.x_mm > 1400
@@ -33,7 +33,7 @@ async def test_the_same_run_again_gives_the_same_log(tmp_path: Path) -> None:
         app = await ready(pilot)
         for file in files:
             await pilot.press("R")
-            await until(pilot, lambda: app.run_controller.state == ENDED)
+            await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
             await pilot.press("e")
             entry = app.screen.query_one(Input)
             entry.value = str(file)
@@ -50,7 +50,7 @@ async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
     target.write_text("mine")
     async with LabApp(settings("print('A: 1')\n", autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await pilot.press("e")
         app.screen.query_one(Input).value = str(tmp_path / "x.xls")
         await pilot.press("enter")
@@ -69,17 +69,18 @@ async def test_pause_one_tick_go_on_and_stop() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await until(
-            pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.snapshot().instant.tick > 5
+            pilot,
+            lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.snapshot().instant.tick > 5,
         )
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
         tick = app.run_controller.snapshot().instant.tick
         await pilot.press("full_stop")
         await until(pilot, lambda: app.run_controller.snapshot().instant.tick == tick + 1)
         await pilot.press("space")
         await until(pilot, lambda: app.run_controller.snapshot().instant.tick > tick + 5)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert app.run_controller.snapshot().end == "stopped"
 
 
@@ -90,9 +91,9 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
         app.run_controller.place(Pose(1000, 700, 90))
         await until(pilot, lambda: app.run_controller.pose.y_mm >= 700)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         # A run begins where the last one began, unless the robot was placed at rest.
         assert app.run_controller.pose.y_mm == 500
 
@@ -100,7 +101,7 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
 async def test_an_error_is_shown_with_its_line() -> None:
     async with LabApp(settings("print('A: 1')\nprint(nothing)\n", autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: "NameError" in screen_text(app))
         text = screen_text(app)
         assert "✗ 2" in text
@@ -117,12 +118,12 @@ async def test_input_is_answered_from_the_app(keys: list[str], printed: str) -> 
     asks = "try:\n    print('got', input('Name? '))\nexcept EOFError:\n    print('nothing more')\n"
     async with LabApp(settings(asks, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == WAITING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
         await until(pilot, lambda: isinstance(app.focused, Answer))
         assert "Name?" in screen_text(app)
         await pilot.press(*keys)
         await until(pilot, lambda: printed in screen_text(app))
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: not app.query(Answer))
 
 
@@ -131,7 +132,7 @@ async def test_a_flood_of_prints_leaves_the_app_usable() -> None:
     flood = "for n in range(200_000):\n    print('line', n)\n"
     async with LabApp(settings(flood, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await pilot.press("D")
         assert not app.panel_area.shown("code")
         await until(pilot, lambda: "line 199999" in screen_text(app))
@@ -140,7 +141,7 @@ async def test_a_flood_of_prints_leaves_the_app_usable() -> None:
 async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         run = app.run_controller.run
         assert run is not None
         await pilot.press("q", "n")

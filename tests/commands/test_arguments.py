@@ -13,10 +13,9 @@ from tests.app.app_help import ready, until
 from tests.conftest import Command
 from tests.running import until as until_so
 from tuisim.api import simulate
-from tuisim.app.actions.branch import Branch
-from tuisim.app.app import LabApp
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.branch import Branch
 from tuisim.app.setup.fields import find
-from tuisim.app.start_options import AppSettings
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.worlds import load_world, save_world

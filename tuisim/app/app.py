@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import constants, events
@@ -16,26 +18,33 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
 
-from tuisim.app.actions import branch, time_travel
-from tuisim.app.actions.table import ACTIONS, IN_RUN, Situation, working
+from tuisim.app.actions import time_travel
+from tuisim.app.actions.table import ACTIONS, working
 from tuisim.app.background import is_leaving
+from tuisim.app.branch import branch_message
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
-from tuisim.app.keys.action import ActionHost, KeyWord, key_bindings
+from tuisim.app.keys.action import KeyWord, key_bindings
 from tuisim.app.keys.footer import FIELD_KEYS, TYPING_KEYS, KeyFooter
-from tuisim.app.loader import PERIOD_S, Loader, open_run
+from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
 from tuisim.app.panels import PANELS
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
-from tuisim.app.snapshot import ENDED, GOOD_ENDS, Snapshot, end_label, speed_label
+from tuisim.app.setup import next_run as plans
+from tuisim.app.setup.next_run import NextRun
+from tuisim.app.snapshot import GOOD_ENDS, AppState, Situation, end_label
 from tuisim.app.speech import Voice
-from tuisim.app.start_options import AppSettings
 from tuisim.app.terminal.pacer import Pacer
+from tuisim.app.workspace import Workspace
+from tuisim.config.options import DEFAULT_FPS, Settings
+from tuisim.core.spec import RunSpec
 from tuisim.errors import TuisimError
 from tuisim.protocol import End, Ended
 from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.run_folder import StoredRun
+from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
@@ -51,7 +60,47 @@ _AWAKE_S = 1.0
 """Seconds to keep polling at frame rate after something has happened."""
 
 
-class LabApp(ActionHost, PanelMessages):
+@dataclass(frozen=True, slots=True)
+class AppSettings:
+    """Everything the command line decides about the app."""
+
+    spec: RunSpec
+    settings: Settings | None = None
+    """The options that `spec` was built from; None if they are not known."""
+    world_file: Path | None = None
+    """The world file that was opened, to be watched and saved again."""
+    program: Program | None = None
+    """None opens the app without a program."""
+    replay: StoredRun | None = None
+    """A stored run to show; spec and program are its own."""
+    background: str = "Empty_Map"
+    """Name of the mat; `spec.world.background` agrees with it."""
+    panels_on: frozenset[str] = field(default_factory=frozenset)
+    """Ids of panels shown whatever the size of the terminal."""
+    panels_off: frozenset[str] = field(default_factory=frozenset)
+    """Ids of panels hidden whatever the size of the terminal."""
+    autorun: bool = False
+    """Run the program as soon as the mat is ready."""
+    quiet: bool = False
+    """Never speak aloud."""
+    rays: bool = False
+    """Draw the ultrasonic rays."""
+    speed: float = 1.0
+    """1.0 real time, 0 as fast as possible."""
+    fps: int = DEFAULT_FPS
+    """Most frames a second."""
+    colors: str = "auto"
+    """auto, truecolor, 256, 16 or none; must be set before the terminal is opened."""
+
+
+def _first_next_run(settings: AppSettings) -> NextRun:
+    if settings.settings is not None:
+        return plans.plan_of(settings.settings)
+    arguments = settings.program.arguments if settings.program else ()
+    return plans.with_arguments(plans.plan_of_run(settings.spec), arguments)
+
+
+class LabApp(PanelMessages):
     """The robot lab.
 
     Args:
@@ -70,19 +119,24 @@ class LabApp(ActionHost, PanelMessages):
     def __init__(self, settings: AppSettings) -> None:
         super().__init__()
         self.settings = settings
-        self.run_controller = RunController(settings)
+        self.run_controller = RunController(settings.program, _first_next_run(settings), settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
         self.voice = Voice(settings.quiet)
-        self.run_controller.propose = partial(branch.propose, self)
         self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None
         self._drawn: object = None
-        self.loader = Loader(self)
-        self.document = Document(self)
-        self.debugger = AppDebugger(self)
-        self.brick_hint = BrickHint(self)
+        self.loader = Loader(
+            self, self.run_controller, self.panel_area, self.next_run_changed, self.mat_ready, settings.world_file
+        )
+        self.document = Document(self, self.run_controller, self.panel_area, self.loader)
+        self.debugger = AppDebugger(self, self.run_controller, self.panel_area, self.document.lines, self._to_now)
+        self.workspace = Workspace(
+            self, self.run_controller, self.panel_area, self.document, self.loader, self.debugger
+        )
+        self.run_controller.propose = partial(time_travel.propose_branch, self.workspace)
+        self.brick_hint = BrickHint(self._hint_at_brick)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._beats: Timer | None = None
         self._awake_until_s = 0.0
@@ -108,20 +162,27 @@ class LabApp(ActionHost, PanelMessages):
             return
         self.panel_area.ensure("world", "output", "chart")
         if self.settings.replay:
-            open_run(self, self.settings.replay)
-            self.document.begin()
+            self.loader.open_run(self.settings.replay)
         else:
             self.loader.prepare_mat()
             self.loader.begin()
+        self.document.begin()
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugger.program_changed(self.run_controller.program)
         self._beats = self.set_interval(1 / self.settings.fps, self._beat)
         self.set_interval(_REST_GAP_S, self._seldom)
-        self.set_interval(PERIOD_S, self.loader.check_files)
+        self.set_interval(PERIOD_S, self.check_files)
+
+    def check_files(self) -> None:
+        """Reload the files that have changed on disk, or ask about those with unsaved edits."""
+        self.loader.check_files(self.document.conflicts_with)
+
+    def _to_now(self) -> None:
+        time_travel.to_now(self.workspace)
 
     def suspending(self) -> None:
         """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""
-        time_travel.stop_time(self)
+        time_travel.stop_time(self.workspace)
 
     def on_unmount(self) -> None:
         """Kill the child process and save unsaved work as a draft."""
@@ -190,7 +251,7 @@ class LabApp(ActionHost, PanelMessages):
         try:
             news = self.run_controller.poll()
             self._take(news)
-            time_travel.beat(self)
+            time_travel.beat(self.workspace)
             self.debugger.beat()
             # A frame that has to wait counts as drawn.
             drew = not self.pacer.ready() or self.draw()
@@ -239,7 +300,7 @@ class LabApp(ActionHost, PanelMessages):
             elif news.prompt is None and output.asking:
                 output.stop_asking()
         if news.branched and (recording := self.run_controller.timeline.recording):
-            self.say(branch.branch_message(news.branched, recording))
+            self.say(branch_message(news.branched, recording))
             self.situation_changed()
         if news.ended:
             self._ended(news.ended)
@@ -276,13 +337,14 @@ class LabApp(ActionHost, PanelMessages):
         known = ended.end in (End.FINISHED, End.RAISED)
         self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
         self.situation_changed()
-        self.loader.check_files()
+        self.check_files()
 
     # The picture
 
     def draw(self, force: bool = False) -> bool:
         """Show the current moment in every panel. Return whether it differs from what they show already."""
-        snapshot = self.run_controller.snapshot()
+        state = self.state()
+        snapshot = state.view
         now = (
             (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
             (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
@@ -295,7 +357,7 @@ class LabApp(ActionHost, PanelMessages):
         self._feed_panels()
         self.past_view.show()
         self.panel_area.show(snapshot)
-        self._show_footer(snapshot)
+        self._show_footer(state)
         self.pacer.drawn()
         return True
 
@@ -328,29 +390,32 @@ class LabApp(ActionHost, PanelMessages):
     def situation_changed(self) -> None:
         """Update the footer."""
         self._wake()
-        self._show_footer(self.run_controller.snapshot())
+        self._show_footer(self.state())
 
     def situation(self) -> Situation:
         """Return the state that decides which keys are available."""
-        run_controller = self.run_controller
-        has_program = run_controller.program is not None
-        return Situation(
-            run_controller.state,
-            has_program,
-            bool(run_controller.run_id),
-            run_controller.in_past,
-            self.debugger.is_away,
+        runs = self.run_controller
+        return Situation(runs.state, runs.program is not None, bool(runs.run_id), runs.in_past, self.debugger.is_away)
+
+    def action_target(self) -> Workspace:
+        """Return what the functions behind the keys get."""
+        return self.workspace
+
+    def state(self) -> AppState:
+        """Return everything that panels and footer show, at the instant in view."""
+        runs = self.run_controller
+        return AppState(
+            program=runs.program,
+            next_run=runs.next_run,
+            view=runs.snapshot(),
+            debug=self.debugger.state,
+            situation=self.situation(),
+            playing=runs.timeline.playing,
         )
 
-    def _show_footer(self, snapshot: Snapshot) -> None:
-        status = end_label(snapshot.end) if snapshot.state == ENDED else snapshot.state
-        if self.debugger.looks_back:
-            status = "playing" if self.run_controller.timeline.playing else f"past {snapshot.time_s:.2f} s"
-        if snapshot.state in IN_RUN or snapshot.speed != 1:
-            status += f" {speed_label(snapshot.speed)}"
+    def _show_footer(self, state: AppState) -> None:
         off = frozenset(f"panel-{panel}" for panel in PANELS if not self.panel_area.shown(panel))
-        failed = snapshot.failed and not self.debugger.looks_back
-        self.key_footer.show(working(self.situation()), status, off, self._field_keys(), failed)
+        self.key_footer.show(working(state.situation), state.status, off, self._field_keys(), state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
         """Return the keys of the text field that has the focus; empty if there is none."""
@@ -361,6 +426,10 @@ class LabApp(ActionHost, PanelMessages):
         code = self.panel_area.code
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
         return TYPING_KEYS if typing else ()
+
+    def _hint_at_brick(self, what: str) -> None:
+        if not self.panel_area.shown("brick"):
+            self.say(f"The program {what}: {PANELS['brick'].key} opens its panel")
 
     # Panels
 
@@ -394,7 +463,7 @@ class LabApp(ActionHost, PanelMessages):
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""
         if self.debugger.is_away and self.focused in (None, self.panel_area.world):
-            time_travel.to_now(self)
+            time_travel.to_now(self.workspace)
         self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
@@ -437,27 +506,27 @@ def looks_at_buttons(program: str) -> bool:
 
 
 class BrickHint:
-    """Suggests the brick panel, once per run.
+    """Suggests the brick panel, once.
 
     Args:
-        lab: The app.
+        hint: Called with what the program does.
     """
 
-    def __init__(self, lab: LabApp) -> None:
-        self._lab = lab
-        self._told = False
+    def __init__(self, hint: Callable[[str], None]) -> None:
+        self._hint = hint
+        self._given = False
 
     def started(self, program: str) -> None:
         """Check whether the text of a started program uses the brick's buttons."""
-        if not self._told and looks_at_buttons(program):
-            self._tell("looks at the brick's buttons")
+        if looks_at_buttons(program):
+            self._give("looks at the brick's buttons")
 
     def shown(self, rows: Iterable[OutputRow]) -> None:
         """Check the rows that the program has written."""
-        if not self._told and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in rows):
-            self._tell("shows something on the brick")
+        if not self._given and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in rows):
+            self._give("shows something on the brick")
 
-    def _tell(self, what: str) -> None:
-        self._told = True
-        if not self._lab.panel_area.shown("brick"):
-            self._lab.say(f"The program {what}: {PANELS['brick'].key} opens its panel")
+    def _give(self, what: str) -> None:
+        if not self._given:
+            self._given = True
+            self._hint(what)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
-from tuisim.app.actions import time_travel
-from tuisim.app.snapshot import PAUSED
+from tuisim.app.snapshot import DebugState, PauseView, RunPhase
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.errors import ConfigError, TuisimError
@@ -19,7 +19,10 @@ from tuisim.runs.replay_debugger import Position, ReplayDebugger
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
+    from tuisim.app.editor.text_lines import LineMap
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.run_controller import RunController
+    from tuisim.app.services import AppServices
     from tuisim.source import Program
 
 FOLDER = "breaks"
@@ -94,28 +97,30 @@ SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK}
 """Pause reasons that open the debug panels automatically."""
 
 
-@dataclass(frozen=True, slots=True)
-class DebugView:
-    """Where a program is paused, and its frames and variables there."""
-
-    paused: Paused
-    inspected: Inspected
-    past: bool
-    """Whether this is a past instant."""
-
-
 class AppDebugger:
     """The debugger of the app.
 
     Args:
-        lab: The app.
+        app: Shows notices, and starts the program.
+        run_controller: Gets debug commands.
+        panel_area: Has the code and debug panels.
+        lines: Returns the map between the lines of the current run and those of the edited text.
+        to_now: Returns from the past to the newest instant.
     """
 
-    def __init__(self, lab: LabApp) -> None:
-        self._lab = lab
+    def __init__(
+        self,
+        app: AppServices,
+        run_controller: RunController,
+        panel_area: PanelArea,
+        lines: Callable[[], LineMap],
+        to_now: Callable[[], None],
+    ) -> None:
+        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
+        self._lines, self._to_now = lines, to_now
         self.breaks: tuple[Breakpoint, ...] = ()
         self.watches: tuple[str, ...] = ()
-        self.view: DebugView | None = None
+        self.view: PauseView | None = None
         """What is shown; None while the program runs, or before it is first paused."""
         self._program = ""
         self._text = ""
@@ -169,13 +174,13 @@ class AppDebugger:
 
     def _send_breakpoints(self) -> None:
         """Send the breakpoints to the live run, each on its line of the text that runs."""
-        lines, texts = self._lab.document.lines(), []
+        lines, texts = self._lines(), []
         for one in self.breaks:
             shown = break_line_of(one)
             runs = lines.to_run(shown)
             if runs or not shown:
                 texts.append(moved(one, runs).written())
-        self._lab.run_controller.debug(protocol.SetBreaks(tuple(texts)))
+        self._run_controller.debug(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
         """Set the watched expressions and store them."""
@@ -188,11 +193,11 @@ class AppDebugger:
             try:
                 keep(self._program, Kept(self.breaks, self.watches))
             except TuisimError as error:
-                self._lab.complain(error)
+                self._app.complain(error)
 
     def mark(self) -> None:
         """Show the breakpoints in the code."""
-        if code := self._lab.panel_area.code:
+        if code := self._panel_area.code:
             marks = {line: _mark(one) for line, one in break_lines(self.breaks).items()}
             code.set_marks(marks)
 
@@ -210,7 +215,7 @@ class AppDebugger:
 
     def run_changed(self) -> None:
         """Reset the state for another run, or none."""
-        self._paused = self._position = self.view = self._lab.run_controller.paused_line = None
+        self._paused = self._position = self.view = self._run_controller.paused_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._first, self._more_back = None, 0
@@ -221,7 +226,7 @@ class AppDebugger:
         """Handle the end of the run: it is no longer paused; a past instant stays in view."""
         self._paused = None
         if not self.is_away:
-            self.view = self._lab.run_controller.paused_line = None
+            self.view = self._run_controller.paused_line = None
             self.show()
 
     def handle(self, event: Message) -> None:
@@ -234,24 +239,24 @@ class AppDebugger:
                 self._handle_pause(event)
             case protocol.Resumed():
                 self._paused = None
-                if not self._lab.run_controller.in_past:
+                if not self._run_controller.in_past:
                     self._position = self.view = None
                     self.show()
             case Inspected() if self._paused is not None and not self.looks_back:
-                self._set_paused(DebugView(self._paused, event, False))
+                self._set_paused(PauseView(self._paused, event, False))
 
     def _handle_pause(self, paused: Paused) -> None:
         self._paused, self._position = paused, None
         self._frame, self._thread = 0, ""
         if self._first is not None and paused.reason is not PauseReason.BREAK:
             first, self._first = self._first, None
-            self._lab.run_controller.debug(first)
+            self._run_controller.debug(first)
             return
         if paused.reason in SHOWS_PANELS:
             self._open_panels()
         if paused.reason is PauseReason.BREAK:
             met = f": {paused.value}" if paused.value else ""
-            self._lab.say(f"Break {paused.detail}{met} at {paused.time_ns / 1e9:.2f} s")
+            self._app.say(f"Break {paused.detail}{met} at {paused.time_ns / 1e9:.2f} s")
         self._inspect_again()
 
     def _open_panels(self) -> None:
@@ -260,15 +265,15 @@ class AppDebugger:
             return
         self._panels_opened = True
         for panel in ("code", "debug"):
-            if not self._lab.panel_area.shown(panel):
-                self._lab.panel_area.toggle(panel)
+            if not self._panel_area.shown(panel):
+                self._panel_area.toggle(panel)
 
     # Inspect
 
     @property
     def looks_back(self) -> bool:
         """Whether a past instant is viewed, even one within the newest tick."""
-        return self._position is not None or self._lab.run_controller.in_past
+        return self._position is not None or self._run_controller.in_past
 
     @property
     def busy(self) -> bool:
@@ -279,6 +284,11 @@ class AppDebugger:
     def is_away(self) -> bool:
         """Whether a past instant is viewed, or will be once it is computed."""
         return self.looks_back or self.busy
+
+    @property
+    def state(self) -> DebugState:
+        """What is known now, as a value."""
+        return DebugState(self.view, self.looks_back, self.busy)
 
     @property
     def look(self) -> protocol.Inspect:
@@ -303,19 +313,19 @@ class AppDebugger:
         if self.looks_back:
             self._replay_debugger.look(self.look)
         elif self._paused is not None:
-            self._lab.run_controller.debug(self.look)
+            self._run_controller.debug(self.look)
 
     def beat(self) -> None:
         """Follow the instant in view and process what has been computed."""
         self._replay_debugger.beat()
-        timeline = self._lab.run_controller.timeline
+        timeline = self._run_controller.timeline
         if self._position is not None and timeline.at not in (None, self._position.tick):
             self._position = None
         if not self.looks_back:
             if self.view and self.view.past and not self.busy:
                 self._back_to_now()
             return
-        if timeline.at is not None and self._position is None and self._lab.panel_area.shown("debug"):
+        if timeline.at is not None and self._position is None and self._panel_area.shown("debug"):
             self._follow(Position(timeline.at))
 
     def to_now(self) -> None:
@@ -333,7 +343,7 @@ class AppDebugger:
         self._inspect_again()
 
     def _follow(self, position: Position) -> None:
-        timeline = self._lab.run_controller.timeline
+        timeline = self._run_controller.timeline
         if timeline.recording is None or timeline.playing or self._replay_debugger.busy or position == self._wanted:
             return
         self._wanted = position
@@ -341,7 +351,7 @@ class AppDebugger:
         self.show()
 
     def _arrived(self, paused: Paused, inspected: Inspected) -> None:
-        timeline, here = self._lab.run_controller.timeline, Position(paused.tick, paused.ordinal)
+        timeline, here = self._run_controller.timeline, Position(paused.tick, paused.ordinal)
         if self._wanted is None:
             if not self._is_past(here):
                 self._reached_now()
@@ -352,8 +362,8 @@ class AppDebugger:
             # The user has gone elsewhere meanwhile.
             self._wanted = None
             return
-        self._set_paused(DebugView(paused, inspected, True))
-        self._lab.situation_changed()
+        self._set_paused(PauseView(paused, inspected, True))
+        self._app.situation_changed()
         if self._more_back:
             self.lines_back(0)
 
@@ -361,35 +371,35 @@ class AppDebugger:
         """Return whether an instant is in the past; a re-run may get farther than the current run."""
         now = self._paused
         if now is None or now.ordinal == UNKNOWN_ORDINAL:
-            return at.tick <= (self._lab.run_controller.timeline.newest if now is None else now.tick)
+            return at.tick <= (self._run_controller.timeline.newest if now is None else now.tick)
         return at.is_before(Position(now.tick, now.ordinal))
 
     def _reached_now(self) -> None:
-        time_travel.to_now(self._lab)
+        self._to_now()
         self._back_to_now()
 
     def _not_there(self, why: str) -> None:
         self._wanted, self._more_back = None, 0
-        self._lab.say(why)
+        self._app.say(why)
         self.show()
 
-    def _set_paused(self, view: DebugView) -> None:
+    def _set_paused(self, view: PauseView) -> None:
         self.view = view
         line = view.paused.line if not view.paused.file else 0
-        self._lab.run_controller.paused_line = (view.paused.tick, line)
+        self._run_controller.paused_line = (view.paused.tick, line)
         self.show()
-        self._lab.draw(force=True)
+        self._app.draw(force=True)
 
     def show(self) -> None:
         """Update the debug panel."""
-        if panel := self._lab.panel_area.debug:
-            panel.show_debugging(self)
+        if panel := self._panel_area.debug:
+            panel.show_pause(self.state)
 
     # Steps
 
     def _here(self) -> Position | None:
         """Return the instant in view, exact to the line as far as that is known."""
-        timeline = self._lab.run_controller.timeline
+        timeline = self._run_controller.timeline
         if self._position is not None:
             return self._position
         if timeline.at is not None:
@@ -404,29 +414,28 @@ class AppDebugger:
 
     def run_to(self, line: int) -> None:
         """Continue until a line is about to run."""
-        run_controller = self._lab.run_controller
-        runs = self._lab.document.lines().to_run(line) if run_controller.in_run or self.is_away else line
+        run_controller = self._run_controller
+        runs = self._lines().to_run(line) if run_controller.in_run or self.is_away else line
         if runs:
             self.go_on(protocol.RunToLine(runs))
         else:
-            self._lab.say("This line is not in the text that runs")
+            self._app.say("This line is not in the text that runs")
 
     def go_on(self, command: Message) -> None:
         """Send a command that continues the program until it pauses again."""
-        lab = self._lab
         if self.is_away:
             self._in_past(command)
-        elif lab.run_controller.in_run:
-            lab.run_controller.debug(command)
+        elif self._run_controller.in_run:
+            self._run_controller.debug(command)
         else:
             # A program started for this pauses at its first line anyway.
             first = None if isinstance(command, protocol.StepLine) else command
-            if lab.start_run(paused=True):
+            if self._app.start_run(paused=True):
                 self._first = first
                 self._open_panels()
 
     def _in_past(self, command: Message) -> None:
-        timeline = self._lab.run_controller.timeline
+        timeline = self._run_controller.timeline
         if timeline.recording is None or self._replay_debugger.busy:
             return
         self._open_panels()
@@ -438,15 +447,14 @@ class AppDebugger:
 
     def lines_back(self, count: int) -> None:
         """Go back by a number of executed lines."""
-        lab = self._lab
-        here, recording = self._here(), lab.run_controller.timeline.recording
+        here, recording = self._here(), self._run_controller.timeline.recording
         if here is None or recording is None:
-            lab.say("No run yet to look back on: R runs the program")
+            self._app.say("No run yet to look back on: R runs the program")
         elif self._replay_debugger.busy:
             self._more_back += count
         else:
-            if lab.run_controller.in_run and lab.run_controller.state != PAUSED:
-                lab.run_controller.pause()
+            if self._run_controller.in_run and self._run_controller.state != RunPhase.PAUSED:
+                self._run_controller.pause()
             self._open_panels()
             self._position, self._wanted = None, None
             count, self._more_back = count + self._more_back, 0

@@ -20,7 +20,10 @@ from tuisim.runs.handle import program_again
 from tuisim.source import Program
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.render.mat import Pixels
+    from tuisim.app.run_controller import RunController
+    from tuisim.app.services import AppServices
     from tuisim.app.setup.mat import Mat
     from tuisim.core.spec import RunSpec
     from tuisim.runs.run_folder import StoredRun
@@ -33,15 +36,29 @@ class Loader:
     """Loads files and settings into the app.
 
     Args:
-        lab: The app.
+        app: Shows notices.
+        run_controller: Gets the next run, its program and its mat.
+        panel_area: Gets the panels, rays and pen trace that files ask for.
+        on_change: Called after the next run has changed.
+        on_mat: Called when a mat is ready, with its image unless that is shown already.
+        world_file: The world file that was opened at the start.
     """
 
-    def __init__(self, lab: LabApp) -> None:
-        self._lab = lab
+    def __init__(
+        self,
+        app: AppServices,
+        run_controller: RunController,
+        panel_area: PanelArea,
+        on_change: Callable[[], None],
+        on_mat: Callable[[Pixels | None], None],
+        world_file: Path | None,
+    ) -> None:
+        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
+        self._on_change, self._on_mat = on_change, on_mat
         self._watch = Watch()
         self._good: tuple[NextRun, Mat] | None = None
         """The last mat that was prepared, with its plan."""
-        self.world_file: Path | None = lab.settings.world_file
+        self.world_file = world_file
         """The world file that was last opened or saved."""
         self._world_settings: Mapping[str, Any] = {}
         self._world_refers: tuple[Path, ...] = ()
@@ -54,7 +71,7 @@ class Loader:
 
     def begin(self) -> None:
         """Register what the command line has opened, and watch those files."""
-        program = self._lab.run_controller.program
+        program = self._run_controller.program
         try:
             if self.world_file is not None:
                 self._read_world(self.world_file)
@@ -64,26 +81,25 @@ class Loader:
             # It was read a moment ago and is invalid now: the next check reports that.
             pass
         self._follow()
-        self._lab.document.begin()
 
     # The mat
 
     @property
     def mat_is_ready(self) -> bool:
         """Whether the mat is prepared for the robot's sensors."""
-        mat = self._lab.run_controller.mat
-        return mat is not None and mat.serves(self._lab.run_controller.next_run.spec)
+        mat = self._run_controller.mat
+        return mat is not None and mat.serves(self._run_controller.next_run.spec)
 
     def prepare_mat(self) -> None:
-        """Prepare the mat in the background; `LabApp.mat_ready` is called when done."""
-        spec = self._lab.run_controller.next_run.spec
+        """Prepare the mat in the background; `on_mat` is called when done."""
+        spec = self._run_controller.next_run.spec
         work, failed = partial(prepare_mat, spec), partial(self._mat_failed, spec)
-        background.run(self._lab, work, self._prepared, failed, group="mat", exclusive=True)
+        background.run(self._panel_area, work, self._prepared, failed, group="mat", exclusive=True)
 
     def _mat_failed(self, spec: RunSpec, error: TuisimError) -> None:
         """Report the error in a mat, and restore the previous mat."""
-        self._lab.complain(error)
-        run_controller = self._lab.run_controller
+        self._app.complain(error)
+        run_controller = self._run_controller
         if (
             self._good is not None
             and not run_controller.in_run
@@ -93,20 +109,20 @@ class Loader:
             self._load(plan, run_controller.program)
 
     def _prepared(self, mat: Mat) -> None:
-        run_controller = self._lab.run_controller
+        run_controller = self._run_controller
         if mat.key == mat_key(run_controller.next_run.spec):
             same_picture = run_controller.mat is not None and run_controller.mat.key[:2] == mat.key[:2]
             run_controller.mat = mat
             self._good = run_controller.next_run, mat
-            self._lab.mat_ready(None if same_picture else mat.pixels)
+            self._on_mat(None if same_picture else mat.pixels)
 
     def lay_out(self, plan: NextRun, program: Program | None, mat: Mat) -> None:
         """Set a plan and a program together with their mat, which must have been prepared already."""
-        self._lab.run_controller.mat = mat
+        self._run_controller.mat = mat
         self._good = plan, mat
         self._note_program(program, _settings_in(program))
         self._load(plan, program)
-        self._lab.mat_ready(mat.pixels)
+        self._on_mat(mat.pixels)
 
     # What the user chooses
 
@@ -115,7 +131,7 @@ class Loader:
         try:
             self.set_next_run(self.change(make))
         except TuisimError as error:
-            self._lab.complain(error)
+            self._app.complain(error)
             return False
         return True
 
@@ -125,60 +141,53 @@ class Loader:
         Raises:
             TuisimError: there is a run, or the change is impossible.
         """
-        if self._lab.run_controller.in_run:
+        if self._run_controller.in_run:
             raise TuisimError(NOT_NOW)
-        return make(self._lab.run_controller.next_run)
+        return make(self._run_controller.next_run)
 
     def set_next_run(self, plan: NextRun) -> None:
         """Set a plan that differs in other things than the start."""
-        if plan.robot != self._lab.run_controller.next_run.robot:
+        if plan.robot != self._run_controller.next_run.robot:
             for note in plan.robot.notes:
-                self._lab.say(note)
-        self._lab.run_controller.change(plan)
+                self._app.say(note)
+        self._run_controller.change(plan)
         self._loaded()
 
     def change_mat(self, name: str) -> None:
         """Change the mat; the robot goes to its start."""
         try:
-            self._load(plans.with_mat(self._lab.run_controller.next_run, name), self._lab.run_controller.program)
+            self._load(plans.with_mat(self._run_controller.next_run, name), self._run_controller.program)
         except TuisimError as error:
-            self._lab.complain(error)
+            self._app.complain(error)
 
     def open_file(self, path: str) -> None:
-        """Open a program with the world that it asks for, or a world with the program that it names.
-
-        If the open program has unsaved changes, a dialog asks first.
-        """
-        self._lab.document.when_safe(partial(self._open_file, path))
-
-    def _open_file(self, path: str) -> None:
+        """Open a program with the world that it asks for, or a world with the program that it names."""
         from tuisim.config.worlds import means_world
 
         opened = self._open_world if means_world(path) else self._open_program
         try:
             opened(str(Path(path).expanduser()))
         except TuisimError as error:
-            self._lab.complain(error)
+            self._app.complain(error)
 
     def _open_program(self, path: str) -> None:
         program, said = _read_program(path)
-        plan, before = plans.with_choices(self._lab.run_controller.next_run, said), self._lab.run_controller.program
+        plan, before = plans.with_choices(self._run_controller.next_run, said), self._run_controller.program
         if before is not None and before.path != program.path:
             plan = plans.with_arguments(plan, ())
         self._note_program(program, said)
         self._load(plan, program)
         self._apply_app_settings({}, said)
-        self._lab.say(f"{program.name} is open: R runs it")
+        self._app.say(f"{program.name} is open: R runs it")
 
     def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
         self._magic_settings, self._file_prelude = said, program.prelude if program else ""
 
     def _open_world(self, path: str) -> None:
-        lab = self._lab
         before = self.world_file, self._world_settings, self._world_refers
         try:
             named = self._read_world(Path(path))
-            program, magic = _read_program(named) if named else (lab.run_controller.program, {})
+            program, magic = _read_program(named) if named else (self._run_controller.program, {})
             # A world file replaces everything: earlier choices do not show through.
             fresh = plans.with_choices(plans.plan_of(Settings()), magic)
             plan = plans.with_choices(fresh, self._world_settings)
@@ -187,36 +196,63 @@ class Loader:
             raise
         self._note_program(program, magic)
         self._load(plan, program)
-        lab.say(f"{Path(path).name} is open" + (": R runs its program" if named else ""))
+        self._app.say(f"{Path(path).name} is open" + (": R runs its program" if named else ""))
 
     def _read_world(self, path: Path) -> str | None:
         """Read a world file and remember its settings. Return the path of its program."""
         from tuisim.config.worlds import load_world
 
-        world = load_world(path, self._lab.run_controller.next_run.settings.mats)
+        world = load_world(path, self._run_controller.next_run.settings.mats)
         self.world_file, self._world_settings, self._world_refers = path, world.settings, world.files
         return _program_path(world.program) if world.program is not None else None
 
     def _load(self, plan: NextRun, program: Program | None) -> None:
-        self._lab.run_controller.load(plan, program)
-        if world := self._lab.panel_area.world:
+        self._run_controller.load(plan, program)
+        if world := self._panel_area.world:
             world.clear_trace()
         self._loaded()
 
     def _loaded(self) -> None:
-        lab = self._lab
         self._follow()
         if not self.mat_is_ready:
-            mat = lab.run_controller.mat
-            if mat is not None and mat.key[:2] != mat_key(lab.run_controller.next_run.spec)[:2]:
-                lab.run_controller.mat = None
+            mat = self._run_controller.mat
+            if mat is not None and mat.key[:2] != mat_key(self._run_controller.next_run.spec)[:2]:
+                self._run_controller.mat = None
             self.prepare_mat()
-        lab.next_run_changed()
+        self._on_change()
+
+    # Stored runs
+
+    def open_run(self, run: str | StoredRun) -> None:
+        """Show a stored run, given as an object or by number or id; errors are shown to the user."""
+        if self._run_controller.in_run:
+            self._app.say(NOT_NOW)
+            return
+        work = partial(_prepare_run, run)
+        background.run(self._panel_area, work, self._show_run, self._app.complain, group="mat", exclusive=True)
+
+    def _show_run(self, loaded: tuple[StoredRun, Mat, TuisimError | None]) -> None:
+        run, mat, mat_error = loaded
+        if mat_error is not None:
+            self._app.complain(mat_error)
+        if self._run_controller.in_run:
+            self._app.say(NOT_NOW)
+            return
+        plan = with_arguments(plan_of_run(run.spec), run.program.arguments)
+        self.lay_out(plan, program_of(run), mat)
+        self._run_controller.replay(run)
+        end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
+        words = f"— {end_label(run.state)} at {end_s:.2f} s · {_title(run)}"
+        self._app.run_changed(words, run.end.error_line if run.end else 0)
+        for note in run.notes:
+            self._app.say(note)
+        self._app.say(f"{_title(run)} is open: , < and g go back in it, R runs it again")
+        self._app.draw(force=True)
 
     # Files that change on the disk
 
     def _follow(self) -> None:
-        run_controller, words = self._lab.run_controller, self._lab.run_controller.next_run.words
+        run_controller, words = self._run_controller, self._run_controller.next_run.words
         paths = [Path(run_controller.program.path)] if run_controller.program and run_controller.program.path else []
         paths += [self.world_file, *self._world_refers] if self.world_file else []
         paths += [Path(word).expanduser() for word in words.values() if _is_file_word(word)]
@@ -231,42 +267,45 @@ class Loader:
         try:
             self._read_world(path)
         except TuisimError as error:
-            self._lab.complain(error)
+            self._app.complain(error)
         self._follow()
         self._watch.note(path)
 
-    def check_files(self) -> None:
-        """Reload the files that have changed on disk; during a run, when it ends."""
+    def check_files(self, conflicts: Callable[[Path], bool]) -> None:
+        """Reload the files that have changed on disk; during a run, when it ends.
+
+        Args:
+            conflicts: Returns whether a file has unsaved edits, so that it is not reloaded now.
+        """
         changed = self._watch.changed()
-        if self._lab.run_controller.in_run:
+        if self._run_controller.in_run:
             for path in changed:
                 if path not in self._changed_in_run:
                     self._changed_in_run.append(path)
-                    self._lab.say(f"{path.name} changed on disk: reloaded when the run ends")
+                    self._app.say(f"{path.name} changed on disk: reloaded when the run ends")
             return
         changed, self._changed_in_run = (
             [*self._changed_in_run, *(path for path in changed if path not in self._changed_in_run)],
             [],
         )
         for path in changed:
-            if not self._lab.document.conflicts_with(path):
+            if not conflicts(path):
                 self.reload(path)
 
     def reload(self, path: Path) -> None:
         """Reload a file."""
-        lab = self._lab
         try:
             known = self._reread(path)
         except TuisimError as error:
-            lab.complain(error)
+            self._app.complain(error)
             return
         if known:
-            lab.say(f"{path.name} changed on disk: reloaded")
+            self._app.say(f"{path.name} changed on disk: reloaded")
 
     def _reread(self, path: Path) -> bool:
         """Read a file again. Return whether it is still in use."""
-        lab, plan = self._lab, self._lab.run_controller.next_run
-        program = lab.run_controller.program
+        plan = self._run_controller.next_run
+        program = self._run_controller.program
         if program and program.path and Path(program.path) == path:
             self._apply_program(*_read_program(program.path))
             return True
@@ -281,7 +320,7 @@ class Loader:
         for field in fields:
             self.set_next_run(plans.with_choices(plan, {field: plan.words[field]}))
         if path in self._world_refers and str(path) == plan.spec.world.background:
-            lab.run_controller.mat = None
+            self._run_controller.mat = None
             self._loaded()
             return True
         return bool(fields)
@@ -308,12 +347,12 @@ class Loader:
 
         file = program_of_text(text, None, name)
         self._note_program(file.program, file.switches)
-        self._lab.run_controller.program = file.program
+        self._run_controller.program = file.program
         self._loaded()
 
     def _apply_program(self, new: Program, said: Mapping[str, Any]) -> None:
         """Apply another text of the open program, with the changes in its magic line."""
-        program = self._lab.run_controller.program
+        program = self._run_controller.program
         as_said = new.prelude if new.prelude != self._file_prelude or program is None else program.prelude
         folder = program.module_folder if program and not new.path else ""
         before = self._magic_settings
@@ -323,21 +362,20 @@ class Loader:
 
     def _apply_app_settings(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
         """Apply the changes in a magic line that concern the app: panels, rays and speed."""
-        lab, panels = self._lab, _panels_in(now)
-        lab.panel_area.ask({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
-        if now.get("rays") and not before.get("rays") and lab.panel_area.world:
-            lab.panel_area.world.show_rays = True
+        panels = _panels_in(now)
+        self._panel_area.ask({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
+        if now.get("rays") and not before.get("rays") and self._panel_area.world:
+            self._panel_area.world.show_rays = True
         if now.get("speed") is not None and now["speed"] != before.get("speed"):
-            lab.run_controller.set_speed(now["speed"])
+            self._run_controller.set_speed(now["speed"])
 
     def _apply_changed(self, differences: Mapping[str, Any], program: Program | None) -> None:
         """Apply changed settings of a file; unchanged ones keep what the user has set since."""
-        lab = self._lab
-        plan = plans.with_choices(lab.run_controller.next_run, differences)
+        plan = plans.with_choices(self._run_controller.next_run, differences)
         if differences.keys() & {"background", *plans.POSE_FIELDS}:
             self._load(plan, program)
         else:
-            lab.run_controller.program = program
+            self._run_controller.program = program
             self.set_next_run(plan)
 
 
@@ -446,15 +484,7 @@ def program_of(run: StoredRun) -> Program:
     return replace(program_again(run), path="")
 
 
-def open_run(lab: LabApp, run: str | StoredRun) -> None:
-    """Show a stored run, given as an object or by number or id; errors are shown to the user."""
-    if lab.run_controller.in_run:
-        lab.say(NOT_NOW)
-        return
-    background.run(lab, partial(_prepare, run), partial(_show, lab), lab.complain, group="mat", exclusive=True)
-
-
-def _prepare(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
+def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
     """Return a run with its mat, or with a blank one and the reason for that. Reads both."""
     from tuisim.app.setup.mat import blank_mat, prepare_mat_of
     from tuisim.runs.store import RunStore
@@ -469,25 +499,6 @@ def _prepare(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]
         return run, prepare_mat_of(run), None
     except TuisimError as error:
         return run, blank_mat(run.spec), error
-
-
-def _show(lab: LabApp, loaded: tuple[StoredRun, Mat, TuisimError | None]) -> None:
-    run, mat, mat_error = loaded
-    if mat_error is not None:
-        lab.complain(mat_error)
-    if lab.run_controller.in_run:
-        lab.say(NOT_NOW)
-        return
-    plan = with_arguments(plan_of_run(run.spec), run.program.arguments)
-    lab.loader.lay_out(plan, program_of(run), mat)
-    lab.run_controller.replay(run)
-    end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
-    words = f"— {end_label(run.state)} at {end_s:.2f} s · {_title(run)}"
-    lab.run_changed(words, run.end.error_line if run.end else 0)
-    for note in run.notes:
-        lab.say(note)
-    lab.say(f"{_title(run)} is open: , < and g go back in it, R runs it again")
-    lab.draw(force=True)
 
 
 def _title(run: StoredRun) -> str:

@@ -12,7 +12,7 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.panels import BOTTOM, LARGE, MAIN, MEDIUM, PANELS, SIDE, SMALL, NextRunPanel, Panel
+from tuisim.app.panels import PANELS, NextRunPanel, Panel, PanelPlace, TerminalSize
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -201,6 +201,21 @@ class PanelArea(Container):
         """Focus the world if it is shown; the focus of a dialog above the panels stays."""
         self.screen.set_focus(self.world if self.shown("world") else None)
 
+    def attend(self, panel: str) -> None:
+        """Focus a panel that has been opened, if it can have the focus; the world if it was closed."""
+        widget = self.panels.get(panel)
+        if not self.shown(panel) or widget is None:
+            self.focus_world()
+        elif not widget.is_mounted:
+            # It is still being mounted.
+            widget.call_later(self.attend, panel)
+        elif hasattr(widget, "begin"):
+            widget.begin()
+        else:
+            inside = (child for child in widget.walk_children(Widget, with_self=True) if child.focusable)
+            if first := next(inside, None):
+                first.focus()
+
     def ensure(self, *panels: str) -> None:
         """Mount the panels that need data from the start, shown or not."""
         for panel in panels:
@@ -260,13 +275,13 @@ class PanelLayout:
     left_out: tuple[str, ...] = ()
 
 
-def size_class(width: int, height: int) -> str:
+def size_class(width: int, height: int) -> TerminalSize:
     """Return the size of a terminal: small, medium or large."""
     if width >= 170 and height >= 50:
-        return LARGE
+        return TerminalSize.LARGE
     if width >= 112 and height >= 34:
-        return MEDIUM
-    return SMALL
+        return TerminalSize.MEDIUM
+    return TerminalSize.SMALL
 
 
 def side_width(width: int) -> int:
@@ -311,7 +326,7 @@ def _strip_least(rows: list[list[str]]) -> int:
 
 
 def _fits(panels: Sequence[str], width: int, height: int) -> bool:
-    side, strip, main = (_in_place(panels, place) for place in (SIDE, BOTTOM, MAIN))
+    side, strip, main = (_in_place(panels, place) for place in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
     if sum(PANELS[panel].min_rows for panel in side) > height:
         return False
     left = width - (side_width(width) if side and (strip or main) else 0)
@@ -360,7 +375,7 @@ def arrange(panels: Sequence[str], width: int, height: int) -> PanelLayout:
     left_out: list[str] = []
     for panel in panels:
         (kept if _fits([*kept, panel], width, height) else left_out).append(panel)
-    side, strip, main = (_in_place(kept, place) for place in (SIDE, BOTTOM, MAIN))
+    side, strip, main = (_in_place(kept, place) for place in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
     boxes: dict[str, PanelBox] = {}
     left = width
     if side:

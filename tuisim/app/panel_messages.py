@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
-
-from textual.widget import Widget
+from typing import TYPE_CHECKING
 
 from tuisim.app.actions import time_travel
-from tuisim.app.editor.document import Document
+from tuisim.app.keys.action import ActionHost
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.terminal.terminal_app import TerminalApp
+from tuisim.app.workspace import Workspace
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
-    from tuisim.app.debugger import AppDebugger
-    from tuisim.app.loader import Loader
-    from tuisim.app.panel_area import PanelArea
     from tuisim.app.panels.brick import Brick
     from tuisim.app.panels.chart import Chart
     from tuisim.app.panels.code import Code
@@ -26,105 +21,86 @@ if TYPE_CHECKING:
     from tuisim.app.panels.position import Positioning
     from tuisim.app.panels.settings import Settings
     from tuisim.app.panels.world import TimeBar, World
-    from tuisim.app.run_controller import RunController
 
 ROOMY_COLUMNS, ROOMY_ROWS = 86, 15
 """A code panel smaller than this grows while the user types, so that lines of 79 characters are visible."""
 
 
-class CodeMessages(TerminalApp):
-    """Message handlers of the app for the code panel; Textual finds the methods by name."""
+class PanelMessages(ActionHost, TerminalApp):
+    """Message handlers of the app for the panels; Textual finds the methods by name."""
 
-    document: Document
-    panel_area: PanelArea
+    workspace: Workspace
+
+    def situation_changed(self) -> None:
+        """Update the footer."""
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         """While the user types, give the code panel room and show the editor's keys in the footer."""
-        cast("LabApp", self).situation_changed()
+        self.situation_changed()
         if not message.typing:
-            self.panel_area.give_all("")
+            self.workspace.panel_area.give_all("")
         else:
-            self.panel_area.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
+            self.workspace.panel_area.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
 
     def on_code_edited(self, message: Code.Edited) -> None:
         """Handle an edit of the text."""
-        self.document.edited(message.text)
-        cast("LabApp", self).debugger.edited(message.text)
+        self.workspace.document.edited(message.text)
+        self.workspace.debugger.edited(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         """Handle a key of the editor."""
         match message.what:
             case "save":
-                self.document.save()
+                self.workspace.document.save()
             case "run":
-                cast("LabApp", self).action_act("run")
+                self.action_act("run")
                 # Make the robot visible, or the place of the error in the text.
-                if self.panel_area.alone and not (self.panel_area.code and self.panel_area.code.error_line):
-                    self.panel_area.give_all("")
+                if self.workspace.panel_area.alone and not (
+                    self.workspace.panel_area.code and self.workspace.panel_area.code.error_line
+                ):
+                    self.workspace.panel_area.give_all("")
             case "new" | "open":
-                cast("LabApp", self).action_act(message.what)
+                self.action_act(message.what)
             case _:
-                cast("LabApp", self).say("No program to edit: o opens one, ctrl+t begins a new one")
-
-
-class PanelMessages(CodeMessages):
-    """Message handlers of the app for the panels; Textual finds the methods by name."""
-
-    run_controller: RunController
-    debugger: AppDebugger
-    panel_area: PanelArea
-    loader: Loader
+                self.say("No program to edit: o opens one, ctrl+t begins a new one")
 
     def on_descendant_focus(self) -> None:
         """Update the footer: other keys may be available."""
-        self.call_later(cast("LabApp", self).situation_changed)
+        self.call_later(self.situation_changed)
 
     def on_descendant_blur(self) -> None:
         """Update the footer: other keys may be available."""
-        self.call_later(cast("LabApp", self).situation_changed)
+        self.call_later(self.situation_changed)
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """Move the robot with the mouse; in the past, ask about a branch at the end of the drag."""
-        if message.done or not self.run_controller.in_past:
-            self.run_controller.place(message.pose)
+        if message.done or not self.workspace.run_controller.in_past:
+            self.workspace.run_controller.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
         """Go to the time of the chart's cursor."""
-        time_travel.to_time(cast("LabApp", self), message.time_s)
+        time_travel.to_time(self.workspace, message.time_s)
 
     def on_time_bar_scrubbed(self, message: TimeBar.Scrubbed) -> None:
         """Go to the instant chosen with the mouse."""
-        time_travel.to_tick(cast("LabApp", self), message.tick)
+        time_travel.to_tick(self.workspace, message.tick)
 
     def on_positioning_applied(self, message: Positioning.Applied) -> None:
         """Place the robot at a pose that was typed in."""
-        self.run_controller.place(message.pose)
-
-    def attend(self, panel: str) -> None:
-        """Focus a panel that has been opened, if it can have the focus; the world if it was closed."""
-        widget = self.panel_area.panels.get(panel)
-        if not self.panel_area.shown(panel) or widget is None:
-            self.panel_area.focus_world()
-        elif not widget.is_mounted:
-            # It is still being mounted.
-            widget.call_later(self.attend, panel)
-        elif hasattr(widget, "begin"):
-            widget.begin()
-        else:
-            inside = (child for child in widget.walk_children(Widget, with_self=True) if child.focusable)
-            if first := next(inside, None):
-                first.focus()
+        self.workspace.run_controller.place(message.pose)
 
     def on_settings_edited(self, message: Settings.Edited) -> None:
         """Apply a field of the settings; the field shows an error."""
         try:
-            self.loader.set_next_run(self.loader.change(lambda plan: message.edit.write(plan, message.text)))
+            self.workspace.loader.set_next_run(
+                self.workspace.loader.change(lambda plan: message.edit.write(plan, message.text))
+            )
         except TuisimError as error:
             message.row.refuse(error)
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
         """Apply obstacles that were typed, added or removed."""
-        self.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
+        self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
 
     def on_obstacles_marked(self) -> None:
         """Mark another obstacle as the selected one."""
@@ -132,42 +108,47 @@ class PanelMessages(CodeMessages):
 
     def mark_box(self) -> None:
         """Show in the world which obstacle is selected, and whether the mouse draws obstacles."""
-        on = self.panel_area.shown("obstacles")
-        if world := self.panel_area.world:
-            world.edit_boxes(on, self.panel_area.obstacles.at if on and self.panel_area.obstacles else None)
+        on = self.workspace.panel_area.shown("obstacles")
+        if world := self.workspace.panel_area.world:
+            world.edit_boxes(
+                on, self.workspace.panel_area.obstacles.at if on and self.workspace.panel_area.obstacles else None
+            )
 
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
         """Apply obstacles that were drawn or moved with the mouse."""
-        if self.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and self.panel_area.obstacles:
-            self.panel_area.obstacles.mark(message.index)
+        if (
+            self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
+            and self.workspace.panel_area.obstacles
+        ):
+            self.workspace.panel_area.obstacles.mark(message.index)
 
     def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
         """Toggle the breakpoint whose gutter cell was clicked."""
-        self.debugger.toggle_line(message.line)
+        self.workspace.debugger.toggle_line(message.line)
 
     def on_debug_frame_wanted(self, message: Debug.FrameWanted) -> None:
         """Select another frame."""
-        self.debugger.choose_frame(message.by)
+        self.workspace.debugger.choose_frame(message.by)
 
     def on_debug_thread_wanted(self) -> None:
         """Select another thread."""
-        self.debugger.choose_thread()
+        self.workspace.debugger.choose_thread()
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
         """Press or release the brick's buttons."""
-        if message.buttons <= self.run_controller.pressed or (
-            self.run_controller.in_run and not self.run_controller.in_past
+        if message.buttons <= self.workspace.run_controller.pressed or (
+            self.workspace.run_controller.in_run and not self.workspace.run_controller.in_past
         ):
-            self.run_controller.press(message.buttons)
-        elif self.run_controller.in_run:
+            self.workspace.run_controller.press(message.buttons)
+        elif self.workspace.run_controller.in_run:
             self.notify("The brick's buttons work now, not in the past: end comes back", timeout=3)
         else:
             self.notify("The brick's buttons work while a program runs: R runs it", timeout=3)
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
         """Set the noise."""
-        self.run_controller.set_noise(message.noise)
+        self.workspace.run_controller.set_noise(message.noise)
 
     def on_noise_seeded(self, message: Noise.Seeded) -> None:
         """Set the seed of the next run."""
-        self.run_controller.set_seed(message.seed)
+        self.workspace.run_controller.set_seed(message.seed)

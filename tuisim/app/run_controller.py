@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tuisim import protocol
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import ENDED, IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot, snapshot_of
+from tuisim.app.snapshot import RunPhase, Snapshot, snapshot_of
 from tuisim.app.timeline import Timeline
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
@@ -20,9 +20,8 @@ from tuisim.runs.recording import Recording
 from tuisim.runs.records import OutputRow
 
 if TYPE_CHECKING:
-    from tuisim.app.actions.branch import Branch
+    from tuisim.app.branch import Branch
     from tuisim.app.setup.mat import Mat
-    from tuisim.app.start_options import AppSettings
     from tuisim.runs.handle import RunHandle
     from tuisim.runs.run_folder import StoredRun
     from tuisim.runs.views import TickRecord
@@ -73,27 +72,22 @@ def _key(record: TickRecord) -> tuple[int, int]:
     return record.tick, record.actions
 
 
-def _first_plan(settings: AppSettings) -> NextRun:
-    if settings.settings is not None:
-        return plans.plan_of(settings.settings)
-    arguments = settings.program.arguments if settings.program else ()
-    return plans.with_arguments(plans.plan_of_run(settings.spec), arguments)
-
-
 class RunView:
     """The reading side of the run controller: nothing here changes a run.
 
     Args:
-        settings: The options that the app was started with.
+        program: The program that runs next; None for none yet.
+        next_run: The settings of the next run.
+        speed: 1.0 real time, 0 as fast as possible.
     """
 
-    def __init__(self, settings: AppSettings) -> None:
-        self.program: Program | None = settings.program
-        self.next_run: NextRun = _first_plan(settings)
+    def __init__(self, program: Program | None, next_run: NextRun, speed: float) -> None:
+        self.program = program
+        self.next_run = next_run
         """The settings of the next run."""
         self.home: Pose = self.next_run.spec.world.start
         """The pose that `back to start` uses."""
-        self.speed = settings.speed
+        self.speed = speed
         self.mat: Mat | None = None
         self.run: RunHandle | None = None
         """The live run or the last one; None before the first one, and while a stored run is shown."""
@@ -128,20 +122,20 @@ class RunView:
         return self.timeline.at is not None
 
     @property
-    def state(self) -> str:
-        """One of the states of `app.snapshot`."""
+    def state(self) -> RunPhase:
+        """What the run is doing."""
         run = self.run
         if run is None:
-            return ENDED if self.timeline.recording else IDLE
+            return RunPhase.ENDED if self.timeline.recording else RunPhase.IDLE
         if run.ended is not None:
-            return ENDED
+            return RunPhase.ENDED
         if run.waiting_for_input is not None and not run.paused:
-            return WAITING
+            return RunPhase.WAITING
         if self._branch is not None:
-            return STARTING
+            return RunPhase.STARTING
         if run.paused:
-            return PAUSED
-        return RUNNING if run.started else STARTING
+            return RunPhase.PAUSED
+        return RunPhase.RUNNING if run.started else RunPhase.STARTING
 
     @property
     def run_id(self) -> str:
@@ -151,17 +145,17 @@ class RunView:
     @property
     def pose(self) -> Pose:
         """The pose of the robot."""
-        return self._moment()[0].pose
+        return self._moment(self._record())[0].pose
 
     @property
     def pen_down(self) -> bool:
         """Whether the pen is down."""
-        return self._moment()[2]
+        return self._moment(self._record())[2]
 
     def snapshot(self) -> Snapshot:
         """Return the snapshot of the instant in view."""
         record, recording = self._record(), self.timeline.recording
-        instant, line, pen_down = self._moment()
+        instant, line, pen_down = self._moment(record)
         newest = recording.telemetry.last() if recording and self.in_past else None
         face = self.timeline.face()
         # After the robot was placed following the run, all its motors are reset.
@@ -172,7 +166,7 @@ class RunView:
                 self.spec,
                 self._field(record),
                 state=self.state,
-                end=self._end if self.state == ENDED else None,
+                end=self._end if self.state == RunPhase.ENDED else None,
                 line=line,
                 speed=self.speed,
                 pen_down=pen_down,
@@ -203,9 +197,9 @@ class RunView:
             return None
         return self.timeline.record() or recording.telemetry.last()
 
-    def _moment(self) -> tuple[Instant, int, bool]:
-        """Return the instant, the program's line, and whether the pen is down."""
-        record, recording = self._record(), self.timeline.recording
+    def _moment(self, record: TickRecord | None) -> tuple[Instant, int, bool]:
+        """Return the instant of a record, the program's line, and whether the pen is down."""
+        recording = self.timeline.recording
         if record is None or recording is None:
             return self._still, 0, self.next_run.spec.robot.pen.down
         from tuisim.runs.views import instant_of
@@ -247,11 +241,13 @@ class RunController(RunView):
     """The current run, or the robot before a run.
 
     Args:
-        settings: The options that the app was started with.
+        program: The program that runs next; None for none yet.
+        next_run: The settings of the next run.
+        speed: 1.0 real time, 0 as fast as possible.
     """
 
-    def __init__(self, settings: AppSettings) -> None:
-        super().__init__(settings)
+    def __init__(self, program: Program | None, next_run: NextRun, speed: float) -> None:
+        super().__init__(program, next_run, speed)
         self.propose: Callable[[protocol.Message], None] = lambda _: None
         """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
 
@@ -379,7 +375,7 @@ class RunController(RunView):
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
         if self.in_past:
-            if noise != self._moment()[0].noise:
+            if noise != self._moment(self._record())[0].noise:
                 self.propose(protocol.SetNoise(noise.light, noise.motor))
             return
         if noise == self.next_run.spec.world.noise:

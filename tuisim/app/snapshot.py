@@ -1,23 +1,41 @@
-"""What the panels show: one frozen value per frame, and how users read states and speeds."""
+"""What the app shows: one frozen state a frame, and how users read phases and speeds."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import assert_never
 
+from tuisim.app.setup.next_run import NextRun
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
-from tuisim.protocol import End, RunState, Unended
+from tuisim.protocol import End, Inspected, Paused, RunState, Unended
 from tuisim.runs.brick_state import BrickState
+from tuisim.source import Program
 
-IDLE, STARTING, RUNNING, PAUSED, WAITING, ENDED = "idle", "starting", "running", "paused", "waiting", "ended"
-"""Run states: no run yet, child process is starting, time passes, paused, waits in input(), ended."""
+
+class RunPhase(StrEnum):
+    """What the run in view is doing."""
+
+    IDLE = "idle"
+    """There is no run yet."""
+    STARTING = "starting"
+    """The child process starts, or a branch is on the way to its instant."""
+    RUNNING = "running"
+    PAUSED = "paused"
+    WAITING = "waiting"
+    """It waits in `input()`."""
+    ENDED = "ended"
+
+
+IN_RUN = frozenset({RunPhase.STARTING, RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.WAITING})
+"""The phases in which a child process runs."""
 
 GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
 """Ways to end a run that are no failure."""
@@ -29,7 +47,7 @@ _DARK = BrickState()
 class Snapshot:
     """One moment as every panel sees it. Sensor values are those of `instant`."""
 
-    state: str
+    state: RunPhase
     end: RunState | None
     """How the run ended; None unless `state` is ended."""
     spec: RunSpec
@@ -73,7 +91,7 @@ class Snapshot:
     @property
     def failed(self) -> bool:
         """Whether the run has ended with a failure."""
-        return self.state == ENDED and self.end is not None and self.end not in GOOD_ENDS
+        return self.state == RunPhase.ENDED and self.end is not None and self.end not in GOOD_ENDS
 
     @property
     def planned(self) -> RunSpec:
@@ -81,12 +99,81 @@ class Snapshot:
         return self.next_spec or self.spec
 
 
+@dataclass(frozen=True, slots=True)
+class PauseView:
+    """Where a program is paused, and its frames and variables there."""
+
+    paused: Paused
+    inspected: Inspected
+    past: bool
+    """Whether this is a past instant."""
+
+
+@dataclass(frozen=True, slots=True)
+class DebugState:
+    """What the debugger knows at one moment."""
+
+    view: PauseView | None = None
+    """None while the program runs, or before it is first paused."""
+    looks_back: bool = False
+    """Whether a past instant is viewed, even one within the newest tick."""
+    busy: bool = False
+    """Whether a past instant is still being computed."""
+
+    @property
+    def is_away(self) -> bool:
+        """Whether a past instant is viewed, or will be once it is computed."""
+        return self.looks_back or self.busy
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """The state that decides whether a key is available."""
+
+    state: RunPhase
+    has_program: bool
+    has_run: bool
+    """Whether there has been a run, so that there is a log and a past."""
+    in_past: bool = False
+    """Whether an instant before the newest is viewed."""
+    looks_back: bool = False
+    """As `in_past`, and also for an earlier line of the newest tick or while such an instant is being computed."""
+
+
+@dataclass(frozen=True, slots=True)
+class AppState:
+    """The app at one moment: everything that panels and footer show. Made once a frame."""
+
+    program: Program | None
+    next_run: NextRun
+    view: Snapshot
+    """The run at the instant in view."""
+    debug: DebugState
+    situation: Situation
+    playing: bool
+    """Whether the recording is being played."""
+
+    @property
+    def status(self) -> str:
+        """State and speed of the run, in words."""
+        view = self.view
+        status = end_label(view.end) if view.state is RunPhase.ENDED else view.state.value
+        if self.debug.looks_back:
+            status = "playing" if self.playing else f"past {view.time_s:.2f} s"
+        return f"{status} {speed_label(view.speed)}" if view.state in IN_RUN or view.speed != 1 else status
+
+    @property
+    def failed(self) -> bool:
+        """Whether the end of a failed run is in view."""
+        return self.view.failed and not self.debug.looks_back
+
+
 def snapshot_of(
     instant: Instant,
     spec: RunSpec,
     field: Field | None,
     *,
-    state: str,
+    state: RunPhase,
     end: RunState | None,
     line: int,
     speed: float,

@@ -12,7 +12,7 @@ from tests.app.app_help import notices, program, ready, screen_text, settings, u
 from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.runs import branch_root
-from tuisim.app.snapshot import ENDED, PAUSED, RUNNING
+from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
 from tuisim.runs.catalogue import RunInfo
@@ -45,7 +45,7 @@ async def with_a_past(pilot: Pilot[Any], ticks: int = 300) -> LabApp:
 
 async def stop(pilot: Pilot[Any], app: LabApp) -> None:
     await pilot.press("S")
-    await until(pilot, lambda: app.run_controller.state == ENDED)
+    await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
 def telemetry(run_id: str) -> Any:
@@ -86,7 +86,7 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
         app = await with_a_past(pilot)
         await stop(pilot, app)
         first = app.run_controller.run_id
-        to_tick(app, 260)
+        to_tick(app.workspace, 260)
         await deed(pilot, app)
         await until(pilot, lambda: "Branch from 2.60 s?" in screen_text(app))
         await pilot.press("y")
@@ -111,7 +111,7 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         app = await with_a_past(pilot)
         first = app.run_controller.run_id
         await pilot.press("space", "less_than_sign")
-        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
         at = app.run_controller.timeline.at
         assert at is not None
         await pilot.press("R")
@@ -119,12 +119,14 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         await pilot.press("n")
         assert app.run_controller.timeline.at == at
         await pilot.press("y", "y")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == PAUSED)
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.PAUSED)
         assert app.run_controller.timeline.newest == at
         assert not app.run_controller.in_past
         assert RunStore().load_run(first).state == "stopped"
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.timeline.newest > at)
+        await until(
+            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > at
+        )
         await stop(pilot, app)
 
 
@@ -136,7 +138,7 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
         app.run_controller.program = program(
             DRIVES.replace("    tank_drive.on(", "    time.sleep(1)\n    tank_drive.on(")
         )
-        to_tick(app, 260)
+        to_tick(app.workspace, 260)
         await pilot.press("R")
         await until(pilot, lambda: "The edited program" in screen_text(app))
         await pilot.press("y")
@@ -150,7 +152,7 @@ async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
         app = await with_a_past(pilot, ticks=80)
         first = app.run_controller.run_id
         await pilot.press("less_than_sign", "R", "r")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.RUNNING)
         assert not app.run_controller.in_past
         await until(pilot, lambda: app.run_controller.timeline.newest > 5)
         assert not RunStore().load_run(app.run_controller.run_id).tags
@@ -163,9 +165,9 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         await stop(pilot, app)
         first = app.run_controller.run_id
         app.run_controller.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
-        to_tick(app, 80)
+        to_tick(app.workspace, 80)
         await pilot.press("y", "y")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: any("of the edited program: it differs" in n for n in notices(app)))
 
 
@@ -175,7 +177,7 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
         app = await with_a_past(pilot)
         await stop(pilot, app)
         first = app.run_controller.run_id
-        to_tick(app, 200)
+        to_tick(app.workspace, 200)
         app.run_controller.set_noise(NoiseSpec(0, 0))
         await pilot.press("y")
         await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260)

@@ -16,7 +16,7 @@ from tuisim.app.actions.time_travel import to_now, to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.question import BranchQuestion
 from tuisim.app.setup.next_run import with_obstacles
-from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, WAITING
+from tuisim.app.snapshot import RunPhase
 from tuisim.app.widgets.slider import Slider
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle
@@ -76,7 +76,7 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         assert [(one.tick, one.command.kind) for one in recording.actions()] == [(tick, kind) for kind in kinds]
         assert app.run_controller.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         # It stands nowhere any more.
         assert app.debugger.view is None
         run = RunStore().load_run(app.run_controller.run_id)
@@ -94,7 +94,7 @@ async def noisy_past(pilot: Pilot[Any]) -> LabApp:
         pilot,
         lambda: app.run_controller.snapshot().instant.noise.light == 10 and app.run_controller.timeline.newest > 60,
     )
-    to_tick(app, 10)
+    to_tick(app.workspace, 10)
     await until(pilot, lambda: light(app) == 0)
     return app
 
@@ -124,11 +124,11 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         assert len(app.screen_stack) == 2
         await pilot.press("n")
         await until(pilot, lambda: light(app) == 0)
-        to_now(app)
+        to_now(app.workspace)
         await until(pilot, lambda: light(app) == 10)
         assert noises(app) == [10]
         # A branch with other noise sets it once.
-        to_tick(app, 10)
+        to_tick(app.workspace, 10)
         await until(pilot, lambda: light(app) == 0)
         field = app.query_one("#light-number", Input)
         field.focus()
@@ -140,7 +140,10 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         await pilot.press("enter")
         await until(pilot, lambda: isinstance(app.screen, BranchQuestion))
         await pilot.press("y")
-        await until(pilot, lambda: len(app.screen_stack) == 1 and app.run_controller.state in (RUNNING, PAUSED))
+        await until(
+            pilot,
+            lambda: len(app.screen_stack) == 1 and app.run_controller.state in (RunPhase.RUNNING, RunPhase.PAUSED),
+        )
         await until(pilot, lambda: noises(app) == [30])
         field.focus()
         await pilot.press("escape")
@@ -156,13 +159,13 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
     asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
     async with LabApp(asks).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == WAITING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
         await pilot.press("escape", "space")
-        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.state == WAITING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
         app.run_controller.answer("Ann")
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
 
 
 @pytest.mark.slow
@@ -197,8 +200,8 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
     async with LabApp(settings(LINES + "tank_drive.on_for_seconds(50, 50, 1)\n", speed=0.0)).run_test() as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
-        to_tick(app, 10)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        to_tick(app.workspace, 10)
         assert app.run_controller.in_past
         assert app.loader.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
         assert app.run_controller.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)

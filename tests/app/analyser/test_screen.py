@@ -18,8 +18,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.actions.table import ACTIONS
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.analyser.screen import Analyser
-from tuisim.app.app import LabApp
-from tuisim.app.start_options import AppSettings
+from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program

@@ -10,8 +10,7 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, notices, ready, settings, until
-from tuisim.app.app import LabApp
-from tuisim.app.start_options import AppSettings
+from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.config.options import Settings
 

@@ -10,15 +10,15 @@ import pytest
 from textual.pilot import Pilot
 
 from tests.app.app_help import ENDLESS, notices, ready, screen_text, settings, until
-from tuisim.app.app import LabApp
+from tuisim.app.actions.files import open_path
+from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.question import Question
 from tuisim.app.dialogs.save import ProgramDialog
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.document import TEMPLATE
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
-from tuisim.app.snapshot import ENDED, IDLE, RUNNING
-from tuisim.app.start_options import AppSettings
+from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import programs, read_program
@@ -66,7 +66,7 @@ async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Pat
         await typed(pilot, code, *"print", "left_parenthesis", "7", "right_parenthesis", "enter")
         assert str(code.border_title) == "Code: prog.py • edited"
         await pilot.press("ctrl+r")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await pilot.pause()
         assert app.run_controller.timeline.recording is not None
         assert app.run_controller.timeline.recording.program.text == "print(7)\n" + TEXT
@@ -94,12 +94,12 @@ async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_p
         app, code = await begun(pilot)
         start = app.run_controller.next_run.spec.world.start
         await typed(pilot, code, "i", "f", "enter", "ctrl+r")
-        assert app.run_controller.state == IDLE
+        assert app.run_controller.state == RunPhase.IDLE
         assert app.run_controller.next_run.spec.world.start == start
         assert "✗ 1 if" in screen_text(app)
         assert any("cannot run: line 1" in text for text in notices(app))
         await pilot.press(*["backspace"] * 3, "ctrl+r")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
 async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(tmp_path: Path) -> None:
@@ -139,7 +139,7 @@ async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path)
         await until(pilot, lambda: app.panel_area.shown("world"))
         assert app.panel_area.shown("code")
         await pilot.press("d", "ctrl+r")
-        await until(pilot, lambda: app.run_controller.state == ENDED and app.panel_area.shown("world"))
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and app.panel_area.shown("world"))
         assert app.document.dirty
 
 
@@ -175,7 +175,7 @@ async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], t
     async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         assert app.panel_area.code is not None
@@ -190,7 +190,7 @@ async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(tmp
         await pilot.press("R")
         await until(pilot, lambda: code.error_line == 3)
         path.write_text(WRONG.replace("n.x", "n + 1"))
-        app.loader.check_files()
+        app.check_files()
         await pilot.pause()
         assert "n + 1" in code.query_one(CodeArea).program_text
         assert code.error_line == 0
@@ -228,7 +228,7 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
         await typed(pilot, code, "x", "escape")
-        app.loader.open_file(str(other))
+        open_path(app.workspace, str(other))
         await asked(pilot)
         await pilot.press("d")
         await until(pilot, lambda: "print('other')" in screen_text(app))
@@ -273,7 +273,7 @@ async def test_a_file_that_changes_under_unsaved_edits(answer: str, shown: str, 
         app, code = await begun(pilot)
         await typed(pilot, code, "x", "escape")
         path.write_text("other = 1\n")
-        app.loader.check_files()
+        app.check_files()
         await asked(pilot)
         await pilot.press(answer)
         await pilot.pause()
@@ -299,7 +299,7 @@ async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypa
         await until(pilot, lambda: code.typing)
         assert code.query_one(CodeArea).program_text == TEMPLATE
         await pilot.press("f5")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert app.run_controller._end == "finished"
         await pilot.press("ctrl+s")
         await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
@@ -316,7 +316,7 @@ async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Pat
         assert "%%sim_magic_preloaded -x 300" in screen_text(app)
         await typed(pilot, code, *["right"] * 25, "delete", "5", "escape")
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert app.run_controller.timeline.recording is not None
         assert app.run_controller.timeline.recording.spec.world.start.x_mm == 500
 
@@ -326,14 +326,14 @@ async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> 
     async with LabApp(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await until(pilot, lambda: "▶" in screen_text(app))
         await typed(pilot, code, "#", "enter", "ctrl+s")
         await until(pilot, lambda: "running text differs" in screen_text(app))
         assert path.read_text().startswith("#\n# %%")
         assert "▶ 4" not in screen_text(app)
         app.run_controller.stop()
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: "running text differs" not in screen_text(app))
 
 

@@ -9,13 +9,13 @@ import pytest
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
-from tuisim.app.actions.table import ACTIONS, LabAction, Situation, working
+from tuisim.app.actions.table import ACTIONS, LabAction, working
 from tuisim.app.app import LabApp
 from tuisim.app.keys.footer import fitting
 from tuisim.app.keys.help import KeyHelp
-from tuisim.app.panels import LARGE, PANELS
+from tuisim.app.panels import PANELS, TerminalSize
 from tuisim.app.panels.position import parse_field
-from tuisim.app.snapshot import IDLE, PAUSED, RUNNING
+from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.core.geometry import Pose
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
@@ -37,7 +37,7 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
         for panel in PANELS.values():
-            at_first = LARGE in panel.sizes
+            at_first = TerminalSize.LARGE in panel.sizes
             assert app.panel_area.shown(panel.id) is at_first, panel.id
             for shown in (not at_first, at_first):
                 await pilot.press(panel.key)
@@ -263,7 +263,7 @@ async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
         assert app.run_controller.program is not None
         assert app.run_controller.program.name == "mine.py"
         assert app.run_controller.pose.x_mm == 500
-        assert app.run_controller.state == IDLE
+        assert app.run_controller.state == RunPhase.IDLE
 
 
 async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
@@ -283,9 +283,9 @@ async def test_quit_without_a_run_asks_nothing() -> None:
 
 
 @pytest.mark.parametrize("width", [60, 80, 120, 200])
-@pytest.mark.parametrize("state", [IDLE, RUNNING, PAUSED])
-def test_footer_fits_and_always_shows_help_and_quit(width: int, state: str) -> None:
-    now = Situation(state, has_program=True, has_run=state != IDLE)
+@pytest.mark.parametrize("state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED])
+def test_footer_fits_and_always_shows_help_and_quit(width: int, state: RunPhase) -> None:
+    now = Situation(state, has_program=True, has_run=state != RunPhase.IDLE)
     shown = fitting([action for action in ACTIONS.values() if not action.why_not(now)], width)
     assert [action.id for action in shown[-2:]] == ["help", "quit"]
     assert sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) <= width
@@ -295,7 +295,7 @@ def test_footer_fits_and_always_shows_help_and_quit(width: int, state: str) -> N
 def test_each_line_of_the_table_is_an_action(action: LabAction) -> None:
     assert action.title
     assert callable(action.do)
-    for state in (IDLE, RUNNING, PAUSED):
+    for state in (RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED):
         for yes in (True, False):
             assert isinstance(action.why_not(Situation(state, yes, yes)), str)
 
@@ -306,7 +306,7 @@ def test_keys_differ() -> None:
 
 
 def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
-    shown = fitting(working(Situation(PAUSED, True, True, in_past=True, looks_back=True)), 80)
+    shown = fitting(working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True)), 80)
     assert [action.id for action in shown[:2]] == ["now", "branch"]
 
 

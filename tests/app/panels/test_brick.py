@@ -7,7 +7,7 @@ import json
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
-from tuisim.app.snapshot import PAUSED, RUNNING
+from tuisim.app.snapshot import RunPhase
 
 WATCHES = """\
 from ev3dev2.button import Button
@@ -161,5 +161,8 @@ async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
         await until(pilot, lambda: any("not in the past" in text for text in notices(app)))
         assert app.run_controller.pressed == {"up"}
         await pilot.press("y", "y")
-        await until(pilot, lambda: app.run_controller.state in (RUNNING, PAUSED) and actions(app) == [["up"], []])
+        await until(
+            pilot,
+            lambda: app.run_controller.state in (RunPhase.RUNNING, RunPhase.PAUSED) and actions(app) == [["up"], []],
+        )
         assert (app.run_controller.pressed, app.panel_area.brick.held) == (frozenset(), frozenset())

@@ -6,7 +6,7 @@ import pytest
 
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.app.app import LabApp, looks_at_buttons
-from tuisim.app.snapshot import ENDED
+from tuisim.app.snapshot import RunPhase
 
 DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
 
@@ -31,6 +31,6 @@ async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
         app = await ready(pilot)
         for _ in range(2):
             await pilot.press("R")
-            await until(pilot, lambda: app.run_controller.state == ENDED and not app._last_words)
+            await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words)
         told = [notice for notice in notices(app) if notice.startswith("The program")]
         assert told == ["The program shows something on the brick: K opens its panel"]

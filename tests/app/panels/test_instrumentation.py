@@ -8,7 +8,7 @@ import pytest
 
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tuisim.app.panels.instrumentation import Instrumentation, lines
-from tuisim.app.snapshot import ENDED, Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import MotorSpec
 from tuisim.protocol import End
@@ -19,7 +19,7 @@ EXTREME = moment(
     ultrasonic_mm=2550,
     gyro_deg=-36000,
     gyro_rate_dps=-1050,
-    state=ENDED,
+    state=RunPhase.ENDED,
     end=End.OUTPUT_LIMIT,
     speed=0.25,
 )

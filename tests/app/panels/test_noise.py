@@ -10,7 +10,7 @@ from textual.widgets import Input, Static
 from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.noise import Noise
-from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.app.snapshot import RunPhase
 from tuisim.app.widgets.slider import Slider
 from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import SetNoise
@@ -67,7 +67,7 @@ async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
             await pilot.press("enter")
         await until(pilot, lambda: app.run_controller.next_run.spec.seed == 7)
         await pilot.press("escape", "R")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert app.run_controller.run is not None
         assert app.run_controller.run.spec.world.noise == NoiseSpec(0, 50)
         assert app.run_controller.run.spec.seed == 7
@@ -77,7 +77,8 @@ async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -
     async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await until(
-            pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.snapshot().instant.tick > 0
+            pilot,
+            lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.snapshot().instant.tick > 0,
         )
         app.query_one("#light", Slider).focus()
         await pilot.press("pageup")
@@ -92,7 +93,7 @@ async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -
         # The run itself began without: what it was made of does not change.
         assert json.loads((run.folder / "run.json").read_text())["spec"]["world"]["noise"]["light"] == 0
         await pilot.press("escape", "S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert app.run_controller.snapshot().instant.noise.light == 10
         assert sliders(app) == [10, 0]
 

@@ -14,7 +14,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.panels.obstacles import BoxGrip, Obstacles, box_at
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.next_run import with_obstacles
-from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.app.snapshot import RunPhase
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.core.spec import Obstacle
 
@@ -171,7 +171,7 @@ async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.Mon
 async def test_obstacles_are_not_changed_during_a_run() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
         await until(pilot, lambda: "Not during a run: S stops it" in notices(app))
         assert boxes(app) == ()
@@ -190,7 +190,7 @@ async def test_a_blocked_motor_is_shown_as_stalled() -> None:
         await until(pilot, lambda: app.run_controller.snapshot().stalled == (True, True))
         await until(pilot, lambda: screen_text(app).count("stalled") == 2)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: "stalled" not in screen_text(app))
 
 

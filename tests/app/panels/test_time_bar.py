@@ -15,7 +15,7 @@ from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, setti
 from tuisim.app.app import LabApp
 from tuisim.app.goto import find
 from tuisim.app.panels.world import Moment, bar_cells, mark_cells, words
-from tuisim.app.snapshot import ENDED, PAUSED, RUNNING, snapshot_of
+from tuisim.app.snapshot import RunPhase, snapshot_of
 from tuisim.app.timeline import Timeline
 from tuisim.errors import ConfigError
 from tuisim.protocol import End
@@ -32,7 +32,7 @@ async def a_run(text: str = LOGS, size: tuple[int, int] = (120, 40)) -> AsyncIte
     """A run that is over, in the app."""
     async with LabApp(settings(text, autorun=True, speed=0.0)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         recording = app.run_controller.timeline.recording
         assert recording is not None
         await until(pilot, lambda: not recording.rows.take(1) and not app._last_words)
@@ -66,7 +66,14 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         record = recording.telemetry.record(200)
         then = instant_of(record, recording.spec, recording.spec.world.noise)
         expected = snapshot_of(
-            then, recording.spec, mat.field, state=ENDED, end=End.FINISHED, line=record.line, speed=0.0, pen_down=False
+            then,
+            recording.spec,
+            mat.field,
+            state=RunPhase.ENDED,
+            end=End.FINISHED,
+            line=record.line,
+            speed=0.0,
+            pen_down=False,
         )
         shown = app.run_controller.snapshot()
         plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None)
@@ -92,7 +99,7 @@ async def test_the_pen_has_drawn_no_more_than_then() -> None:
         app.run_controller.set_pen(True)
         await until(pilot, lambda: app.run_controller.timeline.newest > 300)
         await pilot.press("comma")
-        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
         app.run_controller.timeline.go(150)
         app.draw(force=True)
         world = app.panel_area.world
@@ -105,16 +112,18 @@ async def test_the_pen_has_drawn_no_more_than_then() -> None:
             ahead = recording.spec.robot.pen.y_mm
             assert max(float(xs[-1]) for xs in drawn) <= recording.telemetry.record(150).x_mm + abs(ahead)
         await pilot.press("end", "S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert world._view.past_trace is None
 
 
 async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.timeline.newest > 60)
+        await until(
+            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > 60
+        )
         await pilot.press("less_than_sign", "home")
-        await until(pilot, lambda: app.run_controller.state == PAUSED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
         newest = app.run_controller.timeline.newest
         assert app.run_controller.timeline.at == 0
         # Slowly, so that the past is not over before anybody looks.
@@ -126,10 +135,12 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         await pilot.press("full_stop")
         assert (app.run_controller.timeline.at, app.run_controller.timeline.newest) == (at + 1, newest)
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.state == RUNNING and app.run_controller.timeline.newest > newest)
+        await until(
+            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > newest
+        )
         assert not app.run_controller.in_past
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
 async def test_the_bar_is_clicked_and_dragged() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tuisim.app.render.debug import DebugView, debug_lines
+from tuisim.app.snapshot import RunPhase
 from tuisim.protocol import FrameState, Inspected, Paused, PauseReason
 
 
@@ -13,8 +14,8 @@ def text(view: DebugView, width: int) -> list[str]:
 
 
 @pytest.mark.parametrize("width", [26, 38])
-@pytest.mark.parametrize("state", ["idle", "running", "waiting", "ended"])
-def test_all_keys_are_told_in_a_narrow_panel_too(state: str, width: int) -> None:
+@pytest.mark.parametrize("state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.WAITING, RunPhase.ENDED])
+def test_all_keys_are_told_in_a_narrow_panel_too(state: RunPhase, width: int) -> None:
     narrow, wide = text(DebugView(state), width), text(DebugView(state), 80)
     assert max(map(len, narrow)) <= width
     assert " ".join(narrow).split() == " ".join(wide).split()
@@ -24,14 +25,14 @@ def test_a_module_beside_the_program_is_named() -> None:
     frames = (FrameState("drive", 4, "/lab/ann/helper.py"), FrameState("<module>", 3, ""))
     looked = Inspected(5, 50_000_000, "main", 0, "", (), frames, (), (), ())
     paused = Paused(5, 50_000_000, 4, PauseReason.STEP, file="/lab/ann/helper.py")
-    rows = text(DebugView("paused", paused, looked, source="    return speed\n"), 60)
+    rows = text(DebugView(RunPhase.PAUSED, paused, looked, source="    return speed\n"), 60)
     assert rows[:2] == ["line 4 of helper.py · 0.05 s · tick 5", "  return speed"]
     assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]
 
 
 def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> None:
     looked = Inspected(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
-    view = DebugView("ended", Paused(469, 4_690_000_000, 13, PauseReason.INSTANT), looked, True, now=(120, 1.2))
+    view = DebugView(RunPhase.ENDED, Paused(469, 4_690_000_000, 13, PauseReason.INSTANT), looked, True, now=(120, 1.2))
     rows = text(view, 40)
     assert rows[0] == "1.20 s · tick 120 …"
     assert not any("4.69" in row or "line 13" in row for row in rows)
@@ -41,7 +42,7 @@ def test_why_a_condition_holds_is_told_whole() -> None:
     why = "cannot be evaluated: TypeError: '>' not supported between instances of 'str' and 'int'"
     looked = Inspected(5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), (), (), ())
     paused = Paused(5, 50_000_000, 3, PauseReason.BREAK, "3 if name > 3", value=why)
-    rows = text(DebugView("paused", paused, looked), 30)
+    rows = text(DebugView(RunPhase.PAUSED, paused, looked), 30)
     assert f"break 3 if name > 3: {why}" in " ".join(rows)
     assert max(map(len, rows)) <= 30
 
@@ -58,5 +59,5 @@ def test_why_a_condition_holds_is_told_whole() -> None:
 )
 def test_the_tick_is_told_whole_or_not_at_all(width: int, past: bool, head: str) -> None:
     looked = Inspected(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
-    view = DebugView("paused", Paused(469, 4_690_000_000, 13, PauseReason.STEP), looked, past)
+    view = DebugView(RunPhase.PAUSED, Paused(469, 4_690_000_000, 13, PauseReason.STEP), looked, past)
     assert text(view, width)[0] == head

@@ -13,7 +13,7 @@ from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, unti
 from tuisim.app.app import LabApp
 from tuisim.app.setup.next_run import plan_of
 from tuisim.app.setup.poses import delete_pose, fits, load_poses, poses_file, random_pose, save_pose
-from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.app.snapshot import RunPhase
 from tuisim.config.options import Settings
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
@@ -128,19 +128,19 @@ async def test_saved_poses_in_the_app() -> None:
 async def test_a_place_during_a_run_is_an_action_of_the_user() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await pilot.press("j")
         run = app.run_controller.run
         assert run is not None
         await until(pilot, lambda: bool((last := run.telemetry.last()) and last.actions == 1))
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
 async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
     async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         chart, world = app.panel_area.chart, app.panel_area.world
         assert chart is not None
         assert world is not None

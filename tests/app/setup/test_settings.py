@@ -12,7 +12,7 @@ from textual.widgets import Input, OptionList
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.setup.next_run import with_robot
-from tuisim.app.snapshot import ENDED, RUNNING
+from tuisim.app.snapshot import RunPhase
 from tuisim.app.widgets.form import Choice, Row
 from tuisim.config.robots import load_robot
 
@@ -117,12 +117,12 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
 async def test_settings_are_not_changed_during_a_run() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
-        await until(pilot, lambda: app.run_controller.state == RUNNING)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await enter(pilot, "wheel_diameter_mm", "60")
         assert "Not during a run: S stops it" in screen_text(app)
         assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 56
         await pilot.press("escape", "S")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await enter(pilot, "wheel_diameter_mm", "60")
         assert app.run_controller.spec.robot.wheel_diameter_mm == 60
 
@@ -187,7 +187,7 @@ async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
         await enter(pilot, "pen.down", "off")
         assert app.run_controller.pen_down
         await pilot.press("escape", "R")
-        await until(pilot, lambda: app.run_controller.state == ENDED)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         world = app.panel_area.world
         assert world is not None
         await until(pilot, lambda: len(world._view.trace) > 0)

@@ -8,7 +8,7 @@ from tuisim.app.editor.area import EDITOR_KEYS
 from tuisim.app.keys.help import KeyHelp, key_groups
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
+    from tuisim.app.workspace import Workspace
 
 
 _START = (
@@ -26,32 +26,32 @@ _NUDGES = (
 _EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field"))
 
 
-def show_help(lab: LabApp) -> None:
+def show_help(workspace: Workspace) -> None:
     """Show every key of the app, of the editor, and those that work everywhere."""
-    groups = key_groups(action for action in lab.ACTIONS.values() if not action.id.startswith("nudge-"))
+    groups = key_groups(action for action in workspace.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES
-    lab.push_screen(KeyHelp("Help", _START, {**groups, "In the code": EDITOR_KEYS, "": _EVERYWHERE}))
+    workspace.app.push_screen(KeyHelp("Help", _START, {**groups, "In the code": EDITOR_KEYS, "": _EVERYWHERE}))
 
 
-def redraw(lab: LabApp) -> None:
+def redraw(workspace: Workspace) -> None:
     """Redraw the whole screen."""
-    lab.action_redraw()
+    workspace.app.action_redraw()
 
 
-def suspend(lab: LabApp) -> None:
+def suspend(workspace: Workspace) -> None:
     """Suspend the app as a shell job; a live run is paused first."""
-    lab.action_suspend_process()
+    workspace.app.action_suspend_process()
 
 
-def leave(lab: LabApp) -> None:
+def leave(workspace: Workspace) -> None:
     """Quit; with unsaved changes or a running program, ask first."""
-    lab.document.when_safe(lambda: _leave(lab))
+    workspace.document.when_safe(lambda: _leave(workspace))
 
 
-def _leave(lab: LabApp) -> None:
-    if not lab.run_controller.in_run:
-        lab.exit()
+def _leave(workspace: Workspace) -> None:
+    if not workspace.run_controller.in_run:
+        workspace.app.exit()
         return
     from tuisim.app.dialogs.question import LeaveQuestion
 
-    lab.push_screen(LeaveQuestion(), lambda yes: lab.exit() if yes else None)
+    workspace.app.push_screen(LeaveQuestion(), lambda yes: workspace.app.exit() if yes else None)

@@ -7,46 +7,50 @@ from typing import TYPE_CHECKING
 from tuisim.app.panels import PANELS
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
     from tuisim.app.panels.world import World
+    from tuisim.app.workspace import Workspace
 
 
-def toggle(lab: LabApp, panel: str) -> None:
+def toggle(workspace: Workspace, panel: str) -> None:
     """Show a panel and focus it, or hide it."""
-    lab.panel_area.toggle(panel)
-    lab.situation_changed()
-    lab.call_after_refresh(lab.attend, panel)
+    workspace.panel_area.toggle(panel)
+    workspace.app.situation_changed()
+    workspace.app.call_after_refresh(workspace.panel_area.attend, panel)
 
 
-def enlarge(lab: LabApp) -> None:
+def enlarge(workspace: Workspace) -> None:
     """Maximize the panel with the focus, or restore the layout."""
-    focused = lab.focused
+    focused = workspace.panel_area.screen.focused
     panel = next(
-        (name for name, widget in lab.panel_area.panels.items() if focused and widget in focused.ancestors_with_self),
+        (
+            name
+            for name, widget in workspace.panel_area.panels.items()
+            if focused and widget in focused.ancestors_with_self
+        ),
         "",
     )
-    if panel or lab.panel_area.alone:
-        lab.panel_area.give_all("" if lab.panel_area.alone else panel)
+    if panel or workspace.panel_area.alone:
+        workspace.panel_area.give_all("" if workspace.panel_area.alone else panel)
     else:
-        lab.say("No panel has the focus: tab or a click gives it to one")
+        workspace.app.say("No panel has the focus: tab or a click gives it to one")
 
 
-def _world(lab: LabApp) -> World | None:
-    if lab.panel_area.shown("world"):
-        return lab.panel_area.world
-    lab.say(f"The world is hidden: {PANELS['world'].key} shows it")
+def _world(workspace: Workspace) -> World | None:
+    if workspace.panel_area.shown("world"):
+        return workspace.panel_area.world
+    workspace.app.say(f"The world is hidden: {PANELS['world'].key} shows it")
     return None
 
 
-def rays(lab: LabApp) -> None:
+def rays(workspace: Workspace) -> None:
     """Switch the ultrasonic rays on or off."""
-    if world := _world(lab):
+    if world := _world(workspace):
         world.show_rays = not world.show_rays
-        lab.draw(force=True)
+        workspace.app.draw(force=True)
 
 
-def zoom(lab: LabApp) -> None:
+def zoom(workspace: Workspace) -> None:
     """Switch the world to the next zoom."""
-    if world := _world(lab):
+    if world := _world(workspace):
         world.cycle_zoom()
-        lab.draw(force=True)
+        workspace.app.draw(force=True)

@@ -7,41 +7,21 @@ follow from the line.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
-from tuisim.app.actions import app, branch, debug, files, panel, program, robot, time_travel
+from tuisim.app.actions import app, debug, files, panel, program, robot, time_travel
 from tuisim.app.actions.files import analyse
 from tuisim.app.keys.action import Action
 from tuisim.app.panels import PANELS
-from tuisim.app.snapshot import PAUSED, RUNNING, STARTING, WAITING
-
-if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
-
-IN_RUN = frozenset({STARTING, RUNNING, PAUSED, WAITING})
-"""States in which a child process runs."""
+from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
+from tuisim.app.workspace import Workspace
 
 PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
 FILES, APP = "Files", "App"
 
 
-@dataclass(frozen=True, slots=True)
-class Situation:
-    """The state that decides whether a key is available."""
-
-    state: str
-    has_program: bool
-    has_run: bool
-    """Whether there has been a run, so that there is a log and a past."""
-    in_past: bool = False
-    """Whether an instant before the newest is viewed."""
-    looks_back: bool = False
-    """As `in_past`, and also for an earlier line of the newest tick or while such an instant is being computed."""
-
-
-LabAction: TypeAlias = "Action[LabApp, Situation]"
+LabAction: TypeAlias = Action[Workspace, Situation]
 """One line of `ACTIONS`."""
 
 
@@ -62,7 +42,7 @@ def _can_pause(now: Situation) -> str:
 
 
 def _can_step(now: Situation) -> str:
-    if now.state == PAUSED or now.in_past:
+    if now.state == RunPhase.PAUSED or now.in_past:
         return ""
     if now.state in IN_RUN:
         return "One tick works while paused: space pauses"
@@ -149,7 +129,7 @@ def _travels() -> list[LabAction]:
         Action("sample-before", "left_parenthesis", "The sample before", TIME, go.sample_before, back),
         Action("next-sample", "right_parenthesis", "The next sample", TIME, go.next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
-        Action("branch", "y", "Branch: go on from this instant", TIME, branch.from_here, _can_branch, "branch"),
+        Action("branch", "y", "Branch: go on from this instant", TIME, time_travel.branch_here, _can_branch, "branch"),
         Action("start-of-run", "home", "Start of the run", TIME, go.to_start, back),
     ]
 
@@ -158,7 +138,7 @@ def _travels() -> list[LabAction]:
 ACTIONS: Mapping[str, LabAction] = {
     action.id: action
     for action in (
-        Action("run", "R", "Run the program", PROGRAM, branch.run, _can_run, "run"),
+        Action("run", "R", "Run the program", PROGRAM, program.run, _can_run, "run"),
         Action("stop", "S", "Stop the program", PROGRAM, program.stop, _can_stop, "stop"),
         Action("pause", "space", "Pause or go on; play the past", PROGRAM, time_travel.pause, _can_pause, "pause"),
         Action("tick", "full_stop", "One tick on, while paused", TIME, time_travel.tick_on, _can_step, "tick"),

@@ -5,163 +5,218 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from tuisim import protocol
+from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
-from tuisim.app.snapshot import ENDED, PAUSED
+from tuisim.app.snapshot import RunPhase
+from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
+    from tuisim.app.workspace import Workspace
     from tuisim.runs.recording import Recording
 
 
-def to_tick(lab: LabApp, tick: int | None) -> None:
+def to_tick(workspace: Workspace, tick: int | None) -> None:
     """Go to a tick of the run; None and ticks beyond the newest mean now. A running program is paused first."""
-    recording = lab.run_controller.timeline.recording
-    if recording is None or (tick is not None and not _is_laid_out(lab, recording)):
+    recording = workspace.run_controller.timeline.recording
+    if recording is None or (tick is not None and not _is_laid_out(workspace, recording)):
         return
-    if tick is not None and lab.run_controller.in_run and lab.run_controller.state != PAUSED:
-        lab.run_controller.pause()
+    if tick is not None and workspace.run_controller.in_run and workspace.run_controller.state != RunPhase.PAUSED:
+        workspace.run_controller.pause()
     if tick is None:
-        lab.debugger.to_now()
-    lab.run_controller.timeline.go(tick)
-    _gone(lab)
+        workspace.debugger.to_now()
+    workspace.run_controller.timeline.go(tick)
+    _gone(workspace)
 
 
-def _is_laid_out(lab: LabApp, recording: Recording) -> bool:
+def _is_laid_out(workspace: Workspace, recording: Recording) -> bool:
     """Return whether the current mat is that of the run; if not, say so."""
-    mat = lab.run_controller.mat
+    mat = workspace.run_controller.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
-    lab.say(f"Another mat is in use now: h opens {recording.name} with the mat that it was on")
+    workspace.app.say(f"Another mat is in use now: h opens {recording.name} with the mat that it was on")
     return False
 
 
-def _gone(lab: LabApp) -> None:
-    lab.situation_changed()
-    lab.draw(force=True)
+def _gone(workspace: Workspace) -> None:
+    workspace.app.situation_changed()
+    workspace.app.draw(force=True)
 
 
-def to_time(lab: LabApp, time_s: float | None) -> None:
+def to_time(workspace: Workspace, time_s: float | None) -> None:
     """Go to a time of the run, None for now."""
-    to_tick(lab, None if time_s is None else round(time_s * lab.run_controller.timeline.tick_hz))
+    to_tick(workspace, None if time_s is None else round(time_s * workspace.run_controller.timeline.tick_hz))
 
 
-def _by(lab: LabApp, ticks: int) -> None:
-    timeline = lab.run_controller.timeline
+def _by(workspace: Workspace, ticks: int) -> None:
+    timeline = workspace.run_controller.timeline
     at = timeline.newest if timeline.at is None else timeline.at
     if ticks < 0 and at <= 0:
-        lab.say("This is the start of the run")
+        workspace.app.say("This is the start of the run")
         return
-    to_tick(lab, at + ticks if at + ticks < timeline.newest else None)
+    to_tick(workspace, at + ticks if at + ticks < timeline.newest else None)
 
 
-def tick_back(lab: LabApp) -> None:
+def tick_back(workspace: Workspace) -> None:
     """Go back one tick."""
-    _by(lab, -1)
+    _by(workspace, -1)
 
 
-def tick_on(lab: LabApp) -> None:
+def tick_on(workspace: Workspace) -> None:
     """Go forward one tick: as recorded in the past, else live; from an earlier line of the newest tick, go to now."""
-    if lab.run_controller.in_past:
-        _by(lab, 1)
-    elif lab.debugger.is_away:
-        to_now(lab)
+    if workspace.run_controller.in_past:
+        _by(workspace, 1)
+    elif workspace.debugger.is_away:
+        to_now(workspace)
     else:
-        lab.run_controller.step()
+        workspace.run_controller.step()
 
 
-def second_back(lab: LabApp) -> None:
+def second_back(workspace: Workspace) -> None:
     """Go back one second."""
-    _by(lab, -lab.run_controller.timeline.tick_hz)
+    _by(workspace, -workspace.run_controller.timeline.tick_hz)
 
 
-def second_on(lab: LabApp) -> None:
+def second_on(workspace: Workspace) -> None:
     """Go forward one second of the recording."""
-    _by(lab, lab.run_controller.timeline.tick_hz)
+    _by(workspace, workspace.run_controller.timeline.tick_hz)
 
 
-def to_start(lab: LabApp) -> None:
+def to_start(workspace: Workspace) -> None:
     """Go to the first instant of the run."""
-    to_tick(lab, 0)
+    to_tick(workspace, 0)
 
 
-def to_now(lab: LabApp) -> None:
+def to_now(workspace: Workspace) -> None:
     """Go to the newest instant."""
-    to_tick(lab, None)
+    to_tick(workspace, None)
 
 
-def pause(lab: LabApp) -> None:
+def pause(workspace: Workspace) -> None:
     """Pause or continue: playback in the past, the program at the newest instant."""
-    timeline = lab.run_controller.timeline
+    timeline = workspace.run_controller.timeline
     if timeline.playing:
         timeline.stop_playback()
-        _gone(lab)
-    elif lab.run_controller.in_past:
+        _gone(workspace)
+    elif workspace.run_controller.in_past:
         timeline.play(time.monotonic())
-        _gone(lab)
-    elif lab.run_controller.state == PAUSED:
-        lab.run_controller.resume()
+        _gone(workspace)
+    elif workspace.run_controller.state == RunPhase.PAUSED:
+        workspace.run_controller.resume()
     else:
-        lab.run_controller.pause()
+        workspace.run_controller.pause()
 
 
-def stop_time(lab: LabApp) -> None:
+def stop_time(workspace: Workspace) -> None:
     """Stop playback, and pause a running program."""
-    lab.run_controller.timeline.stop_playback()
-    if lab.run_controller.in_run and lab.run_controller.state != PAUSED:
-        lab.run_controller.pause()
+    workspace.run_controller.timeline.stop_playback()
+    if workspace.run_controller.in_run and workspace.run_controller.state != RunPhase.PAUSED:
+        workspace.run_controller.pause()
 
 
-def beat(lab: LabApp) -> None:
+def beat(workspace: Workspace) -> None:
     """Continue playback; a paused run that has been played to its newest instant resumes automatically."""
-    if lab.run_controller.timeline.beat(time.monotonic(), lab.run_controller.speed):
-        if lab.run_controller.state == PAUSED:
-            lab.run_controller.resume()
-        elif lab.run_controller.state == ENDED:
-            lab.say("The recording has been played to its end")
-        _gone(lab)
+    if workspace.run_controller.timeline.beat(time.monotonic(), workspace.run_controller.speed):
+        if workspace.run_controller.state == RunPhase.PAUSED:
+            workspace.run_controller.resume()
+        elif workspace.run_controller.state == RunPhase.ENDED:
+            workspace.app.say("The recording has been played to its end")
+        _gone(workspace)
 
 
-def ask_where(lab: LabApp) -> None:
+def ask_where(workspace: Workspace) -> None:
     """Ask for an instant and go there."""
     from tuisim.app.goto import GoTo
 
     def go(tick: int | None) -> None:
         if tick is not None:
-            to_tick(lab, tick)
+            to_tick(workspace, tick)
 
-    lab.push_screen(GoTo(lab.run_controller.timeline), go)
+    workspace.app.push_screen(GoTo(workspace.run_controller.timeline), go)
 
 
-def _to_sample(lab: LabApp, words: str) -> None:
+def _to_sample(workspace: Workspace, words: str) -> None:
     from tuisim.app.goto import find
-    from tuisim.errors import TuisimError
 
     try:
-        to_tick(lab, find(words, lab.run_controller.timeline))
+        to_tick(workspace, find(words, workspace.run_controller.timeline))
     except TuisimError as error:
-        lab.say(error.message)
+        workspace.app.say(error.message)
 
 
-def next_sample(lab: LabApp) -> None:
+def next_sample(workspace: Workspace) -> None:
     """Go to the next sample of any name."""
-    _to_sample(lab, "sample")
+    _to_sample(workspace, "sample")
 
 
-def sample_before(lab: LabApp) -> None:
+def sample_before(workspace: Workspace) -> None:
     """Go to the previous sample of any name."""
-    _to_sample(lab, "sample back")
+    _to_sample(workspace, "sample back")
 
 
-def choose_run(lab: LabApp) -> None:
+def choose_run(workspace: Workspace) -> None:
     """Ask for a stored run and open it."""
     from tuisim.app.dialogs.runs import RunChooser
-    from tuisim.app.loader import open_run
 
     def take(run_id: str | None) -> None:
         if run_id:
-            lab.document.when_safe(lambda: open_run(lab, run_id))
+            workspace.document.when_safe(lambda: workspace.loader.open_run(run_id))
 
     def ask() -> None:
-        lab.push_screen(RunChooser(), take)
+        workspace.app.push_screen(RunChooser(), take)
 
-    lab.document.when_safe(ask)
+    workspace.document.when_safe(ask)
+
+
+def propose_branch(workspace: Workspace, then: protocol.Message | None, restart: bool = False) -> None:
+    """Ask whether to branch from the instant in view.
+
+    Args:
+        workspace: The parts of the app.
+        then: The user's action there.
+        restart: Whether the dialog also offers to run the program from its start.
+    """
+    from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion
+
+    run_controller = workspace.run_controller
+    timeline = run_controller.timeline
+    recording, tick = timeline.recording, timeline.at
+    if isinstance(workspace.panel_area.app.screen, BranchQuestion):
+        return
+    if (
+        recording is None
+        or tick is None
+        or not workspace.document.apply()
+        or (program := run_controller.program) is None
+    ):
+        return
+    timeline.stop_playback()
+    branch = Branch(recording, tick, program, then, run_controller.state is not RunPhase.PAUSED)
+
+    def answered(answer: str | None) -> None:
+        if answer == BRANCH:
+            _branch(workspace, branch)
+        elif answer == RESTART:
+            run_controller.stop_now()
+            workspace.app.start_run()
+        else:
+            # Panels that showed the requested change show the past again.
+            workspace.app.draw(force=True)
+
+    question = BranchQuestion(branch, action_words(then), run_controller.in_run, restart)
+    workspace.app.push_screen(question, answered)
+
+
+def _branch(workspace: Workspace, branch: Branch) -> None:
+    try:
+        workspace.run_controller.branch(branch)
+    except TuisimError as error:
+        workspace.app.complain(error)
+        return
+    workspace.app.run_changed()
+    workspace.app.draw(force=True)
+
+
+def branch_here(workspace: Workspace) -> None:
+    """Branch from the instant in view, changing nothing but perhaps the program."""
+    propose_branch(workspace, None)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
-from tuisim.app.snapshot import ENDED, Snapshot, snapshot_of
+from tuisim.app.snapshot import RunPhase, Snapshot, snapshot_of
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RunSpec, from_plain
 from tuisim.core.state import FLAG_PEN_DOWN, Instant
@@ -58,7 +58,9 @@ class WorldAt:
         instant = instant_of(record, self.spec, recording.noise_at(record))
         field = recording.field_at(tick, self.mat.field) if self.mat.field else None
         pen = bool(record.flags & FLAG_PEN_DOWN)
-        return snapshot_of(instant, self.spec, field, state=ENDED, end=None, line=record.line, speed=1.0, pen_down=pen)
+        return snapshot_of(
+            instant, self.spec, field, state=RunPhase.ENDED, end=None, line=record.line, speed=1.0, pen_down=pen
+        )
 
     def _logged(self, time_s: float, row: int) -> Snapshot:
         table = self._log.table
@@ -68,7 +70,14 @@ class WorldAt:
         instant = Instant(tick, pose, noise=self.spec.world.noise, seed=self.spec.seed)
         line = table.column("line")[row].as_py() if "line" in table.column_names else 0
         return snapshot_of(
-            instant, self.spec, self.mat.field, state=ENDED, end=None, line=int(line or 0), speed=1.0, pen_down=False
+            instant,
+            self.spec,
+            self.mat.field,
+            state=RunPhase.ENDED,
+            end=None,
+            line=int(line or 0),
+            speed=1.0,
+            pen_down=False,
         )
 
 

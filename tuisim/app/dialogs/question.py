@@ -13,7 +13,7 @@ from textual.widgets import Static
 from tuisim.app.dialogs.dialog import Dialog
 
 if TYPE_CHECKING:
-    from tuisim.app.actions.branch import Branch
+    from tuisim.app.branch import Branch
 
 Answer = tuple[str, str]
 """A key, and what it does. The key is the result."""

@@ -17,7 +17,7 @@ from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app import background
-from tuisim.app.actions.branch import BRANCH_TAG
+from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label

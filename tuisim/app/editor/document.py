@@ -22,8 +22,11 @@ from tuisim.errors import ConfigError, TuisimError, counted
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
     from tuisim.app.editor.syntax import Mistake
+    from tuisim.app.loader import Loader
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.run_controller import RunController
+    from tuisim.app.services import AppServices
     from tuisim.runs.recording import Recording
     from tuisim.source import Program
 
@@ -43,11 +46,14 @@ class Document:
     """The open program.
 
     Args:
-        lab: The app.
+        app: Shows notices and dialogs.
+        run_controller: Has the program that runs next, and the run in view.
+        panel_area: Has the code panel.
+        loader: Gets the edited text.
     """
 
-    def __init__(self, lab: LabApp) -> None:
-        self._lab = lab
+    def __init__(self, app: AppServices, run_controller: RunController, panel_area: PanelArea, loader: Loader) -> None:
+        self._app, self._run_controller, self._panel_area, self._loader = app, run_controller, panel_area, loader
         self._program: Program | None = None
         """The next program to run unless the text was edited."""
         self._name = self._path = self._text = self._saved = self._applied = ""
@@ -76,7 +82,7 @@ class Document:
 
     def introduce(self) -> None:
         """Show the open program, which may have changed."""
-        program = self._lab.run_controller.program
+        program = self._run_controller.program
         if program is not self._program:
             same = program is not None and self._program is not None and program.path == self._path
             if not (same and program is not None and program.text == self._runnable()):
@@ -116,18 +122,18 @@ class Document:
 
     def show(self) -> None:
         """Update the code panel."""
-        if code := self._lab.panel_area.code:
+        if code := self._panel_area.code:
             code.set_program(self._name, self._text, self._path or self._name)
             code.set_title(self._name, self.dirty)
             self.run_changed()
             if self._error_line and not code.error_line:
                 code.mark_run_error(self._error_line)
-        if controls := self._lab.panel_area.controls:
+        if controls := self._panel_area.controls:
             controls.set_program(self._name)
 
     def run_changed(self) -> None:
         """Pass the text of the run in view to the code panel."""
-        code, recording = self._lab.panel_area.code, self._lab.run_controller.timeline.recording
+        code, recording = self._panel_area.code, self._run_controller.timeline.recording
         if recording is None:
             self._ran = None
         elif self._ran is None or self._ran[0] is not recording:
@@ -141,7 +147,7 @@ class Document:
     def run_ended_at(self, line: int) -> None:
         """Mark the line of the current run's text at which it ended with an error; 0 for none."""
         self._error_line = line
-        if code := self._lab.panel_area.code:
+        if code := self._panel_area.code:
             code.mark_run_error(line)
 
     def lines(self) -> LineMap:
@@ -154,11 +160,11 @@ class Document:
     def edited(self, text: str) -> None:
         """Handle an edit in the code panel."""
         self._text, self._error_line = text, 0
-        if code := self._lab.panel_area.code:
+        if code := self._panel_area.code:
             code.set_title(self._name, self.dirty)
         if not self._draft_pending:
             self._draft_pending = True
-            self._lab.set_timer(DRAFT_AFTER_S, self.save_draft)
+            self._app.set_timer(DRAFT_AFTER_S, self.save_draft)
 
     def save_draft(self) -> None:
         """Store unsaved text as a draft, or drop the draft if all is saved."""
@@ -171,7 +177,7 @@ class Document:
         try:
             keep_draft(self._path, self._text)
         except ConfigError as error:
-            self._lab.complain(error)
+            self._app.complain(error)
 
     def _offer(self, draft: Draft) -> None:
         from tuisim.app.dialogs.question import Question
@@ -182,7 +188,7 @@ class Document:
         lines = differing_lines(self._text, draft.text)
         text = f"{name} was edited on {when} and not saved: {counted(lines, 'line differs', 'lines differ')}."
         answers = (("r", "Restore the edited text"), ("d", "Discard it"))
-        self._lab.push_screen(Question("Unsaved work", text, answers), lambda answer: self._offered(draft, answer))
+        self._app.push_screen(Question("Unsaved work", text, answers), lambda answer: self._offered(draft, answer))
 
     def _offered(self, draft: Draft, answer: str | None) -> None:
         if answer == "d":
@@ -211,7 +217,7 @@ class Document:
         question = Question(
             "Unsaved changes", f"{self._name} has changes that are not saved.", answers, "goes on editing"
         )
-        self._lab.push_screen(question, answered)
+        self._app.push_screen(question, answered)
 
     def _discard(self) -> None:
         self._text = self._saved
@@ -229,7 +235,7 @@ class Document:
             return True
         # A typing error in the magic line must not change the mat.
         if mistake := self._mistake():
-            self._lab.complain(TuisimError(f"{self._name} cannot run: {mistake.message}"))
+            self._app.complain(TuisimError(f"{self._name} cannot run: {mistake.message}"))
             return False
         return self._take_text()
 
@@ -242,15 +248,15 @@ class Document:
         from tuisim.app.editor.syntax import mistake_in
 
         mistake = mistake_in(self._text, self._name)
-        if code := self._lab.panel_area.code:
+        if code := self._panel_area.code:
             code.mark_error(mistake.line if mistake else 0)
         return mistake
 
     def _take_text(self) -> bool:
         try:
-            self._lab.loader.apply_text(self._text, self._path, self._name)
+            self._loader.apply_text(self._text, self._path, self._name)
         except TuisimError as error:
-            self._lab.complain(error)
+            self._app.complain(error)
             return False
         return True
 
@@ -261,7 +267,7 @@ class Document:
             self._open_new()
             if draft := find_draft(""):
                 self._offer(draft)
-            elif code := self._lab.panel_area.code:
+            elif code := self._panel_area.code:
                 code.start_typing()
 
         self.when_safe(begin)
@@ -270,7 +276,7 @@ class Document:
         self._take(None, offers=False)
         self._program = None
         self._name, self._text, self._saved = NEW_NAME, TEMPLATE, TEMPLATE
-        self._lab.loader.open_new(TEMPLATE, NEW_NAME)
+        self._loader.open_new(TEMPLATE, NEW_NAME)
 
     # Saving
 
@@ -281,14 +287,14 @@ class Document:
             then: Called after it was saved.
         """
         if self._program is None:
-            self._lab.say("No program to save: o opens one")
+            self._app.say("No program to save: o opens one")
             return
         path = Path(self._path)
         if self._path and self._is_file and not is_protected(path):
             try:
                 self._write(path)
             except TuisimError as error:
-                self._lab.complain(error)
+                self._app.complain(error)
                 return
             self._saved_to(path, then)
             return
@@ -298,7 +304,7 @@ class Document:
             if target:
                 self._saved_to(target, then)
 
-        self._lab.push_screen(ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved)
+        self._app.push_screen(ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved)
 
     def _write(self, path: Path) -> None:
         if path.suffix != ".py":
@@ -315,13 +321,13 @@ class Document:
         self._path, self._name = str(path), path.name
         self.show()
         mistake = self._mistake()
-        if not self._lab.run_controller.in_run and not self._is_applied and (moved or not mistake):
+        if not self._run_controller.in_run and not self._is_applied and (moved or not mistake):
             self._take_text()
-        self._lab.loader.saved(path)
+        self._loader.saved(path)
         if mistake:
-            self._lab.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))
+            self._app.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))
         else:
-            self._lab.say(f"{self._name} is saved")
+            self._app.say(f"{self._name} is saved")
         then()
 
     # Changes of the file on disk
@@ -336,11 +342,11 @@ class Document:
 
             text = f"{self._name} was changed on disk, and has unsaved changes here."
             answers = (("k", "Keep mine"), ("t", "Take the file's"))
-            self._lab.push_screen(Question("Two versions", text, answers), self._resolved)
+            self._app.push_screen(Question("Two versions", text, answers), self._resolved)
         return True
 
     def _resolved(self, answer: str | None) -> None:
         self._asking = False
         if answer == "t":
             self._discard()
-            self._lab.loader.reload(Path(self._path))
+            self._loader.reload(Path(self._path))

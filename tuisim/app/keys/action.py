@@ -99,6 +99,10 @@ class ActionHost(MessagePump):
     def situation(self) -> Any:
         """Return the state that decides which keys are available."""
 
+    def action_target(self) -> Any:
+        """Return what the functions behind the keys get."""
+        return self
+
     def action_act(self, name: str) -> None:
         """Run the action of a key, or say why it is unavailable now."""
         if is_leaving(self.app):
@@ -107,7 +111,7 @@ class ActionHost(MessagePump):
         if reason := action.why_not(self.situation()):
             self.say(reason)
             return
-        action.do(self)
+        action.do(self.action_target())
 
     def on_act(self, message: Act) -> None:
         """Run an action whose word in the footer or on a panel was clicked."""

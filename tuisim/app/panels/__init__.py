@@ -8,17 +8,33 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from importlib import import_module
 from typing import ClassVar, Protocol, cast, runtime_checkable
 
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 
-SMALL, MEDIUM, LARGE = "small", "medium", "large"
-"""Terminal sizes: from 80×24, from 112×34, from 170×50."""
 
-MAIN, BOTTOM, SIDE = "main", "bottom", "side"
-"""Areas of the screen: the main area, the strip below it, the column beside both."""
+class TerminalSize(StrEnum):
+    """How large a terminal is, for the choice of panels."""
+
+    SMALL = "small"
+    """From 80×24."""
+    MEDIUM = "medium"
+    """From 112×34."""
+    LARGE = "large"
+    """From 170×50."""
+
+
+class PanelPlace(StrEnum):
+    """An area of the screen."""
+
+    MAIN = "main"
+    BOTTOM = "bottom"
+    """The strip below the main area."""
+    SIDE = "side"
+    """The column beside both."""
 
 
 class Panel(Protocol):
@@ -47,8 +63,8 @@ class PanelInfo:
     key: str
     path: str
     """Module in this package, and class; imported when the panel is first shown."""
-    place: str
-    sizes: tuple[str, ...]
+    place: PanelPlace
+    sizes: tuple[TerminalSize, ...]
     """Terminal sizes at which it is on by default."""
     min_rows: int
     good_rows: int
@@ -62,25 +78,28 @@ class PanelInfo:
         return cast("type[Panel]", getattr(import_module(f"{__name__}.{module}"), name))
 
 
-ALL = (SMALL, MEDIUM, LARGE)
+_MAIN, _BOTTOM, _SIDE = PanelPlace
+_ALL = tuple(TerminalSize)
+_MEDIUM_UP = (TerminalSize.MEDIUM, TerminalSize.LARGE)
+_LARGE = (TerminalSize.LARGE,)
 
 # By priority: if space runs out, the later ones are hidden first.
 PANELS: Mapping[str, PanelInfo] = {
     panel.id: panel
     for panel in (
-        PanelInfo("world", "World", "W", "world:World", MAIN, ALL, 8, 14),
-        PanelInfo("instrumentation", "Instrumentation", "i", "instrumentation:Instrumentation", SIDE, ALL, 8, 15),
-        PanelInfo("output", "Output", "O", "output:Output", BOTTOM, ALL, 5, 9, weight=3),
-        PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", SIDE, (MEDIUM, LARGE), 8, 13),
-        PanelInfo("code", "Code", "D", "code:Code", BOTTOM, (MEDIUM, LARGE), 5, 9, weight=4),
-        PanelInfo("chart", "Chart", "c", "chart:Chart", BOTTOM, (LARGE,), 8, 16, weight=5),
-        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", SIDE, (MEDIUM, LARGE), 11, 12),
-        PanelInfo("positioning", "Positioning", "X", "position:Positioning", SIDE, (LARGE,), 8, 8),
-        PanelInfo("noise", "Noise", "z", "noise:Noise", SIDE, (LARGE,), 6, 6),
-        PanelInfo("debug", "Debug", "G", "debug:Debug", SIDE, (), 9, 18),
-        PanelInfo("brick", "Brick", "K", "brick:Brick", BOTTOM, (), 9, 20, weight=4),
-        PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", SIDE, (), 11, 16),
-        PanelInfo("settings", "Settings", "Z", "settings:Settings", SIDE, (), 14, 40),
+        PanelInfo("world", "World", "W", "world:World", _MAIN, _ALL, 8, 14),
+        PanelInfo("instrumentation", "Instrumentation", "i", "instrumentation:Instrumentation", _SIDE, _ALL, 8, 15),
+        PanelInfo("output", "Output", "O", "output:Output", _BOTTOM, _ALL, 5, 9, weight=3),
+        PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", _SIDE, _MEDIUM_UP, 8, 13),
+        PanelInfo("code", "Code", "D", "code:Code", _BOTTOM, _MEDIUM_UP, 5, 9, weight=4),
+        PanelInfo("chart", "Chart", "c", "chart:Chart", _BOTTOM, _LARGE, 8, 16, weight=5),
+        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", _SIDE, _MEDIUM_UP, 11, 12),
+        PanelInfo("positioning", "Positioning", "X", "position:Positioning", _SIDE, _LARGE, 8, 8),
+        PanelInfo("noise", "Noise", "z", "noise:Noise", _SIDE, _LARGE, 6, 6),
+        PanelInfo("debug", "Debug", "G", "debug:Debug", _SIDE, (), 9, 18),
+        PanelInfo("brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 20, weight=4),
+        PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 16),
+        PanelInfo("settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 40),
     )
 }
 """Every panel by id."""

@@ -13,9 +13,8 @@ from textual.message import Message
 from textual.timer import Timer
 from textual.widget import Widget
 
-from tuisim.app.actions.table import IN_RUN
 from tuisim.app.render.brick import BrickPicture, draw_brick
-from tuisim.app.snapshot import Snapshot
+from tuisim.app.snapshot import IN_RUN, Snapshot
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.protocol import BUTTONS

@@ -12,7 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.snapshot import PAUSED, RUNNING, WAITING, Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.charts import axes
@@ -93,7 +93,7 @@ class Chart(Widget, can_focus=True):
         if cursor_s != self._state.cursor_s and not self._dragging:
             self._state = replace(self._state, cursor_s=cursor_s)
             self._dirty = True
-        grows = snapshot.state in (RUNNING, PAUSED, WAITING)
+        grows = snapshot.state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.WAITING)
         if grows != self._state.grows:
             self._state = replace(self._state, grows=grows)
             self._dirty = True

@@ -17,7 +17,7 @@ from textual.widgets.text_area import Selection
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.find_bar import FIND, LINE, FindBar
 from tuisim.app.editor.text_lines import LineMap, places
-from tuisim.app.snapshot import ENDED, IDLE, RUNNING, Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.source import source_lines
 
 LIT_GAP_S = 0.1
@@ -171,7 +171,7 @@ class Code(Vertical):
 
     def show(self, snapshot: Snapshot) -> None:
         """Highlight the line during which time passes."""
-        in_run = snapshot.state not in (IDLE, ENDED) or snapshot.past
+        in_run = snapshot.state not in (RunPhase.IDLE, RunPhase.ENDED) or snapshot.past
         if in_run != self._in_run:
             self._in_run = in_run
             self._say()
@@ -179,7 +179,7 @@ class Code(Vertical):
         if line == self._line:
             return
         now = time.monotonic()
-        if snapshot.state == RUNNING and not snapshot.past and now - self._lit_at_s < LIT_GAP_S:
+        if snapshot.state == RunPhase.RUNNING and not snapshot.past and now - self._lit_at_s < LIT_GAP_S:
             return
         self._lit_at_s = now
         self.show_line(line)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, assert_never
 
 from rich.style import Style
 from rich.text import Text
@@ -11,9 +11,8 @@ from textual import events
 from textual.widget import Widget
 
 from tuisim.app.keys.action import ACT, Act
-from tuisim.app.snapshot import IDLE, PAUSED, RUNNING, STARTING, WAITING, Snapshot, end_label, speed_label
+from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
 
-_STATES = {IDLE: "ready", STARTING: "starting", RUNNING: "running", PAUSED: "paused", WAITING: "waits for input"}
 _LABEL_CELLS = 9
 
 
@@ -67,19 +66,19 @@ class Controls(Widget, can_focus=False):
 
     def _state(self, now: Snapshot) -> Text:
         style = self.get_component_rich_style("controls--failed", partial=True) if now.failed else ""
-        return Text(_STATES.get(now.state, end_label(now.end)), style)
+        return Text(_state_label(now), style)
 
     def render(self) -> Text:
         """Return the content."""
         now = self._snapshot
         if now is None:
             return Text()
-        in_run = now.state in _STATES and now.state != IDLE
+        in_run = now.state in IN_RUN
         buttons = Text(" ").join(
             (
                 self._button("R Run", "run", bool(self._program) and not in_run),
                 self._button("S Stop", "stop", in_run),
-                self._button("Go on" if now.state == PAUSED else "Pause", "pause", in_run),
+                self._button("Go on" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run),
             )
         )
         spec = now.spec
@@ -103,3 +102,17 @@ class Controls(Widget, can_focus=False):
         for line in lines:
             line.truncate(width, overflow="ellipsis")
         return Text("\n", no_wrap=True).join(lines[: self.size.height])
+
+
+def _state_label(now: Snapshot) -> str:
+    match now.state:
+        case RunPhase.IDLE:
+            return "ready"
+        case RunPhase.WAITING:
+            return "waits for input"
+        case RunPhase.STARTING | RunPhase.RUNNING | RunPhase.PAUSED:
+            return now.state.value
+        case RunPhase.ENDED:
+            return end_label(now.end)
+        case _:
+            assert_never(now.state)

@@ -12,14 +12,13 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.app.render.debug import DebugView, debug_lines
-from tuisim.app.snapshot import IDLE, Snapshot
+from tuisim.app.snapshot import DebugState, RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.charts.text_runs import Line
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from tuisim.app.debugger import AppDebugger
     from tuisim.protocol import Paused
 
 
@@ -56,7 +55,7 @@ class Debug(Widget, can_focus=True):
         self.border_title = self.TITLE
         self._view = LinesView()
         self._content = DebugView()
-        self._state = IDLE
+        self._state = RunPhase.IDLE
         self._now: tuple[int, float] | None = None
         self._top = 0
         self._lines: list[Line] = []
@@ -74,7 +73,7 @@ class Debug(Widget, can_focus=True):
         self.border_subtitle = ""
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show whether the program runs; the place of a pause comes with `show_debugging`."""
+        """Show whether the program runs; the place of a pause comes with `show_pause`."""
         now = snapshot.instant.tick, snapshot.time_s
         # While it runs, it has no current line, and nothing can belong to another instant.
         if snapshot.state != self._state or (now != self._now and self._content.paused):
@@ -82,14 +81,14 @@ class Debug(Widget, can_focus=True):
             self._draw()
         self._now = now
 
-    def show_debugging(self, debugging: AppDebugger) -> None:
+    def show_pause(self, state: DebugState) -> None:
         """Show where the program is paused."""
-        view, busy = debugging.view, debugging.busy
+        view = state.view
         if view is None:
-            self._content = DebugView(busy=busy)
+            self._content = DebugView(busy=state.busy)
         else:
             source = _line_of(view.paused)
-            self._content = DebugView("", view.paused, view.inspected, view.past, busy, source)
+            self._content = DebugView(self._state, view.paused, view.inspected, view.past, state.busy, source)
         self._draw()
 
     def on_resize(self, event: events.Resize) -> None:

@@ -10,7 +10,7 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from tuisim.app.snapshot import ENDED, Snapshot, end_label
+from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.charts.text_runs import Line, Run, cut
@@ -278,7 +278,7 @@ def _clock(now: Snapshot, width: int) -> Line:
 
 
 def _state_word(now: Snapshot) -> Run:
-    word = end_label(now.end) if now.state == ENDED and now.end else now.state
+    word = end_label(now.end) if now.state == RunPhase.ENDED and now.end else now.state
     return word, _WARNING if now.failed else _VALUE
 
 

@@ -18,7 +18,7 @@ from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.render.mat import Pixels
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.render.viewport import ZOOMS, Viewport, following
-from tuisim.app.snapshot import ENDED, IDLE, Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.app.timeline import ACTION, BREAK
 from tuisim.charts.axes import time_limits
@@ -485,14 +485,14 @@ class TimeBar(LinesView):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment of a run; before the first run there is no bar."""
-        there = snapshot.state != IDLE and (snapshot.now_tick > 0 or snapshot.past)
+        there = snapshot.state != RunPhase.IDLE and (snapshot.now_tick > 0 or snapshot.past)
         if self.display != there:
             self.display = there
         if not there:
             return
         tick = snapshot.instant.tick if snapshot.past else snapshot.now_tick
         hz = snapshot.spec.profile.tick_hz
-        self._moment = Moment(tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == ENDED)
+        self._moment = Moment(tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED)
         self._draw()
 
     def on_resize(self) -> None:

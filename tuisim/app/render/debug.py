@@ -11,6 +11,7 @@ from typing import assert_never
 
 from rich.style import Style
 
+from tuisim.app.snapshot import RunPhase
 from tuisim.charts.text_runs import Line, cut
 from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 
@@ -26,19 +27,14 @@ _CHOSEN = Style(color="#ffffff", bgcolor="#2f4a68")
 
 _NAME_COLUMN = 16
 
-DOES = {
-    "running": ("space  pauses    n  pauses at the next line",),
-    "waiting": ("The Output panel takes the answer.",),
-}
-"""By state of a program that is not paused: the available keys."""
-OVER = (
+_OVER = (
     "The program has ended.",
     "",
     "N  its last line    ,  a tick back",
     "g  go to …          <  a second back",
     "n  step through it again",
 )
-EMPTY = (
+_EMPTY = (
     "The program has not started.",
     "",
     "n  next line      t  breakpoint",
@@ -51,8 +47,7 @@ EMPTY = (
 class DebugView:
     """The content of the debug panel."""
 
-    state: str = ""
-    """Word for the state of the run when it is not paused."""
+    state: RunPhase = RunPhase.IDLE
     paused: Paused | None = None
     inspected: Inspected | None = None
     past: bool = False
@@ -92,10 +87,8 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     """Return the text for a panel of that inner width."""
     if view.paused is None or view.inspected is None:
         if view.busy:
-            return _told("", ("computing that instant …",), width)
-        if view.state in DOES:
-            return _told(view.state, DOES[view.state], width)
-        return _told("", OVER if view.state == "ended" else EMPTY, width)
+            return _text("", ("computing that instant …",), width)
+        return _hint(view.state, width)
     lines = _known(view, view.paused, view.inspected, width)
     if view.is_elsewhere and view.now:
         # The known data belongs to another instant: it is dimmed until that of this one has arrived.
@@ -103,6 +96,21 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
         head: Line = [(cut(f"{time_s:.2f} s · tick {tick} …", width), _HEAD)]
         return [head, *([(text, _PALE) for text, _ in line] for line in lines[1:])]
     return lines
+
+
+def _hint(state: RunPhase, width: int) -> list[Line]:
+    """Return the keys that help in a run that is not paused."""
+    match state:
+        case RunPhase.RUNNING:
+            return _text("running", ("space  pauses    n  pauses at the next line",), width)
+        case RunPhase.WAITING:
+            return _text("waiting", ("The Output panel takes the answer.",), width)
+        case RunPhase.ENDED:
+            return _text("", _OVER, width)
+        case RunPhase.IDLE | RunPhase.STARTING | RunPhase.PAUSED:
+            return _text("", _EMPTY, width)
+        case _:
+            assert_never(state)
 
 
 def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) -> list[Line]:
@@ -140,7 +148,7 @@ def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) ->
     return lines
 
 
-def _told(head: str, texts: Sequence[str], width: int) -> list[Line]:
+def _text(head: str, texts: Sequence[str], width: int) -> list[Line]:
     """Return a text for an otherwise empty panel; in a narrow one, each key has a line of its own."""
     if max(map(len, texts)) > width:
         parts = [part for text in texts for part in re.split(" {3,}", text)]

@@ -14,7 +14,7 @@ from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Input, Label, Static
 
-from tuisim.app.actions.table import ACTIONS
+from tuisim.app.keys.action import ActionHost
 from tuisim.errors import ConfigError, TuisimError
 
 
@@ -187,9 +187,9 @@ _SIGNS = frozenset({
 class NumberInput(Input):
     """A text field for a number; letters and other characters remain keys of the app."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(key, f"app.act('{action.id}')", action.title, show=False, priority=True)
-        for action in ACTIONS.values()
-        for key in action.key.split(",")
-        if len(key) == 1 or key in _SIGNS
-    ]
+    def on_mount(self) -> None:
+        """Leave the keys of the app to the app."""
+        for action in self.app.ACTIONS.values() if isinstance(self.app, ActionHost) else ():
+            for key in action.key.split(","):
+                if len(key) == 1 or key in _SIGNS:
+                    self._bindings.bind(key, f"app.act('{action.id}')", action.title, show=False, priority=True)

@@ -9,15 +9,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
-from tuisim.app.snapshot import PAUSED
 from tuisim.core.spec import NoiseSpec
-from tuisim.errors import TuisimError
 from tuisim.protocol import BEFORE_NEXT_TICK, UserAction
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
-    from tuisim.app.app import LabApp
     from tuisim.runs.handle import RunHandle
     from tuisim.runs.recording import Recording
     from tuisim.source import Program
@@ -121,7 +118,8 @@ def branch_message(branch: Branch, now: Recording) -> str:
     return f"{words}, but the program does not repeat itself: it differs from {differs / hz:.2f} s on"
 
 
-def _what(action: protocol.Message | None) -> str:
+def action_words(action: protocol.Message | None) -> str:
+    """Return in words what a user action changes, for the end of a sentence; empty for nothing."""
     match action:
         case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
             return f" with the robot at x {x:.0f}, y {y:.0f}, {heading:.0f}°"
@@ -131,58 +129,3 @@ def _what(action: protocol.Message | None) -> str:
             return f" with the pen {'down' if down else 'up'}"
         case _:
             return ""
-
-
-def propose(lab: LabApp, then: protocol.Message | None, restart: bool = False) -> None:
-    """Ask whether to branch from the instant in view.
-
-    Args:
-        lab: The app.
-        then: The user's action there.
-        restart: Whether the dialog also offers to run the program from its start.
-    """
-    from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion
-
-    timeline = lab.run_controller.timeline
-    recording, tick = timeline.recording, timeline.at
-    if isinstance(lab.screen, BranchQuestion):
-        return
-    if recording is None or tick is None or not lab.document.apply() or (program := lab.run_controller.program) is None:
-        return
-    timeline.stop_playback()
-    branch = Branch(recording, tick, program, then, lab.run_controller.state != PAUSED)
-
-    def answered(answer: str | None) -> None:
-        if answer == BRANCH:
-            _start(lab, branch)
-        elif answer == RESTART:
-            lab.run_controller.stop_now()
-            lab.start_run()
-        else:
-            # Panels that showed the requested change show the past again.
-            lab.draw(force=True)
-
-    lab.push_screen(BranchQuestion(branch, _what(then), lab.run_controller.in_run, restart), answered)
-
-
-def _start(lab: LabApp, branch: Branch) -> None:
-    try:
-        lab.run_controller.branch(branch)
-    except TuisimError as error:
-        lab.complain(error)
-        return
-    lab.run_changed()
-    lab.draw(force=True)
-
-
-def from_here(lab: LabApp) -> None:
-    """Branch from the instant in view, changing nothing but perhaps the program."""
-    propose(lab, None)
-
-
-def run(lab: LabApp) -> None:
-    """Start the program; in the past, ask whether to start from that instant."""
-    if lab.run_controller.in_past:
-        propose(lab, None, restart=True)
-    else:
-        lab.start_run()
