@@ -9,7 +9,6 @@ from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any, ClassVar
 
-from tuisim.breakpoints import parse_breakpoints
 from tuisim.errors import ConfigError
 
 
@@ -227,9 +226,8 @@ class SetBreaks(Message):
     """Breakpoints in the syntax of `tuisim.breakpoints`; disabled ones are ignored."""
 
     def __post_init__(self) -> None:
-        # JSON gives a list. Invalid breakpoints are rejected by the sender, not by the child.
+        # JSON gives a list.
         object.__setattr__(self, "breaks", tuple(self.breaks))
-        parse_breakpoints(self.breaks)
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,8 @@ from tuisim.config.mat_cache import FieldFiles, open_field
 from tuisim.core import motor_laws
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.drive import EvenGlide
-from tuisim.core.profile import NBEV3DEVSIM
-from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S
+from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
 from tuisim.core.state import TICK_RECORD
 from tuisim.runs.run_folder import field_files

@@ -7,8 +7,8 @@ import pytest
 
 from tests.core.memory_sink import MemorySink
 from tuisim.core.geometry import Pose
-from tuisim.core.profile import NBEV3DEVSIM, ROBOLAB, ProfileSpec
-from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S, ROBOLAB, ProfileSpec
+from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from tests.running import Done, Run, Start, until
 from tests.runtime.debugging import Driver
+from tuisim.errors import ConfigError
 from tuisim.protocol import (
     AFTER_TICK,
     BEFORE_NEXT_TICK,
@@ -363,3 +364,11 @@ def test_a_break_set_while_the_program_runs_is_met(debug: Callable[..., Driver],
     driver.run.send(Resume())
     driver.run.stop()
     assert driver.finish().end == "stopped"
+
+
+def test_an_invalid_breakpoint_is_refused_before_it_is_sent(debug: Callable[..., Driver]) -> None:
+    driver = debug(CALLS, hold_at=FIRST_LINE)
+    driver.paused()
+    with pytest.raises(ConfigError, match="nonsense"):
+        driver.run.send(SetBreaks(("nonsense",)))
+    assert driver.finish(Resume()).end == "finished"

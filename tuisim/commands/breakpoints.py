@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tuisim.breakpoints import parse_breakpoints, parse_watch
 from tuisim.commands.echo import echo_error
 from tuisim.core.geometry import shown_heading_deg
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.errors import ConfigError
 from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle

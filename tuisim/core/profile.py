@@ -13,6 +13,7 @@ from typing import Any
 
 MS = 1_000_000
 """Nanoseconds in a millisecond."""
+NS_PER_S = 1_000_000_000
 
 
 class MotorLaw(StrEnum):

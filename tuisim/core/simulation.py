@@ -8,9 +8,8 @@ from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion
 from tuisim.core.motors import Motor
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.state import TICK_RECORD, Instant
-
-NS_PER_S = 1_000_000_000
 
 
 class Simulation(Motion):

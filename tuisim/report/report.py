@@ -15,7 +15,7 @@ from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
 from tuisim.charts.layout import Chart, Span, laid_out
 from tuisim.charts.world_image import world_at_end, world_view
 from tuisim.core.geometry import shown_heading_deg
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.state import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
 from tuisim.logs.export import check_place

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.core.field import Field
 from tuisim.core.pen_marks import PenMarks
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import SENSORS, mounted
 from tuisim.core.sensors.color import columns as color_columns
 from tuisim.core.sensors.color import disc_pixels_of
-from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
 from tuisim.protocol import SetNoise, UserAction
 from tuisim.runs.records import TELEMETRY_FILE

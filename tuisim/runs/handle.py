@@ -30,6 +30,7 @@ from tuisim.protocol import (
     Reply,
     ReplyWanted,
     Resumed,
+    SetBreaks,
     Started,
     Stop,
     UserAction,
@@ -287,7 +288,14 @@ class RunHandle:
     # Commands
 
     def send(self, command: Message) -> None:
-        """Send a command; after the end of the run it is ignored."""
+        """Send a command; after the end of the run it is ignored.
+
+        Raises:
+            ConfigError: a breakpoint in it is invalid.
+        """
+        if isinstance(command, SetBreaks):
+            # Rejected here: the child could not tell the user.
+            parse_breakpoints(command.breaks)
         if self.ended is not None or self._announced is not None:
             return
         if not self.started:

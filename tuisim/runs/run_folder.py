@@ -14,8 +14,7 @@ from tuisim.atomic import replacing
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
-from tuisim.core.profile import MotorLaw, law_of_earlier
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S, MotorLaw, law_of_earlier
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
 from tuisim.errors import ConfigError, LogError, TuisimError
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction

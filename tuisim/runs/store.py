@@ -22,7 +22,7 @@ from typing import Any
 
 from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, Ended, Unended

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NoReturn
 from tuisim import protocol
 from tuisim.config.mat_cache import open_field
 from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.runs.brick_state import motors_row
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
 from tuisim.runs.side_files import hold

@@ -10,7 +10,7 @@ import sys
 import types
 from typing import Any
 
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.errors import NotSimulated
 from tuisim.runtime import wallclock
 from tuisim.runtime.replacement import replace

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Any
 
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.runtime import wallclock as real
 from tuisim.runtime.modules import OWN_FILES
 from tuisim.runtime.replacement import replace

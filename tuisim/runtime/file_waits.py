@@ -10,7 +10,7 @@ from collections.abc import Callable
 from functools import partial, wraps
 from typing import Any, TypeVar
 
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.runtime.control import THREADS
 from tuisim.runtime.replacement import replace
 from tuisim.runtime.session import Session

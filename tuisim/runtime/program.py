@@ -16,7 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.errors import LogError
 from tuisim.protocol import NO_ANSWER, Answer, End, InputWanted
 from tuisim.runs.records import Stream

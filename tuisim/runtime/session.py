@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.field import Field
-from tuisim.core.profile import MS
-from tuisim.core.simulation import NS_PER_S, Simulation
+from tuisim.core.profile import MS, NS_PER_S
+from tuisim.core.simulation import Simulation
 from tuisim.protocol import End, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
 from tuisim.runtime.channel import Channel

@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterator, MutableSequence
 from dataclasses import dataclass
 from typing import Any
 
-from tuisim.core.profile import MS
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import MS, NS_PER_S
 from tuisim.protocol import BUTTONS
 from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session

@@ -15,8 +15,7 @@ from functools import wraps
 from itertools import count
 from typing import Any
 
-from tuisim.core.profile import MS
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import MS, NS_PER_S
 from tuisim.runs.brick_state import LED_NAMES, led_row
 from tuisim.runs.records import Stream
 from tuisim.shim.devices import Brick, SimDevice, refuse

@@ -20,9 +20,9 @@ from tuisim.breakpoints import (
     ValueBreak,
 )
 from tuisim.core.comparison import COMPARE
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import SensorKind, gyro, mounted, ultrasonic
 from tuisim.core.sensors.color import COLOR_NAMES, ColorReading, reading
-from tuisim.core.simulation import NS_PER_S
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
 from tuisim.runs.records import Stream
 from tuisim.runs.samples import parse_sample

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tuisim.core.motors import POSITION, TIMED, Motor
-from tuisim.core.simulation import NS_PER_S
+from tuisim.core.profile import NS_PER_S
 from tuisim.runtime.interrupts import PACKAGE_FOLDER
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread
 from tuisim.runtime.session import Session
