@@ -17,7 +17,7 @@ from textual.keys import _character_to_key, key_to_character
 from textual.pilot import Pilot
 
 from tests.running import PATIENCE_S
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.app import Analyser
 from tuisim.app.dialogs.question import LeaveQuestion, Question
 
 NAMED = (

@@ -17,8 +17,7 @@ from tests.app.app_help import ENDLESS, LOGS, settings, until
 from tests.app.monkey import is_over, leave, press_at_random
 from tests.running import PATIENCE_S
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import AnalyserApp
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.terminal.terminal_app import TerminalApp
 
@@ -53,7 +52,7 @@ def analyser(turn: int) -> TerminalApp:
 def is_open(app: App[Any]) -> bool:
     if isinstance(app, LabApp):
         return app.run_controller.mat is not None
-    return isinstance(app.screen, Analyser) and app.screen.model is not None
+    return isinstance(app.screen, Analyser) and app.screen.is_open
 
 
 def children() -> set[str]:

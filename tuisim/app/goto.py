@@ -1,4 +1,4 @@
-"""Go to an instant: parses what the user types, finds that instant in the run, and asks for it in a dialog."""
+"""Go to an instant: parses what the user types, and finds that instant in the run."""
 
 from __future__ import annotations
 
@@ -8,15 +8,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rich.table import Table
-from textual import on
-from textual.app import ComposeResult
-from textual.widgets import Input, Static
-
-from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.timeline import Timeline
 from tuisim.core.comparison import COMPARE, Comparison, comparison_form, comparison_in, finite_number, spelled
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.errors import ConfigError
 from tuisim.runs.records import TEXT_STREAMS, OutputRow
 from tuisim.runs.samples import parse_sample
 from tuisim.source import source_lines
@@ -163,34 +156,3 @@ def _printed(search: _Search, pattern: str) -> int:
     if tick is None:
         raise ConfigError(f"nothing printed {search.words} matches {pattern!r}")
     return tick
-
-
-class GoTo(Dialog[int]):
-    """Returns the tick that was asked for.
-
-    Args:
-        timeline: The run, and the instant in view.
-    """
-
-    TITLE_TEXT: str = "Go to"
-    HINT: str = "Enter goes there · Escape closes"
-
-    def __init__(self, timeline: Timeline) -> None:
-        super().__init__()
-        self._timeline = timeline
-
-    def content(self) -> ComposeResult:
-        """Return the field, its error line, and the accepted forms."""
-        yield Input(placeholder=f"now at {self._timeline.time_s:.2f} s", compact=True)
-        yield Static(id="message", classes="wrong", markup=False)
-        forms = Table.grid(padding=(0, 2))
-        for form, meaning in FORMS:
-            forms.add_row(form, meaning)
-        yield Static(forms)
-
-    @on(Input.Submitted)
-    def _entered(self, event: Input.Submitted) -> None:
-        try:
-            self.dismiss(find(event.value, self._timeline))
-        except TuisimError as error:
-            self.query_one("#message", Static).update(str(error))

@@ -10,9 +10,8 @@ from textual.pilot import Pilot
 
 from tests.app.app_help import until
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import AnalyserApp
-from tuisim.app.analyser.columns import AskColumns
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.app import Analyser, AnalyserApp
+from tuisim.app.analyser.columns import ColumnsDialog
 from tuisim.logs.reader import open_log
 
 
@@ -44,7 +43,7 @@ def test_what_is_doubtful(text: str, sure: bool, tmp_path: Path) -> None:
 
 
 async def asked(pilot: Pilot[Any]) -> Analyser:
-    await until(pilot, lambda: isinstance(pilot.app.screen, AskColumns))
+    await until(pilot, lambda: isinstance(pilot.app.screen, ColumnsDialog))
     screen = pilot.app.screen_stack[-2]
     assert isinstance(screen, Analyser)
     return screen
@@ -53,7 +52,7 @@ async def asked(pilot: Pilot[Any]) -> Analyser:
 async def test_a_doubtful_table_is_asked_about_and_drawn_as_told(foreign: Path) -> None:
     async with AnalyserApp(LogRequest(str(foreign))).run_test(size=(80, 24)) as pilot:
         screen = await asked(pilot)
-        assert screen.model is not None and screen.model.log.layout.unit_s == 1.0
+        assert screen.is_open and screen.model.log.layout.unit_s == 1.0
         # The first column is time, in ms; the second is of no interest.
         await pilot.press("t", "u", "down", "space", "enter")
         await until(pilot, lambda: pilot.app.screen is screen)
@@ -61,12 +60,12 @@ async def test_a_doubtful_table_is_asked_about_and_drawn_as_told(foreign: Path) 
         assert (log.layout.time, log.layout.values, log.layout.unit_s) == ("boot", ("light", "far"), 1e-3)
         assert log.series("far").time_s[-1] == pytest.approx(0.98)
         # Where no robot was, the log has all the room.
-        assert not screen.beside.display
+        assert not screen.world.display
         await pilot.press("C")
         await asked(pilot)
         await pilot.press("t", "down", "down", "space", "down", "space", "enter")
         await pilot.pause()
-        assert isinstance(pilot.app.screen, AskColumns), "nothing to draw"
+        assert isinstance(pilot.app.screen, ColumnsDialog), "nothing to draw"
         await pilot.press("up", "t", "down", "space", "enter")
         await until(pilot, lambda: pilot.app.screen is screen)
         assert (screen.model.log.layout.time, screen.model.log.names) == ("light", ("far",))
@@ -78,7 +77,7 @@ async def test_the_guess_may_stay(leave: str, foreign: Path) -> None:
         screen = await asked(pilot)
         await pilot.press(leave)
         await until(pilot, lambda: pilot.app.screen is screen)
-        assert screen.model is not None and screen.model.log.names == ("boot", "id", "light", "far")
+        assert screen.is_open and screen.model.log.names == ("boot", "id", "light", "far")
 
 
 async def test_what_was_named_in_the_shell_is_not_asked_about(foreign: Path) -> None:
@@ -87,5 +86,5 @@ async def test_what_was_named_in_the_shell_is_not_asked_about(foreign: Path) -> 
         await until(pilot, lambda: getattr(pilot.app.screen, "model", None) is not None)
         await pilot.pause()
         screen = pilot.app.screen
-        assert isinstance(screen, Analyser) and screen.model is not None
+        assert isinstance(screen, Analyser) and screen.is_open
         assert screen.model.log.series("light").time_s[1] == pytest.approx(0.02)

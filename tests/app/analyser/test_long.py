@@ -11,9 +11,8 @@ import pyarrow.parquet as pq
 from tests.app.analyser.logs import model_of
 from tests.app.app_help import until
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import AnalyserApp
+from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.panes import pane_lines
-from tuisim.app.analyser.screen import Analyser
 from tuisim.charts.text_runs import Line
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
@@ -45,9 +44,9 @@ async def test_a_long_log_is_searched_beside_the_screen(tmp_path: Path) -> None:
     pq.write_table(stepped(30_000, 3000), tmp_path / "long.parquet")
     async with AnalyserApp(LogRequest(file=str(tmp_path / "long.parquet"))).run_test(size=(120, 40)) as pilot:
         screen = pilot.app.screen
-        await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.model is not None)
+        await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
         screen = pilot.app.screen
         assert isinstance(screen, Analyser)
         await pilot.press("b")
-        assert screen.model is not None and not screen.model.bands()
-        await until(pilot, lambda: screen.model is not None and len(screen.model.bands()) == 10)
+        assert screen.is_open and not screen.model.bands()
+        await until(pilot, lambda: screen.is_open and len(screen.model.bands()) == 10)

@@ -14,9 +14,8 @@ from textual.widgets import Input, Static
 
 from tests.app.app_help import LOGS, program, until
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import AnalyserApp
-from tuisim.app.analyser.prompt import LinePrompt
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.app import Analyser, AnalyserApp
+from tuisim.app.dialogs.save import FileDialog
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.logs.export import log_metadata
@@ -38,7 +37,7 @@ def run() -> StoredRun:
 async def answered(pilot: Pilot[Any], key: str, text: object) -> str:
     """Press a key and answer what it asks; return what is wrong with the answer, empty if it was taken."""
     await pilot.press(key)
-    await until(pilot, lambda: isinstance(pilot.app.screen, LinePrompt))
+    await until(pilot, lambda: isinstance(pilot.app.screen, FileDialog))
     asking = pilot.app.screen
     asking.query_one(Input).value = str(text)
     message = asking.query_one("#message", Static)
@@ -49,7 +48,7 @@ async def answered(pilot: Pilot[Any], key: str, text: object) -> str:
 
 async def ready(pilot: Pilot[Any]) -> Analyser:
     """Wait until the log is there."""
-    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.model is not None)
+    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
     assert isinstance(pilot.app.screen, Analyser)
     return pilot.app.screen
 
@@ -75,7 +74,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
         await pilot.press("end", "z", "z")
         for target in (svg, text):
             await answered(pilot, "S", target)
-        assert screen.model is not None and screen.model.limits is not None
+        assert screen.is_open and screen.model.limits is not None
         first_s = screen.model.limits[0]
         await until(pilot, lambda: page.exists() and rows.exists())
         await until(pilot, lambda: "The report is in" in "".join(note.message for note in pilot.app._notifications))
@@ -88,3 +87,17 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
     lines = text.read_text().splitlines()
     assert max(map(len, lines)) <= 80 and any("Colour" in line for line in lines)
     assert "100.00 white" in page.read_text() and "<h2>Program prog.py</h2>" in page.read_text()
+
+
+@pytest.mark.parametrize("key", ["e", "S"])
+async def test_a_file_that_is_there_is_replaced_only_on_a_second_enter(
+    run: StoredRun, tmp_path: Path, key: str
+) -> None:
+    target = tmp_path / {"e": "rows.csv", "S": "chart.svg"}[key]
+    target.write_text("mine")
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        assert f"{target.name} is there already" in await answered(pilot, key, target)
+        assert target.read_text() == "mine"
+        await pilot.press("enter")
+        await until(pilot, lambda: target.read_text() not in ("mine", ""))

@@ -16,8 +16,7 @@ from tests.app.app_help import LOGS, program, ready, until
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.actions.table import ACTIONS
-from tuisim.app.analyser.app import AnalyserApp
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -46,9 +45,9 @@ def run() -> StoredRun:
 async def opened(pilot: Pilot[Any]) -> tuple[Analyser, Model]:
     """Wait until the log is there."""
     screen = pilot.app.screen
-    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.model is not None)
+    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
     screen = pilot.app.screen
-    assert isinstance(screen, Analyser) and screen.model is not None
+    assert isinstance(screen, Analyser) and screen.is_open
     await pilot.pause()
     return screen, screen.model
 
@@ -144,14 +143,14 @@ async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun)
         await pilot.press("R")
         await until(pilot, lambda: "of" in text_of(pilot) and " runs" in text_of(pilot) and "prog.py" in text_of(pilot))
         await pilot.press("space", "space", "enter")
-        await until(pilot, lambda: pilot.app.screen is screen and len(screen.wanted.runs) == 2)
-        assert screen.wanted.runs[0] == handle.run_id
+        await until(pilot, lambda: pilot.app.screen is screen and len(screen.request.runs) == 2)
+        assert screen.request.runs[0] == handle.run_id
         await typed(pilot, "R")
         await until(pilot, lambda: " runs" in text_of(pilot) and "prog.py" in text_of(pilot))
         await typed(pilot, "=last", "tab")
         pilot.app.screen.query_one(Input).focus()
         await pilot.press("enter")
-        await until(pilot, lambda: screen.wanted.runs == (handle.run_id,))
+        await until(pilot, lambda: screen.request.runs == (handle.run_id,))
 
 
 async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
@@ -202,17 +201,17 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
     ([">", "o", "o"], lambda _, model: (model.rows.sorted_by, model.rows.descending) == ("variable", True)),
     (["U", "slash", "=82.7", "enter"], lambda _, model: model.rows.text(model.row, "value").startswith("82.7")),
     (["space"], lambda _, model: not model.traces.ticked()),
-    (["space", "x", "X", "H"], lambda screen, _: screen.chart.look.facets and screen.chart.look.hold),
-    (["k", "=y_mm against x_mm", "enter"], lambda screen, _: screen.chart.look.against == ("x_mm", "y_mm")),
-    (["k", "=q", "enter", "escape"], lambda screen, _: screen.chart.look.against == ("x_mm", "y_mm")),
-    (["k", "=", "enter"], lambda screen, _: screen.chart.look.against is None),
+    (["space", "x", "X", "H"], lambda screen, _: screen.chart.options.facets and screen.chart.options.hold),
+    (["k", "=y_mm against x_mm", "enter"], lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm")),
+    (["k", "=q", "enter", "escape"], lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm")),
+    (["k", "=", "enter"], lambda screen, _: screen.chart.options.against is None),
     (["A", "=distance", "enter"], lambda _, model: model.alignment == "distance"),
     (["home", ">", ">", "y"], lambda screen, _: screen.app.clipboard == "100"),
     (["ctrl+y"], lambda screen, model: screen.app.clipboard.count("\n") == model.log.rows),
     (["b", "ctrl+y"], lambda screen, _: "pale grey" in screen.app.clipboard),
     (["plus", "plus"], lambda screen, _: screen.pane.display and not screen.chart.display),
     (["plus"], lambda screen, _: screen.chart.display and screen.pane.display),
-    (["w"], lambda screen, _: not screen.beside.display),
+    (["w"], lambda screen, _: not screen.world.display),
 ]
 
 
@@ -252,11 +251,11 @@ async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
             handle.write("Colour: 3\n")
 
         def has_grown() -> bool:
-            screen.look_again()
-            return screen.model is not None and screen.model.log.rows == 3
+            screen.poll()
+            return screen.is_open and screen.model.log.rows == 3
 
         await until(pilot, has_grown)
-        assert screen.model is not None and screen.model.row == 2
+        assert screen.is_open and screen.model.row == 2
         assert screen.model is not model
         # What was asked about the shorter log holds for what there is of it now.
         await typed(pilot, "=v = Colour + 1", "enter")
@@ -277,7 +276,7 @@ async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
         below, pose = lab.screen, lab.run_controller.snapshot().instant.pose
         analyser = Analyser(LogRequest(runs=(run.id,)))
         await lab.push_screen(analyser)
-        await until(pilot, lambda: analyser.model is not None)
+        await until(pilot, lambda: analyser.is_open)
         await pilot.press("d", "escape", "B", "i", "left", "shift+up")
         assert lab.screen is analyser
         assert lab.run_controller.snapshot().instant.pose == pose

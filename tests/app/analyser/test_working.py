@@ -15,7 +15,7 @@ from tuisim.analysis import table as rows_module
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
 from tuisim.analysis.table import TableTask, conditions_of
-from tuisim.app.analyser import background
+from tuisim.app.analyser import screen as screen_module
 from tuisim.app.analyser.app import AnalyserApp
 
 STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
@@ -30,13 +30,13 @@ STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
 
 
 async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(background, "AT_ONCE", 0)
+    monkeypatch.setattr(screen_module, "AT_ONCE", 0)
     lines = (f"{at / 10},{'ab'[at % 2]},{at // 2}" for at in range(200))
     file = tmp_path / "log.csv"
     file.write_text("\n".join(("time,name,value", *lines)) + "\n")
     async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(120, 40)) as pilot:
         screen, _ = await opened(pilot)
-        await until(pilot, lambda: screen.model is not None and screen.model.subject.done)
+        await until(pilot, lambda: screen.is_open and screen.model.subject.done)
         model = screen.model
         assert model is not None
         for keys, so in STEPS:

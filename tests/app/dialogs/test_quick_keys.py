@@ -17,8 +17,7 @@ import tuisim.app
 from tests.app.app_help import LOGS, ready, screen_text, settings, until
 from tests.app.monkey import at_once, key_event
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import AnalyserApp
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
@@ -66,7 +65,7 @@ async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
     Path("log.txt").write_text("".join(f"Colour: {value}\n" for value in range(9)))
     async with AnalyserApp(LogRequest(file="log.txt")).run_test(size=(80, 24)) as pilot:
         app = pilot.app
-        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.model is not None)
+        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.is_open)
         analyser = app.screen
         at_once(pilot, keys.split())
         await pilot.pause(0.1)

@@ -10,7 +10,7 @@ from textual.command import DiscoveryHit, Hit
 from tests.app.app_help import ready, screen_text, settings, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.actions.table import ACTIONS
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.keys.palette import ActionProvider
 
@@ -33,7 +33,7 @@ async def test_above_the_analyser_it_offers_no_key_of_the_lab(tmp_path: Path) ->
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app, analyser = await ready(pilot), Analyser(LogRequest(file=str(log)))
         await app.push_screen(analyser)
-        await until(pilot, lambda: analyser.model is not None)
+        await until(pilot, lambda: analyser.is_open)
         await pilot.press("ctrl+p", *"quit")
         await until(pilot, lambda: re.search("No matches|Quit", screen_text(app)) is not None)
         assert "Quit" not in screen_text(app)

@@ -156,6 +156,6 @@ def analyse(workspace: Workspace) -> None:
     """Open the log of the current run in the analyser."""
     # The analyser is slow to import, and many sessions never use it.
     from tuisim.analysis.source import LogRequest
-    from tuisim.app.analyser.screen import Analyser
+    from tuisim.app.analyser.app import Analyser
 
     workspace.app.push_screen(Analyser(LogRequest(runs=(workspace.run_controller.run_id,))))

@@ -126,13 +126,15 @@ def beat(workspace: Workspace) -> None:
 
 def ask_where(workspace: Workspace) -> None:
     """Ask for an instant and go there."""
-    from tuisim.app.goto import GoTo
+    from tuisim.app.dialogs.prompt import LinePrompt
+    from tuisim.app.goto import FORMS, find
 
-    def go(tick: int | None) -> None:
-        if tick is not None:
-            to_tick(workspace, tick)
+    timeline = workspace.run_controller.timeline
 
-    workspace.app.push_screen(GoTo(workspace.run_controller.timeline), go)
+    def go(text: str) -> None:
+        to_tick(workspace, find(text, timeline))
+
+    workspace.app.push_screen(LinePrompt("Go to", go, forms=FORMS, placeholder=f"now at {timeline.time_s:.2f} s"))
 
 
 def _to_sample(workspace: Workspace, words: str) -> None:

@@ -1,22 +1,36 @@
-"""The stand-alone analyser, as `tuisim analyse` starts it."""
+"""The analyser with its keys: a screen above the lab, and the app that `tuisim analyse` starts."""
 
 from __future__ import annotations
 
 import gc
 from typing import ClassVar
 
+from textual.binding import Binding, BindingType
+
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.screen import Analyser
+from tuisim.app.analyser.actions.table import ACTIONS
+from tuisim.app.analyser.screen import LogScreen
+from tuisim.app.keys.action import key_bindings
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.errors import TuisimError
+
+
+class Analyser(LogScreen):
+    """The views of one log, and the keys that work on them."""
+
+    ACTIONS = ACTIONS
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+p", "app.command_palette", "Command palette", show=False),
+        *key_bindings(ACTIONS.values()),
+    ]
 
 
 class AnalyserApp(TerminalApp):
     """An app with one screen.
 
     Args:
-        wanted: What to open.
+        request: What to open.
     """
 
     CSS_PATH = "../tuisim.tcss"
@@ -24,23 +38,23 @@ class AnalyserApp(TerminalApp):
     NOTIFICATION_TIMEOUT = 4
     ENABLE_COMMAND_PALETTE: ClassVar[bool] = True
 
-    def __init__(self, wanted: LogRequest) -> None:
+    def __init__(self, request: LogRequest) -> None:
         super().__init__()
-        self.wanted = wanted
+        self.request = request
         self.failure: TuisimError | None = None
         """The error that prevented the log from being opened."""
 
     def on_mount(self) -> None:
         """Show the analyser; closing it ends the app."""
-        self.push_screen(_First(self.wanted), lambda _: self.exit())
+        self.push_screen(_First(self.request), lambda _: self.exit())
 
 
 class _First(Analyser):
     """The only screen: an error before anything is shown ends the app."""
 
-    def take(self, model: Model) -> None:
-        first = self.model is None
-        super().take(model)
+    def set_model(self, model: Model) -> None:
+        first = not self.is_open
+        super().set_model(model)
         if first:
             # Modules imported by drawing stay as well; no key should wait for a garbage collection of all that.
             self.call_after_refresh(gc.freeze)
@@ -48,13 +62,13 @@ class _First(Analyser):
     def complain(self, error: TuisimError) -> None:
         """Show an error, or keep it for the shell."""
         app = self.app
-        if self.model is None and isinstance(app, AnalyserApp):
+        if not self.is_open and isinstance(app, AnalyserApp):
             app.failure = error
         else:
             super().complain(error)
 
 
-def run_analyser(wanted: LogRequest) -> int:
+def run_analyser(request: LogRequest) -> int:
     """Run the analyser in this terminal until the user leaves it; return the exit code.
 
     Raises:
@@ -62,7 +76,7 @@ def run_analyser(wanted: LogRequest) -> int:
     """
     # Modules imported by now stay until the end: exclude them from garbage collection.
     gc.freeze()
-    app = AnalyserApp(wanted)
+    app = AnalyserApp(request)
     app.run()
     if app.failure is not None:
         raise app.failure

@@ -31,7 +31,7 @@ FACETS_ROWS = 2 * _LEAST_FACET_ROWS
 
 
 @dataclass(slots=True)
-class ChartLook:
+class ChartOptions:
     """The display options of the chart."""
 
     facets: bool = False
@@ -75,7 +75,7 @@ class LogChart(Widget):
     def __init__(self) -> None:
         super().__init__()
         self.border_title = "Chart"
-        self.look = ChartLook()
+        self.options = ChartOptions()
         self._text = LinesView()
         self._painters: dict[str, ChartPainter] = {}
         self._pictures: list[tuple[int, ChartPicture]] = []
@@ -85,7 +85,7 @@ class LogChart(Widget):
         """Create the child widgets."""
         yield self._text
 
-    def take(self, model: Model) -> None:
+    def set_model(self, model: Model) -> None:
         """Switch to another log, or redraw the same one with other options."""
         self._painters.clear()
         self.show(model)
@@ -96,23 +96,23 @@ class LogChart(Widget):
         width, height = self._text.size
         if not width or not height or not self.display:
             return
-        if self.look.against and model.log.rows:
+        if self.options.against and model.log.rows:
             self._pictures = []
-            self._text.set_lines(self._against(model, self.look.against, width, height))
+            self._text.set_lines(self._against(model, self.options.against, width, height))
             return
         x_limits = model.x_limits()
         ticked = model.traces.ticked()
         for trace in ticked:
-            trace.prepare(x_limits, width, self.look.hold)
+            trace.prepare(x_limits, width, self.options.hold)
         unit = "mm" if model.alignment == DISTANCE else "s"
         measured = _measured(model, unit, width)
         marked = 1 if model.events.thresholds and model.log.rows else 0
         height -= len(measured) + marked
-        facets = ticked if self.look.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
+        facets = ticked if self.options.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
             model.selected, model.cursor_s if model.log.rows else None, x_limits, bool(self.app.no_color),
-            model.mark_s, unit, self.look.marks, zoomed=model.limits is not None,
+            model.mark_s, unit, self.options.marks, zoomed=model.limits is not None,
         )  # fmt: skip
         self._pictures = []
         lines: list[list[Run]] = []
@@ -135,7 +135,7 @@ class LogChart(Widget):
     def _against(self, model: Model, names: tuple[str, str], width: int, height: int) -> list[list[Run]]:
         trace = model.trace
         xs, ys = (model.along(name) for name in names)
-        marker = trace.mark if self.app.no_color or self.look.marks else BRAILLE
+        marker = trace.mark if self.app.no_color or self.options.marks else BRAILLE
         return xy_lines(xs, ys, model.sample, names, trace.rgb, marker, width, height)
 
     def columns(self) -> int:

@@ -13,15 +13,12 @@ from textual.binding import Binding, BindingType
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.analysis.model import Model
-from tuisim.analysis.source import OpenedLog
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.errors import TuisimError
 from tuisim.logs.columns import ROW, choose_columns, is_numeric, is_time
 from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
-    from tuisim.app.analyser.screen import Analyser
     from tuisim.logs.log import Log, LogTable
 
 _SHOWN_VALUES, _NAME_CELLS, _VALUE_CELLS = 4, 20, 12
@@ -52,7 +49,7 @@ def candidates(table: LogTable) -> list[str]:
     return [name for name, kind in kinds if is_numeric(kind) or is_time(kind)][:_COLUMNS_AT_MOST]
 
 
-class AskColumns(Dialog[Columns]):
+class ColumnsDialog(Dialog[Columns]):
     """Returns the user's choice; None if nothing is to change.
 
     Args:
@@ -71,7 +68,7 @@ class AskColumns(Dialog[Columns]):
         super().__init__()
         self._log = log
         self._names = candidates(log.table)
-        self._said = columns_of(log)
+        self._chosen = columns_of(log)
 
     def content(self) -> ComposeResult:
         """Return the list of columns, each with its first values."""
@@ -103,9 +100,9 @@ class AskColumns(Dialog[Columns]):
         return line
 
     def _role(self, name: str) -> str:
-        if name == self._said.time:
-            return f"time, {self._said.unit}" if is_numeric(self._log.table.schema.field(name).type) else "time"
-        return "[x]" if name in self._said.values else "[ ]"
+        if name == self._chosen.time:
+            return f"time, {self._chosen.unit}" if is_numeric(self._log.table.schema.field(name).type) else "time"
+        return "[x]" if name in self._chosen.values else "[ ]"
 
     def _beginning(self, name: str) -> str:
         first = self._log.table.column(name).slice(0, _SHOWN_VALUES).to_pylist()
@@ -116,70 +113,38 @@ class AskColumns(Dialog[Columns]):
     def _at(self) -> int:
         return self.query_one(OptionList).highlighted or 0
 
-    def _say(self, said: Columns) -> None:
-        self._said = said
+    def _choose(self, chosen: Columns) -> None:
+        self._chosen = chosen
         self.query_one("#message", Static).update("")
         self._list(self._at)
 
     def action_time(self) -> None:
         """Use the selected column as time, or none."""
-        name, said = self._names[self._at], self._said
-        if name == said.time:
-            self._say(replace(said, time=ROW))
+        name, chosen = self._names[self._at], self._chosen
+        if name == chosen.time:
+            self._choose(replace(chosen, time=ROW))
         else:
-            self._say(replace(said, time=name, values=tuple(value for value in said.values if value != name)))
+            self._choose(replace(chosen, time=name, values=tuple(value for value in chosen.values if value != name)))
 
     def action_value(self) -> None:
         """Use the selected column as values, or not."""
-        name, said = self._names[self._at], self._said
-        wanted = {*said.values} ^ {name}
-        time = ROW if name == said.time else said.time
-        self._say(replace(said, time=time, values=tuple(n for n in self._names if n in wanted)))
+        name, chosen = self._names[self._at], self._chosen
+        wanted = {*chosen.values} ^ {name}
+        time = ROW if name == chosen.time else chosen.time
+        self._choose(replace(chosen, time=time, values=tuple(n for n in self._names if n in wanted)))
 
     def action_unit(self) -> None:
         """Go to the next unit of the time."""
         units = list(SECONDS)
-        self._say(replace(self._said, unit=units[(units.index(self._said.unit) + 1) % len(units)]))
+        self._choose(replace(self._chosen, unit=units[(units.index(self._chosen.unit) + 1) % len(units)]))
 
     @on(OptionList.OptionSelected)
-    def _take(self) -> None:
+    def _apply(self) -> None:
         try:
-            if not self._said.values:
+            if not self._chosen.values:
                 raise TuisimError("Nothing to draw: space chooses a column")
-            choose_columns(self._log.table, self._said.time, self._said.values, self._said.unit)
+            choose_columns(self._log.table, self._chosen.time, self._chosen.values, self._chosen.unit)
         except TuisimError as error:
             self.query_one("#message", Static).update(str(error))
         else:
-            self.dismiss(self._said)
-
-
-def ask(screen: Analyser) -> None:
-    """Ask for the meaning of the file's columns."""
-    model = screen.model
-    if model is None or not model.subject.wanted.file:
-        screen.say("Only the columns of a file can be chosen: those of a run are known")
-    elif not candidates(model.log.table):
-        screen.say("There is no column of numbers")
-    else:
-        screen.app.push_screen(AskColumns(model.log.bare()), lambda said: _apply(screen, said))
-
-
-def _apply(screen: Analyser, said: Columns | None) -> None:
-    model = screen.model
-    if said is None or model is None:
-        return
-    wanted = replace(model.subject.wanted, time=said.time, values=said.values, unit=said.unit)
-    if not model.subject.done:
-        screen.open(wanted)
-        return
-    # All of it has been read: the same rows have another meaning now.
-    layout = choose_columns(model.log.bare().table, said.time, said.values, said.unit)
-    screen.wanted = wanted
-    screen.take(Model(OpenedLog(wanted, model.log.with_layout(layout))))
-
-
-def ask_if_unsure(screen: Analyser) -> None:
-    """Ask for the meaning of the columns if their names do not say, as soon as the first rows are read."""
-    model = screen.model
-    if model is not None and model.subject.wanted.file and not model.log.layout.sure and screen.is_current:
-        ask(screen)
+            self.dismiss(self._chosen)

@@ -1,4 +1,4 @@
-"""The panes below the chart as lines of text: table, bands, statistics, notes, runs. Pure drawing.
+"""The panes below the chart: table, bands, statistics, events, notes, runs.
 
 To add a pane: write its two functions and add a line to `PANES`.
 """
@@ -7,17 +7,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Generic, TypeVar, overload
 
 from rich.style import Style
+from textual import events
+from textual.app import ComposeResult
+from textual.widget import Widget
+from textual.worker import get_current_worker
 
 from tuisim.analysis.events import Event
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
+from tuisim.app import background
 from tuisim.app.snapshot import end_label
+from tuisim.app.terminal.cell_view import LinesView
 from tuisim.charts.text_runs import Line, cut
+from tuisim.errors import TuisimError, counted
 from tuisim.logs.bands import Band
+from tuisim.logs.plateaus import plateaus_aside
 from tuisim.logs.signals import QUANTILES
 
 if TYPE_CHECKING:
@@ -34,6 +43,8 @@ _SAMPLED = 40
 """Number of rows that determine the width of a table's column, besides the visible ones."""
 _MEASURED = 1000
 """In other panes with more rows than this, the visible ones determine it."""
+_SEARCHED_AT_ONCE = 20_000
+"""Up to this many rows, the search for bands takes a few hundredths of a second."""
 
 EMPTY = (
     "This log is empty. Print values with a name:",
@@ -61,24 +72,24 @@ def _figure(value: float, digits: str = ".4g") -> str:
     return f"{value:{digits}}" if isfinite(value) else "–"
 
 
-Thing = TypeVar("Thing")
+Item = TypeVar("Item")
 
 
-class _LazyRows(Sequence[Cells], Generic[Thing]):
+class _LazyRows(Sequence[Cells], Generic[Item]):
     """Rows that are created on access: a long log has a hundred thousand bands or events."""
 
-    def __init__(self, things: Sequence[Thing], row: Callable[[Thing], Cells]) -> None:
-        self._things, self._row = things, row
+    def __init__(self, items: Sequence[Item], row: Callable[[Item], Cells]) -> None:
+        self._items, self._row = items, row
 
     def __len__(self) -> int:
-        return len(self._things)
+        return len(self._items)
 
     @overload
     def __getitem__(self, at: int) -> Cells: ...
     @overload
     def __getitem__(self, at: slice) -> Sequence[Cells]: ...
     def __getitem__(self, at: int | slice) -> Cells | Sequence[Cells]:
-        return _LazyRows(self._things[at], self._row) if isinstance(at, slice) else self._row(self._things[at])
+        return _LazyRows(self._items[at], self._row) if isinstance(at, slice) else self._row(self._items[at])
 
 
 def _band(band: Band) -> Cells:
@@ -204,8 +215,8 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     rows = pane.rows(model)
     if not rows:
         searching = name == "bands" and model.unsearched()
-        said = "Searching for bands …" if searching else pane.empty
-        return [[(text, DIM)] for text in _wrapped([said], width, height)]
+        text = "Searching for bands …" if searching else pane.empty
+        return [[(line, DIM)] for line in _wrapped([text], width, height)]
     below = _wrapped(pane.below(model), width, max(0, height // 3))
     room = max(height - 1 - len(below), 1)
     first = _first(chosen, len(rows), room)
@@ -327,3 +338,92 @@ def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], lis
         chosen.append(column)
     columns = frozen + [column for column in others if column in chosen]
     return columns, [widths[column] for column in columns]
+
+
+class PaneView(Widget):
+    """Shows a pane, with the titles of all panes above it; computes its content, for a long log in the background.
+
+    Args:
+        complain: Shows an error.
+    """
+
+    ALLOW_SELECT = False
+    DEFAULT_CSS = """
+    PaneView { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; border-subtitle-color: #87d7af; }
+    PaneView > LinesView { width: 1fr; height: 1fr; }
+    """
+
+    def __init__(self, complain: Callable[[TuisimError], None]) -> None:
+        super().__init__()
+        self.name_shown = "table"
+        self.chosen = 0
+        """Selected row, in all panes but the table."""
+        self._text = LinesView()
+        self._model: Model | None = None
+        self._complain = complain
+        self._busy: dict[str, Model] = {}
+        """The log that is being processed, by pane."""
+
+    def compose(self) -> ComposeResult:
+        """Create the child widgets."""
+        yield self._text
+
+    @property
+    def lines(self) -> int:
+        """The number of visible rows."""
+        return max(self._text.size.height - 1, 1)
+
+    def turn_to(self, name: str) -> None:
+        """Switch to another pane."""
+        self.name_shown, self.chosen = name, 0
+
+    def show(self, model: Model) -> None:
+        """Draw the current view of the model."""
+        self._model = model
+        self._compute(model, self.name_shown)
+        # Brackets mark the current pane even without colours.
+        titles = (f"\\[{pane.title}]" if name == self.name_shown else pane.title for name, pane in PANES.items())
+        self.border_title = " ".join(titles)
+        self.border_subtitle = _summary(model) if self.name_shown == "table" else ""
+        width, height = self._text.size
+        if width and height and self.display:
+            self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
+
+    def _compute(self, model: Model, pane: str) -> None:
+        """Compute the missing content of a pane, once at a time; that of a small log at once."""
+        names = {"bands": model.unsearched, "statistics": model.unsummed}.get(pane, list)()
+        if not names or self._busy.get(pane) is model:
+            return
+        if pane == "bands" and model.log.rows <= _SEARCHED_AT_ONCE:
+            model.find_bands(names)
+        elif pane == "statistics" and model.log.rows <= AT_ONCE:
+            model.sum_up(names)
+        else:
+            self._busy[pane] = model
+            work = partial(_find_bands, model, names) if pane == "bands" else partial(model.sum_up, names)
+            background.run(self, work, lambda _: self._computed(pane), self._complain, group=pane, exclusive=True)
+
+    def _computed(self, pane: str) -> None:
+        self._busy.pop(pane, None)
+        self._again()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Draw for the new size."""
+        self.call_after_refresh(self._again)
+
+    def _again(self) -> None:
+        if self._model is not None:
+            self.show(self._model)
+
+
+def _find_bands(model: Model, names: list[str]) -> None:
+    worker = get_current_worker()
+    model.find_bands(names, partial(plateaus_aside, stopped=lambda: worker.is_cancelled))
+
+
+def _summary(model: Model) -> str:
+    """Return a summary of what the table shows."""
+    rows, total = model.rows, model.log.rows
+    words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
+    conditions = " and ".join(map(str, rows.conditions))
+    return f"{words}: {conditions}".replace("[", "\\[") if conditions else words

@@ -1,80 +1,85 @@
-"""The analyser as a screen: chart above, a pane below, the world beside them."""
+"""The views of one log on a screen, without its keys: chart above, a pane below, the world beside them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, ClassVar
+from typing import TypeVar
 
 import numpy as np
 from rich.style import Style
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 
-from tuisim.analysis.model import Model
-from tuisim.analysis.source import LogRequest, opening
-from tuisim.analysis.table import TableTask
-from tuisim.app.analyser.actions import crossings
-from tuisim.app.analyser.actions.table import ACTIONS
-from tuisim.app.analyser.background import Finder
+from tuisim.analysis.model import RECKONING, Model
+from tuisim.analysis.source import LogRequest, OpenedLog, opening
+from tuisim.analysis.table import AT_ONCE, TableTask
+from tuisim.app import background
 from tuisim.app.analyser.chart import LogChart
-from tuisim.app.analyser.columns import ask_if_unsure
-from tuisim.app.analyser.pane import PaneView
-from tuisim.app.analyser.panes import pane_frame
-from tuisim.app.analyser.world_pane import Beside
+from tuisim.app.analyser.columns import Columns, ColumnsDialog, candidates
+from tuisim.app.analyser.panes import PaneView
+from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
-from tuisim.app.keys.action import ActionHost, key_bindings
+from tuisim.app.dialogs.prompt import Form, LinePrompt
+from tuisim.app.keys.action import ActionHost
 from tuisim.app.keys.footer import KeyFooter
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.errors import LogError, TuisimError
+from tuisim.logs.columns import choose_columns, is_numeric
+from tuisim.logs.derived import SIGNALS, TIME
+from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
+from tuisim.logs.log import Log
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-_LOOK_S = 1.0
+_POLL_S = 1.0
 _PATIENCE = 10.0
 """The pause between two readings of a growing log, as a multiple of the last reading time."""
 
+Made = TypeVar("Made")
 
-class Analyser(ActionHost, ClosesOnce[None]):
+
+def expression_words(log: Log) -> Iterator[str]:
+    """Yield the words allowed in an expression: variables, columns, functions."""
+    columns = (at.name for at in log.table.schema if is_numeric(at.type))
+    known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *columns, TIME))
+    yield from (name if name.isidentifier() else f"`{name}`" for name in known)
+    yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
+    yield from CONSTANTS
+    yield RECKONING
+
+
+class LogScreen(ActionHost, ClosesOnce[None]):
     """The views of one log. Modal, so that no key of the app below it works here.
 
     Args:
-        wanted: What to open.
+        request: What to open.
     """
 
     DEFAULT_CSS = """
-    Analyser { background: #10151c; color: #d8dee6; }
-    Analyser #title { height: 1; background: #1c242e; color: #ffffff; }
-    Analyser #log { width: 1fr; }
+    LogScreen { background: #10151c; color: #d8dee6; }
+    LogScreen #title { height: 1; background: #1c242e; color: #ffffff; }
+    LogScreen #log { width: 1fr; }
     """
-    ACTIONS = ACTIONS
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+p", "app.command_palette", "Command palette", show=False),
-        *key_bindings(ACTIONS.values()),
-    ]
 
-    def __init__(self, wanted: LogRequest) -> None:
+    def __init__(self, request: LogRequest) -> None:
         super().__init__()
-        self.wanted = wanted
-        self.model: Model | None = None
+        self.request = request
+        self._model: Model | None = None
         self.searched = ""
+        """The text that was searched for last."""
         self.job: TableTask | None = None
         """The current background job."""
-        self.finder = Finder(self)
         self._reading = False
-        self._began_s = self._next_look_s = 0.0
+        self._began_s = self._next_poll_s = 0.0
         self._stamp: object = None
         """Length of the log when it was last read."""
         self.title_line = LinesView()
         self.title_line.id = "title"
-        self.key_footer = KeyFooter()
         self.chart = LogChart()
-        self.pane = PaneView()
-        self.beside = Beside()
+        self.pane = PaneView(self.complain)
+        self.world = WorldPane()
+        self.key_footer = KeyFooter()
 
     def compose(self) -> ComposeResult:
         """Title, log and world, keys."""
@@ -83,105 +88,265 @@ class Analyser(ActionHost, ClosesOnce[None]):
             with Vertical(id="log"):
                 yield self.chart
                 yield self.pane
-            yield self.beside
+            yield self.world
         yield self.key_footer
 
     def on_mount(self) -> None:
         """Start to open the log."""
-        self.open(self.wanted)
-        self.set_interval(_LOOK_S, self.look_again)
+        self.open(self.request)
+        self.set_interval(_POLL_S, self.poll)
 
-    # Opening
+    # The log
 
-    def open(self, wanted: LogRequest) -> None:
-        """Open another log in the background; the current one stays until then."""
-        self.wanted = wanted
-        self._reading, self._began_s = True, monotonic()
-        self._tell("opening …")
-        self.run_worker(partial(self._open, wanted), thread=True, group="log", exclusive=True)
+    @property
+    def is_open(self) -> bool:
+        """Whether there is a log: its first rows have been read."""
+        return self._model is not None
 
-    def _open(self, wanted: LogRequest) -> None:
-        try:
-            for subject in opening(wanted):
-                if wanted is not self.wanted or not self.is_running:
-                    return
-                model, before = Model(subject), self.model
-                if before is not None and before.subject.wanted is wanted:
-                    model.define_as(before)
-                # Data for the first chart of a long log is computed here, in the background.
-                model.traces.span_s()
-                self.app.call_from_thread(self.take, model)
-        except TuisimError as error:
-            self.app.call_from_thread(self._failed, wanted, error)
-
-    def _failed(self, wanted: LogRequest, error: TuisimError) -> None:
-        if wanted is not self.wanted:
-            return
-        self._reading = False
-        self.complain(error)
-        if self.model is None:
-            self.dismiss(None)
-        else:
-            self.wanted = self.model.subject.wanted
-            self.update()
-
-    def take(self, model: Model) -> None:
-        """Show the log that was read, unless another one was requested since."""
-        subject, before = model.subject, self.model
-        if subject.wanted is not self.wanted:
-            return
-        if subject.done:
-            now_s = monotonic()
-            self._reading, self._next_look_s = False, now_s + _PATIENCE * (now_s - self._began_s)
-            self._stamp = subject.stamp()
-        self.model = model
-        if before is not None and before.subject.wanted is subject.wanted:
-            self.model.take_over(before)
-        else:
-            self.chart.look.against = None
-        self.chart.take(self.model)
-        self.beside.take(self.model)
-        self.update()
-        if before is None:
-            ask_if_unsure(self)
-        if subject.done and (before is None or before.subject.log.notes != subject.log.notes):
-            for note in subject.log.notes:
-                self.say(note)
-
-    def look_again(self) -> None:
-        """Read on when the log has grown; the longer a reading takes, the less often."""
-        model = self.model
-        if self.job is not None:
-            self._tell(self._progress())
-        if model is None or not model.subject.done or self._reading or monotonic() < self._next_look_s:
-            return
-        if model.subject.stamp() != self._stamp:
-            self.open(self.wanted)
-
-    # Display
-
-    def update(self) -> None:
-        """Update the views that have changed."""
-        model = self.model
-        if model is None:
-            return
-        self._tell(self._progress())
-        now = self.situation()
-        self.key_footer.show([action for action in ACTIONS.values() if not action.why_not(now)])
-        self.finder.look(model, self.pane.name_shown)
-        self.chart.show(model)
-        self.pane.show(model)
-        self.beside.show(model)
-
-    def at_hand(self) -> Model:
-        """Return the current model: a growing log may have another one than when a question was asked.
+    @property
+    def model(self) -> Model:
+        """The open log; a growing one is another model after each reading.
 
         Raises:
             LogError: there is none yet.
         """
-        if self.model is None:
+        if self._model is None:
             raise LogError("there is no log yet")
-        return self.model
+        return self._model
+
+    def open(self, request: LogRequest) -> None:
+        """Open another log in the background; the current one stays until then."""
+        self.request = request
+        self._reading, self._began_s = True, monotonic()
+        self._show_title("opening …")
+        work, failed = partial(self._open, request), partial(self._failed, request)
+        background.run(self, work, lambda _: None, failed, group="log", exclusive=True)
+
+    def _open(self, request: LogRequest) -> None:
+        for subject in opening(request):
+            if request is not self.request or not self.is_running:
+                return
+            model, before = Model(subject), self._model
+            if before is not None and before.subject.wanted is request:
+                model.define_as(before)
+            # Data for the first chart of a long log is computed here, in the background.
+            model.traces.span_s()
+            background.call(self.app, self.set_model, model)
+
+    def _failed(self, request: LogRequest, error: TuisimError) -> None:
+        if request is not self.request:
+            return
+        self._reading = False
+        self.complain(error)
+        if self._model is None:
+            self.dismiss(None)
+        else:
+            self.request = self._model.subject.wanted
+            self.update()
+
+    def set_model(self, model: Model) -> None:
+        """Show the log that was read, unless another one was requested since."""
+        subject, before = model.subject, self._model
+        if subject.wanted is not self.request:
+            return
+        if subject.done:
+            now_s = monotonic()
+            self._reading, self._next_poll_s = False, now_s + _PATIENCE * (now_s - self._began_s)
+            self._stamp = subject.stamp()
+        self._model = model
+        if before is not None and before.subject.wanted is subject.wanted:
+            model.take_over(before)
+        else:
+            self.chart.options.against = None
+        self.redraw_chart()
+        self.world.set_model(model)
+        self.update()
+        if before is None and subject.wanted.file and not model.log.layout.sure and self.is_current:
+            self.ask_columns()
+        if subject.done and (before is None or before.subject.log.notes != subject.log.notes):
+            for note in subject.log.notes:
+                self.say(note)
+
+    def poll(self) -> None:
+        """Read on when the log has grown; the longer a reading takes, the less often."""
+        model = self._model
+        if self.job is not None:
+            self._show_title(self._progress())
+        if model is None or not model.subject.done or self._reading or monotonic() < self._next_poll_s:
+            return
+        if model.subject.stamp() != self._stamp:
+            self.open(self.request)
+
+    # Display
+
+    def situation(self) -> int | None:
+        """Return the number of rows, None while there is no log."""
+        return None if self._model is None else self._model.log.rows
+
+    def update(self) -> None:
+        """Update the views that have changed."""
+        if self._model is None:
+            return
+        self._show_title(self._progress())
+        now = self.situation()
+        self.key_footer.show([action for action in self.ACTIONS.values() if not action.why_not(now)])
+        self.chart.show(self._model)
+        self.pane.show(self._model)
+        self.world.show(self._model)
+
+    def redraw_chart(self) -> None:
+        """Redraw the chart after its options have changed."""
+        self.chart.set_model(self.model)
+
+    def lay_out(self, chart: bool, pane: bool) -> None:
+        """Show chart, pane, or both."""
+        self.chart.display, self.pane.display = chart, pane
+        self.call_after_refresh(self.update)
+
+    def show_pane(self, name: str) -> None:
+        """Show a pane."""
+        self.pane.turn_to(name)
+        if not self.pane.display:
+            self.lay_out(chart=True, pane=True)
+        self.update()
+
+    def _progress(self) -> str:
+        """Return how much of the log has been read."""
+        subject = self._model.subject if self._model else None
+        if subject is None or subject.done:
+            return ""
+        return f"reading {subject.part:.0%} …" if subject.part == subject.part else "reading …"
+
+    def _show_title(self, progress: str) -> None:
+        model, position = self._model, ""
+        title = model.log.title if model else " ".join((self.request.file, *self.request.runs))
+        if model is not None and model.log.rows:
+            position = f"row {model.row + 1:,} of {model.log.rows:,} · {model.time_of(model.row):.2f} s"
+        kind = " · telemetry" if self.request.telemetry else ""
+        words = "   ".join(word for word in (position, progress, str(self.job or "")) if word)
+        self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {words}", Style())]])
+
+    # Selection
+
+    def choose(self, number: int) -> None:
+        """Select a row of a pane other than the table; the cursor goes to its time."""
+        model, name = self.model, self.pane.name_shown
+        bands, notes = model.bands() if name == "bands" else [], model.notes if name == "notes" else []
+        events = model.events.found(model.log) if name == "events" else []
+        count = len(bands or notes or events) or len(model.subject.runs if name == "runs" else model.traces.ticked())
+        self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
+        if bands:
+            model.selected = bands[number].variable
+            rows = model.trace.series.rows
+            first, last = np.searchsorted(rows, (bands[number].first_row, bands[number].last_row))
+            model.go_to_row(int(rows[(first + last) // 2]))
+        elif events:
+            self.go_to_event(number)
+        elif notes:
+            _, note = notes[number]
+            if note.variable in model.traces:
+                model.selected = note.variable
+            model.go_to_moment(note.start_s)
+        model.follow_cursor()
+
+    def go_to_event(self, number: int) -> None:
+        """Put the cursor on an event."""
+        model = self.model
+        event = model.events.found(model.log)[number]
+        model.selected = event.variable
+        model.go_to_row(event.row)
+        model.follow_cursor()
+        if self.pane.name_shown == "events":
+            self.pane.chosen = number
+
+    def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
+        """Go to a time that was clicked."""
+        if self.situation():
+            self.model.go_to_time(message.time_s)
+            self.update()
+
+    def on_log_chart_ticked(self, message: LogChart.Ticked) -> None:
+        """Select a variable, and toggle it."""
+        if self.situation():
+            self.model.selected = message.name
+            self.action_act("tick")
+
+    # Dialogs
+
+    def ask(
+        self,
+        title: str,
+        do: Callable[[str], None],
+        value: str = "",
+        forms: Sequence[Form] = (),
+        completes: bool = False,
+    ) -> None:
+        """Ask for a line of text and apply it.
+
+        Args:
+            title: Title of the dialog.
+            do: Applies the line; a TuisimError is shown and the line can be corrected.
+            value: Initial text.
+            forms: The accepted forms.
+            completes: Whether to offer the words of expressions as completions.
+        """
+        words = tuple(expression_words(self.model.log)) if completes else ()
+        self.app.push_screen(LinePrompt(title, do, value, forms, words))
+
+    def ask_columns(self) -> None:
+        """Ask for the meaning of the file's columns."""
+        model = self.model
+        if not model.subject.wanted.file:
+            self.say("Only the columns of a file can be chosen: those of a run are known")
+        elif not candidates(model.log.table):
+            self.say("There is no column of numbers")
+        else:
+            self.app.push_screen(ColumnsDialog(model.log.bare()), self._set_columns)
+
+    def _set_columns(self, chosen: Columns | None) -> None:
+        if chosen is None:
+            return
+        subject, log = self.model.subject, self.model.log
+        request = replace(subject.wanted, time=chosen.time, values=chosen.values, unit=chosen.unit)
+        if not subject.done:
+            self.open(request)
+            return
+        # All of it has been read: the same rows have another meaning now.
+        layout = choose_columns(log.bare().table, chosen.time, chosen.values, chosen.unit)
+        self.request = request
+        self.set_model(Model(OpenedLog(request, log.with_layout(layout))))
+
+    def copy(self, text: str, what: str) -> None:
+        """Copy a text to the clipboard of the user's terminal."""
+        self.app.copy_to_clipboard(text)
+        self.say(f"Copied: {what}")
+
+    # Background work
+
+    def work(self, word: str, rows: int, do: Callable[[TableTask], Made], then: Callable[[Made], None]) -> None:
+        """Run a function and pass on its result; newer work replaces older work.
+
+        Args:
+            word: Label of the work, shown while it runs.
+            rows: Number of rows; decides between background and synchronous work.
+            do: The work; must only read the log.
+            then: Called with the result, in the app's thread.
+
+        Raises:
+            TuisimError: raised by `do` if it runs synchronously; otherwise the error is shown.
+        """
+        task = TableTask(word)
+        if rows <= AT_ONCE:
+            then(do(task))
+            return
+        self.begin(task)
+        background.run(
+            self,
+            partial(do, task),
+            lambda made: self.end(task, partial(then, made)),
+            lambda error: self.end(task, partial(self.complain, error)),
+            group="work",
+        )
 
     def begin(self, task: TableTask) -> None:
         """Show the name of a background job; results of older jobs are ignored."""
@@ -208,108 +373,3 @@ class Analyser(ActionHost, ClosesOnce[None]):
     def on_unmount(self) -> None:
         """Ignore the results of running jobs."""
         self.give_up()
-
-    def redraw_chart(self) -> None:
-        """Redraw the chart after its options have changed."""
-        if self.model is not None:
-            self.chart.take(self.model)
-
-    def lay_out(self, chart: bool, pane: bool) -> None:
-        """Show chart, pane, or both."""
-        self.chart.display, self.pane.display = chart, pane
-        self.call_after_refresh(self.update)
-
-    def choose(self, number: int) -> None:
-        """Select a row of a pane other than the table; the cursor goes to its time."""
-        model, name = self.model, self.pane.name_shown
-        if model is None:
-            return
-        bands, notes = model.bands() if name == "bands" else [], model.notes if name == "notes" else []
-        events = model.events.found(model.log) if name == "events" else []
-        count = len(bands or notes or events) or len(model.subject.runs if name == "runs" else model.traces.ticked())
-        self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
-        if bands:
-            model.selected = bands[number].variable
-            rows = model.trace.series.rows
-            first, last = np.searchsorted(rows, (bands[number].first_row, bands[number].last_row))
-            model.go_to_row(int(rows[(first + last) // 2]))
-        elif events:
-            crossings.go_to(self, number)
-        elif notes:
-            _, note = notes[number]
-            if note.variable in model.traces:
-                model.selected = note.variable
-            model.go_to_moment(note.start_s)
-        model.follow_cursor()
-
-    def _progress(self) -> str:
-        """Return how much of the log has been read."""
-        subject = self.model.subject if self.model else None
-        if subject is None or subject.done:
-            return ""
-        return f"reading {subject.part:.0%} …" if subject.part == subject.part else "reading …"
-
-    def _tell(self, progress: str) -> None:
-        title = self.model.log.title if self.model else " ".join((self.wanted.file, *self.wanted.runs))
-        place = ""
-        if self.model is not None and self.model.log.rows:
-            place = (
-                f"row {self.model.row + 1:,} of {self.model.log.rows:,} · {self.model.time_of(self.model.row):.2f} s"
-            )
-        kind = " · telemetry" if self.wanted.telemetry else ""
-        told = "   ".join(word for word in (place, progress, str(self.job or "")) if word)
-        self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {told}", Style())]])
-
-    # User actions
-
-    def situation(self) -> int:
-        """Return the number of rows."""
-        return self.model.log.rows if self.model else 0
-
-    def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
-        """Go to a time that was clicked."""
-        if self.model is not None and self.model.log.rows:
-            self.model.go_to_time(message.time_s)
-            self.update()
-
-    def on_log_chart_ticked(self, message: LogChart.Ticked) -> None:
-        """Select a variable, and toggle it."""
-        if self.model is not None:
-            self.model.selected = message.name
-            self.action_act("tick")
-
-    def leave(self) -> None:
-        """Close the screen."""
-        self.dismiss(None)
-
-    def copy(self, text: str, what: str) -> None:
-        """Copy a text to the clipboard of the user's terminal."""
-        self.app.copy_to_clipboard(text)
-        self.say(f"Copied: {what}")
-
-    def export(self, path: Path, pane: str) -> None:
-        """Write the rows of a pane to a file; of the table, only the columns shown.
-
-        Raises:
-            ExportError: the file cannot be written.
-        """
-        from tuisim.logs.export import check_target
-
-        if self.model is not None:
-            target = check_target(path)
-            frame = None if pane == "table" else pane_frame(pane, self.model)
-            self.run_worker(partial(self._write, self.model, frame, target), thread=True, group="export")
-
-    def _write(self, model: Model, frame: pd.DataFrame | None, target: Path) -> None:
-        """Write a frame, or the rows of the table."""
-        from tuisim.logs.export import LOG_FORMAT, export_frame, export_log
-
-        try:
-            if frame is None:
-                export_log(model.log, model.rows.shown(), target)
-            else:
-                export_frame(frame, target, {"format": LOG_FORMAT, "table": "pane", "columns": list(frame.columns)})
-        except TuisimError as error:
-            self.app.call_from_thread(self.complain, error)
-        else:
-            self.app.call_from_thread(self.say, f"The rows as shown are in {target}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
@@ -14,6 +14,7 @@ from textual.widgets import Input, Static
 
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.dialogs.prompt import Form, form_list
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.logs.export import LISTED
 
@@ -44,7 +45,7 @@ class FileDialog(Dialog[Path]):
     """
 
     HINT: str = "Enter writes · Escape closes"
-    SUFFIXES: ClassVar[str] = ".toml"
+    SUFFIXES: str = ".toml"
 
     def __init__(self, proposed: str) -> None:
         super().__init__()
@@ -115,38 +116,61 @@ class FileDialog(Dialog[Path]):
         message.set_class(wrong, "wrong")
 
 
+def _check_no_folder(path: Path) -> None:
+    if path.is_dir():
+        raise TuisimError(f"{path} is a folder, not a file")
+
+
 class SaveDialog(FileDialog):
-    """Writes a file of one of the app's own kinds.
+    """Asks where to save something, and saves it.
 
     Args:
         what: The subject, such as `robot`.
         proposed: Initial text of the field.
-        save: Writes the file completely or not at all; raises TuisimError.
+        save: Writes the file completely or not at all, or begins to; raises TuisimError.
+        suffixes: What the name may end in, in words; empty for those of the class.
+        check: Raises a TuisimError for a file that cannot be written.
+        forms: Suffixes, and what they mean.
+        notice: Whether to show a notice that the file is written.
     """
 
-    def __init__(self, what: str, proposed: str, save: Callable[[Path], None]) -> None:
+    def __init__(
+        self,
+        what: str,
+        proposed: str,
+        save: Callable[[Path], None],
+        suffixes: str = "",
+        check: Callable[[Path], object] = _check_no_folder,
+        forms: Sequence[Form] = (),
+        notice: bool = True,
+    ) -> None:
         super().__init__(proposed)
-        self._what = what
-        self._save = save
+        self._what, self._save, self._check, self._forms, self._notice = what, save, check, forms, notice
+        self.SUFFIXES = suffixes or self.SUFFIXES
         self.TITLE_TEXT = f"Save the {what}"
 
     def checked(self, path: Path) -> Path:
-        """Raise a TuisimError for a folder."""
-        if path.is_dir():
-            raise TuisimError(f"{path} is a folder, not a file")
+        """Return the target if it can be written."""
+        self._check(path)
         return path
+
+    def more(self) -> ComposeResult:
+        """Return what the suffixes mean."""
+        if self._forms:
+            yield form_list(self._forms)
 
     def write(self, target: Path) -> None:
         """Write the file at once."""
         self._save(target)
-        self.app.notify(f"The {self._what} is in {target}", markup=False)
+        if self._notice:
+            self.app.notify(f"The {self._what} is in {target}", markup=False)
         self.dismiss(target)
 
 
 class ProgramDialog(SaveDialog):
     """Writes a program."""
 
-    SUFFIXES: ClassVar[str] = ".py"
+    SUFFIXES: str = ".py"
 
 
 _KINDS = {
@@ -165,7 +189,7 @@ class ExportDialog(FileDialog):
 
     TITLE_TEXT: str = "Export the log"
     HINT: str = "Enter writes · ctrl+t samples or telemetry · Escape closes"
-    SUFFIXES: ClassVar[str] = LISTED
+    SUFFIXES: str = LISTED
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+t", "switch", "Samples or telemetry", show=False)]
 
     def __init__(self, run_id: str, program: str) -> None:

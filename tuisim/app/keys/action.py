@@ -111,7 +111,10 @@ class ActionHost(MessagePump):
         if reason := action.why_not(self.situation()):
             self.say(reason)
             return
-        action.do(self.action_target())
+        try:
+            action.do(self.action_target())
+        except TuisimError as error:
+            self.complain(error)
 
     def on_act(self, message: Act) -> None:
         """Run an action whose word in the footer or on a panel was clicked."""

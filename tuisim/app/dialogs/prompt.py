@@ -1,4 +1,4 @@
-"""A dialog with one line of input: a target, a filter, a search text, a note."""
+"""A dialog with one line of input: an instant to go to, a filter, a search text, a note."""
 
 from __future__ import annotations
 
@@ -28,19 +28,20 @@ class _Line(Input):
     Args:
         value: Initial text.
         words: Possible completions.
+        placeholder: Text of the empty field.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "cursor_right", "Take the offered word", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "cursor_right", "Accept the completion", show=False)]
 
-    def __init__(self, value: str, words: Sequence[str]) -> None:
-        super().__init__(value, compact=True, select_on_focus=True)
+    def __init__(self, value: str, words: Sequence[str], placeholder: str) -> None:
+        super().__init__(value, placeholder, compact=True, select_on_focus=True)
         self._words = words
 
     @on(Input.Changed)
-    def _offer(self, event: Input.Changed) -> None:
+    def _complete(self, event: Input.Changed) -> None:
         # Done synchronously: Textual's own suggester leaves a task behind, with a warning, when the field closes first.
-        if (offered := completed(event.value, self._words)) is not None:
-            self.post_message(SuggestionReady(event.value, offered))
+        if (completion := completed(event.value, self._words)) is not None:
+            self.post_message(SuggestionReady(event.value, completion))
 
 
 def completed(line: str, words: Sequence[str]) -> str | None:
@@ -60,6 +61,14 @@ def completed(line: str, words: Sequence[str]) -> str | None:
     return None if word is None else line + word[len(typed) :]
 
 
+def form_list(forms: Sequence[Form]) -> Static:
+    """Return the accepted forms of a line, and what they mean."""
+    table = Table.grid(padding=(0, 2))
+    for form, meaning in forms:
+        table.add_row(form, meaning)
+    return Static(table)
+
+
 class LinePrompt(Dialog[bool]):
     """Returns True once the action has been carried out.
 
@@ -69,6 +78,7 @@ class LinePrompt(Dialog[bool]):
         value: Initial text, selected, so that typing replaces it.
         forms: The accepted forms.
         words: Possible completions of the current word; tab accepts one.
+        placeholder: Text of the empty field.
     """
 
     HINT = "Enter applies · Escape closes"
@@ -80,8 +90,10 @@ class LinePrompt(Dialog[bool]):
         value: str = "",
         forms: Sequence[Form] = (),
         words: Sequence[str] = (),
+        placeholder: str = "",
     ) -> None:
         super().__init__()
+        self._placeholder = placeholder
         self._words = words
         self.TITLE_TEXT = title.replace("[", "\\[")
         self._do = do
@@ -90,12 +102,9 @@ class LinePrompt(Dialog[bool]):
 
     def content(self) -> ComposeResult:
         """Return the field, its error line, and the accepted forms."""
-        yield _Line(self._value, self._words)
+        yield _Line(self._value, self._words, self._placeholder)
         yield Static(id="message", classes="wrong", markup=False)
-        forms = Table.grid(padding=(0, 2))
-        for form, meaning in self._forms:
-            forms.add_row(form, meaning)
-        yield Static(forms)
+        yield form_list(self._forms)
 
     @on(Input.Submitted)
     def _entered(self, event: Input.Submitted) -> None:

@@ -1,0 +1,112 @@
+"""Keys of the group Chart: its variables, its time range, its options, and the second cursor."""
+
+from __future__ import annotations
+
+from tuisim.analysis.traces import TIME
+from tuisim.app.analyser.chart import FACETS_ROWS
+from tuisim.app.analyser.screen import LogScreen
+from tuisim.errors import LogError
+
+_ALIGNMENTS = (
+    ("time", "their beginnings"),
+    ("distance", "how far each has driven"),
+    ("Colour < 50", "the time at which each first meets that condition"),
+)
+_AGAINST = (
+    ("y_mm against x_mm", "the path of the robot"),
+    ("Ultrasonic", "the selected variable against another one"),
+    ("(nothing)", "all over time"),
+)
+
+
+def mark(screen: LogScreen) -> None:
+    """Set the second cursor here, or remove it."""
+    screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
+    screen.update()
+
+
+def zoom(screen: LogScreen, factor: float) -> None:
+    """Show a shorter or longer time range."""
+    screen.model.zoom(factor)
+    screen.update()
+
+
+def pan(screen: LogScreen, share: float) -> None:
+    """Show an earlier or later time range."""
+    screen.model.pan(share)
+    screen.update()
+
+
+def fit(screen: LogScreen) -> None:
+    """Show the whole time range."""
+    screen.model.limits = None
+    screen.update()
+
+
+def select(screen: LogScreen, step: int) -> None:
+    """Select another variable."""
+    screen.model.select(step)
+    screen.update()
+
+
+def tick(screen: LogScreen) -> None:
+    """Show or hide the selected variable."""
+    if screen.model.selected:
+        screen.model.trace.on = not screen.model.trace.on
+        screen.update()
+
+
+def facets(screen: LogScreen) -> None:
+    """Switch between one chart per variable and one for all."""
+    screen.chart.options.facets = not screen.chart.options.facets
+    screen.redraw_chart()
+    if screen.chart.options.facets:
+        if len(screen.model.traces.ticked()) < 2:
+            screen.say("One chart for each ticked variable: v selects another one, space ticks it")
+        elif screen.chart.display and screen.chart.size.height < FACETS_ROWS:
+            screen.say("Not high enough for several charts: + enlarges the chart")
+
+
+def marks(screen: LogScreen) -> None:
+    """Switch between points and lines."""
+    screen.chart.options.marks = not screen.chart.options.marks
+    screen.redraw_chart()
+
+
+def hold(screen: LogScreen) -> None:
+    """Switch sample-and-hold of values on or off."""
+    screen.chart.options.hold = not screen.chart.options.hold
+    screen.redraw_chart()
+
+
+def align(screen: LogScreen) -> None:
+    """Ask how to align runs."""
+
+    def go(text: str) -> None:
+        screen.model.align(text or TIME)
+        screen.redraw_chart()
+        screen.update()
+
+    screen.ask("Align runs by", go, screen.model.alignment, _ALIGNMENTS)
+
+
+def against(screen: LogScreen) -> None:
+    """Ask which variables to draw against each other."""
+    options = screen.chart.options
+
+    def go(text: str) -> None:
+        model = screen.model
+        names = [name.strip() for name in text.split(" against ")]
+        if not text:
+            options.against = None
+        else:
+            if len(names) > 2:
+                raise LogError(f"cannot draw {text!r}", "a name, or two with `against` between them")
+            y, x = names if len(names) == 2 else (model.selected, names[0])
+            for name in (x, y):
+                model.along(name)
+            options.against = x, y
+        screen.redraw_chart()
+
+    now = f"{options.against[1]} against {options.against[0]}" if options.against else ""
+    screen.ask("Draw", go, now, _AGAINST)

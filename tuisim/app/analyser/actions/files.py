@@ -1,0 +1,132 @@
+"""Keys of the group Files: copy and export rows, save the chart, write the report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from textual.worker import get_current_worker
+
+from tuisim.analysis.model import Model
+from tuisim.analysis.source import OpenedLog
+from tuisim.app import background
+from tuisim.app.analyser.panes import PANES, pane_frame
+from tuisim.app.analyser.screen import LogScreen
+from tuisim.app.dialogs.save import SaveDialog
+from tuisim.errors import counted
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_COPIED = 10_000
+"""Most rows to copy: terminals drop longer texts."""
+_MANY_ROWS = 20_000
+"""With more rows than this, searching for bands would block the keys."""
+_ROWS = (("rows.csv", "text"), (".parquet .arrow .jsonl", "the same with all types and what the log says of its runs"))
+_CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it is shown here"))
+_REPORT = ((".html", "program, world, chart, bands, statistics and notes on one page"),)
+_ROWS = (("rows.csv", "text"), (".parquet .arrow .jsonl", "the same with all types and what the log says of its runs"))
+_CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it is shown here"))
+_REPORT = ((".html", "program, world, chart, bands, statistics and notes on one page"),)
+
+
+def copy_value(screen: LogScreen) -> None:
+    """Copy the selected cell."""
+    rows, row = screen.model.rows, screen.model.row
+    screen.copy(rows.text(row, rows.chosen), f"{rows.chosen} of row {row + 1}")
+
+
+def copy_row(screen: LogScreen) -> None:
+    """Copy the row of the cursor, with tabs between the cells."""
+    rows, row = screen.model.rows, screen.model.row
+    screen.copy("\t".join(rows.text(row, column) for column in rows.columns), f"row {row + 1}")
+
+
+def copy_pane(screen: LogScreen) -> None:
+    """Copy the pane: of the table all rows shown, with the header."""
+    model, name = screen.model, screen.pane.name_shown
+    if name != "table":
+        pane = PANES[name]
+        lines = ["\t".join(row) for row in (pane.heads, *pane.rows(model))]
+        screen.copy("\n".join([*lines, *pane.below(model)]), pane.title.lower())
+        return
+    rows = model.rows
+    if len(rows) > MOST_COPIED:
+        screen.say(f"{len(rows):,} rows are too many for a clipboard: F filters, `tuisim log export` writes a file")
+        return
+    places = (rows.row(place) for place in range(len(rows)))
+    lines = ["\t".join(rows.text(row, column) for column in rows.columns) for row in places]
+    screen.copy("\n".join(["\t".join(rows.columns), *lines]), counted(len(rows), "row"))
+
+
+def export(screen: LogScreen) -> None:
+    """Ask for the file to export the rows of the pane to; of the table, only the columns shown."""
+    from tuisim.logs.export import LISTED, check_target
+
+    pane = screen.pane.name_shown
+    if pane != "table" and not PANES[pane].rows(screen.model):
+        screen.say("There are no rows here to export: t shows the table")
+        return
+    what = "rows" if pane == "table" else pane
+
+    def save(target: Path) -> None:
+        model = screen.model
+        frame = None if pane == "table" else pane_frame(pane, model)
+        work = partial(_write_rows, model, frame, target)
+        notice = f"The rows as shown are in {target}"
+        background.run(screen, work, lambda _: screen.say(notice), screen.complain, group="export")
+
+    screen.app.push_screen(SaveDialog(f"{what} as shown", f"{what}.csv", save, LISTED, check_target, _ROWS, False))
+
+
+def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
+    """Write a frame, or the rows of the table."""
+    from tuisim.logs.export import LOG_FORMAT, export_frame, export_log
+
+    if frame is None:
+        export_log(model.log, model.rows.shown(), target)
+    else:
+        export_frame(frame, target, {"format": LOG_FORMAT, "table": "pane", "columns": list(frame.columns)})
+
+
+def chart(screen: LogScreen) -> None:
+    """Ask for the file to save the chart to: with the time range and the variables as shown."""
+    from tuisim.analysis.chart import View, chart_of
+    from tuisim.charts.files import CHART_FORMATS, format_of, save_chart
+
+    options = screen.chart.options
+
+    def save(target: Path) -> None:
+        # Text gets the size of the chart on the screen, if visible; images have their own size.
+        shown = screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
+        size = (shown.width, shown.height) if shown else None
+        view = View(options.facets, options.marks, options.hold, options.against)
+        save_chart(partial(chart_of, screen.model, view), target, size)
+        screen.redraw_chart()
+
+    screen.app.push_screen(SaveDialog("chart", "chart.svg", save, ", ".join(CHART_FORMATS), format_of, _CHARTS))
+
+
+def report(screen: LogScreen) -> None:
+    """Ask for the file to write the report to."""
+    from tuisim.report.report import check_report, default_name
+
+    subject = screen.model.subject
+    names = [trace.name for trace in screen.model.traces.ticked()]
+
+    def save(target: Path) -> None:
+        work, notice = partial(_write_report, subject, target, names), f"The report is in {target}"
+        background.run(screen, work, lambda _: screen.say(notice), screen.complain, group="report")
+
+    screen.app.push_screen(SaveDialog("report", default_name(subject), save, ".html", check_report, _REPORT, False))
+
+
+def _write_report(subject: OpenedLog, target: Path, names: Sequence[str]) -> None:
+    from tuisim.logs.plateaus import plateaus, plateaus_aside
+    from tuisim.report.report import write_report
+
+    worker = get_current_worker()
+    aside = partial(plateaus_aside, stopped=lambda: worker.is_cancelled)
+    write_report(subject, target, names, aside if subject.log.rows > _MANY_ROWS else plateaus)

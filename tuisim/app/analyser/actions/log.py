@@ -1,0 +1,186 @@
+"""Keys of the group Log: what is open, what is derived from it, its notes, and the differences between two runs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+from tuisim.analysis.model import RECKONING, Model, derive, take, with_definition
+from tuisim.analysis.source import LogRequest
+from tuisim.app.analyser.screen import LogScreen
+from tuisim.app.dialogs.prompt import Form
+from tuisim.errors import LogError
+from tuisim.logs.derived import NEEDED
+from tuisim.logs.expressions import FUNCTIONS
+from tuisim.logs.log import Log
+from tuisim.runs.diff import RunDiff, diff_runs
+from tuisim.runs.run_folder import StoredRun
+
+_DERIVED: tuple[Form, ...] = (
+    ("speed = slope(x_mm)", "change per second; the name before it is optional"),
+    ("average(Colour, 5)", "mean of the 5 samples around each"),
+    ("integral(Colour)", "sum over time"),
+    ("resample(Colour, 0.1)", "at regular times, every 0.1 s"),
+    ("(Left + Right) / 2", "+ - * / // % ** < > == and or not, a if b else c"),
+    ("speed =", "removes it again"),
+)
+_RECKONING: Form = (RECKONING, "the pose by dead reckoning, and the error_mm")
+_OTHER_RUNS = (("last", "the newest run"), ("12", "run 12"))
+
+
+def telemetry(screen: LogScreen) -> None:
+    """Switch between telemetry and samples."""
+    if screen.request.file:
+        screen.say("A file has no telemetry: R opens stored runs")
+        return
+    screen.open(replace(screen.request, telemetry=not screen.request.telemetry))
+
+
+def runs(screen: LogScreen) -> None:
+    """Ask which runs to open."""
+    from tuisim.app.dialogs.runs import RunsChooser
+
+    def chosen(ids: str | None) -> None:
+        if ids:
+            screen.open(LogRequest(runs=tuple(ids.split())))
+
+    screen.app.push_screen(RunsChooser(), chosen)
+
+
+# Derived variables
+
+
+def derived(screen: LogScreen) -> None:
+    """Ask for a derived variable."""
+
+    def go(text: str) -> None:
+        model = screen.model
+        screen.work("computing …", model.log.rows, lambda _: (model, *with_definition(model, text)), computed)
+
+    def computed(result: tuple[Model, str, Log]) -> None:
+        of, text, log = result
+        model = screen.model
+        if model is of:
+            take(model, text, log)
+        else:
+            # The log may have grown meanwhile.
+            derive(model, text)
+        screen.redraw_chart()
+        screen.update()
+
+    can_reckon = set(NEEDED) <= set(screen.model.log.table.column_names)
+    forms = (*_DERIVED, *((_RECKONING,) if can_reckon else ()), ("functions", ", ".join(FUNCTIONS)))
+    screen.ask("Derive a variable", go, forms=forms, completes=True)
+
+
+# Notes
+
+
+def note(screen: LogScreen) -> None:
+    """Ask for a note on the sample, on the range between the two cursors, or on the band, which is described."""
+    model = screen.model
+    trace = model.trace_of_row(model.row)
+    name, value = trace.name, ""
+    start_s = stop_s = model.time_of(model.row)
+    run = model.run_of(model.row)
+    title = f"Note on {name} at {start_s:.2f} s"
+    bands = model.bands()
+    if screen.pane.name_shown == "bands" and bands:
+        band = bands[min(screen.pane.chosen, len(bands) - 1)]
+        name, start_s, stop_s = band.variable, band.start_s, band.stop_s
+        value = f"band {band.number}: {band.true_level:.2f}" + (f" {band.grey}" if band.grey else "")
+        title = f"Note on {name} from {start_s:.2f} s to {stop_s:.2f} s"
+    elif model.mark_s is not None:
+        start_s, stop_s = sorted((_mark_time_s(model), start_s))
+        title = f"Note on {name} from {start_s:.2f} s to {stop_s:.2f} s"
+
+    def keep(text: str) -> None:
+        if not text:
+            raise LogError("the note is empty", "Escape cancels")
+        screen.model.add_note(text, start_s, stop_s, name, run)
+        screen.say("Noted: n lists the notes")
+        screen.update()
+
+    screen.ask(title, keep, value)
+
+
+def _mark_time_s(model: Model) -> float:
+    """Return the time, in its run, of the sample at the second cursor."""
+    trace = model.trace_of_row(model.row)
+    if model.mark_s is None or not len(trace.pyramid.times_s):
+        return model.time_of(model.row)
+    return float(trace.series.time_s[trace.pyramid.nearest(model.mark_s)])
+
+
+def delete_note(screen: LogScreen) -> None:
+    """Delete the selected note."""
+    model = screen.model
+    if screen.pane.name_shown != "notes" or not model.notes:
+        screen.say("n lists the notes; delete then deletes the selected one")
+        return
+    model.drop_note(*model.notes[min(screen.pane.chosen, len(model.notes) - 1)])
+    screen.choose(min(screen.pane.chosen, max(len(model.notes) - 1, 0)))
+    screen.update()
+
+
+# Differences
+
+
+def differences(screen: LogScreen) -> None:
+    """Show the differences between the first two open runs; with a single run, ask for the other one."""
+    runs = screen.model.subject.runs
+    if not runs:
+        screen.say("A file has no recording to compare: R opens stored runs")
+    elif len(runs) > 1:
+        _compare(screen, runs[0], runs[1])
+    else:
+        first = runs[0]
+
+        def go(text: str) -> None:
+            from tuisim.runs.store import RunStore
+
+            if not text:
+                raise LogError("with which run?", "its number, its id, or last")
+            other = RunStore().load_run(text)
+            if other.id == first.id:
+                raise LogError("that is the same run", f"a run other than {_name(first)}")
+            _compare(screen, first, other)
+
+        screen.ask(f"Compare {_name(first)} with", go, forms=_OTHER_RUNS)
+
+
+def _compare(screen: LogScreen, first: StoredRun, second: StoredRun) -> None:
+    ticks = first.telemetry.count + second.telemetry.count
+    then = partial(_show_differences, screen, screen.model, first, second)
+    screen.work("comparing …", ticks, lambda _: diff_runs(first, second), then)
+
+
+def _show_differences(screen: LogScreen, model: Model, first: StoredRun, second: StoredRun, diff: RunDiff) -> None:
+    from tuisim.app.dialogs.runs import Differences
+
+    def answered(go: bool | None) -> None:
+        ticks = (diff.tick.time_s,) if diff.tick else ()
+        samples = diff.sample.times_s if diff.sample else ()
+        parted_s = min((at_s for at_s in (*ticks, *samples) if at_s is not None), default=None)
+        if go and parted_s is not None and screen.model is model:
+            _go_to(screen, model, parted_s)
+
+    # Wait until the dialog that asked for the run is closed.
+    screen.call_later(screen.app.push_screen, Differences(_name(first), _name(second), diff, samples=True), answered)
+
+
+def _go_to(screen: LogScreen, model: Model, time_s: float) -> None:
+    """Put the cursor, in the first run, where the runs begin to differ."""
+    name = model.selected.partition(" #")[0]
+    selected = next((trace.name for trace in model.traces if trace.name in (name, f"{name} #1")), model.selected)
+    if not model.log.rows:
+        screen.say(f"They differ from {time_s:.2f} s; no sample was printed")
+        return
+    model.selected = selected
+    model.go_to_moment(time_s)
+    model.follow_cursor()
+    screen.update()
+
+
+def _name(run: StoredRun) -> str:
+    return f"run {run.number or run.id}"

@@ -1,0 +1,234 @@
+"""The world beside the log: the robot at the time of the sample, the line that printed it, the pixels seen.
+
+Pose and sensor view come from the recording, or from the log itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from rich.style import Style
+from textual.app import ComposeResult
+from textual.containers import Vertical
+
+from tuisim.app import background
+from tuisim.app.panels.arrays import Arrays
+from tuisim.app.panels.world import WorldView
+from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
+from tuisim.app.snapshot import RunPhase, Snapshot, snapshot_of
+from tuisim.app.terminal.cell_view import LinesView
+from tuisim.charts.text_runs import Run
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import RunSpec, from_plain
+from tuisim.core.state import FLAG_PEN_DOWN, Instant
+from tuisim.errors import TuisimError, printable
+from tuisim.runs.recording import Recording
+from tuisim.runs.views import instant_of
+from tuisim.source import source_lines
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
+    from tuisim.analysis.source import OpenedLog
+    from tuisim.logs.log import Log
+    from tuisim.runs.run_folder import StoredRun
+
+_POSE = ("x_mm", "y_mm", "heading_deg")
+_PLAIN, _DIM = Style(color="#d8dee6"), Style(color="#7f8fa1")
+_HERE = Style(color="#ffffff", bgcolor="#263545", bold=True)
+NO_POSES = "This log does not say where the robot was"
+
+
+class WorldAt:
+    """The world of one run, at any time of it.
+
+    Args:
+        spec: The run's specification.
+        mat: Its mat.
+        run: The run, if it is in the store.
+        log: The source of the poses otherwise.
+    """
+
+    def __init__(self, spec: RunSpec, mat: Mat, run: StoredRun | None, log: Log) -> None:
+        self.spec, self.mat = spec, mat
+        self._recording = Recording(run) if run is not None else None
+        self._log = log
+        self.text = run.program.text if run is not None else ""
+        """The program, empty if unknown."""
+
+    def at(self, time_s: float, row: int) -> Snapshot:
+        """Return the snapshot at a time.
+
+        Args:
+            time_s: Simulated time.
+            row: The row of the log at that time.
+        """
+        found = self._recorded(time_s) if self._recording is not None else None
+        return found or self._logged(time_s, row)
+
+    def _recorded(self, time_s: float) -> Snapshot | None:
+        recording = self._recording
+        if recording is None or recording.newest < 0:
+            return None
+        tick = min(max(round(time_s * self.spec.profile.tick_hz), 0), recording.newest)
+        record = recording.telemetry.record(tick)
+        instant = instant_of(record, self.spec, recording.noise_at(record))
+        field = recording.field_at(tick, self.mat.field) if self.mat.field else None
+        pen = bool(record.flags & FLAG_PEN_DOWN)
+        return snapshot_of(
+            instant, self.spec, field, state=RunPhase.ENDED, end=None, line=record.line, speed=1.0, pen_down=pen
+        )
+
+    def _logged(self, time_s: float, row: int) -> Snapshot:
+        table = self._log.table
+        x_mm, y_mm, heading_deg = (table.column(name)[row].as_py() for name in _POSE)
+        pose = Pose(float(x_mm or 0.0), float(y_mm or 0.0), float(heading_deg or 0.0))
+        tick = round(time_s * self.spec.profile.tick_hz)
+        instant = Instant(tick, pose, noise=self.spec.world.noise, seed=self.spec.seed)
+        line = table.column("line")[row].as_py() if "line" in table.column_names else 0
+        return snapshot_of(
+            instant,
+            self.spec,
+            self.mat.field,
+            state=RunPhase.ENDED,
+            end=None,
+            line=int(line or 0),
+            speed=1.0,
+            pen_down=False,
+        )
+
+
+def has_poses(subject: OpenedLog) -> bool:
+    """Return whether a log has poses of a robot."""
+    if subject.runs:
+        return True
+    named = set(_POSE) <= set(subject.log.table.column_names)
+    return named and _spec_in(subject.log.metadata, 0) is not None
+
+
+def world_at(subject: OpenedLog, run: int) -> WorldAt | None:
+    """Return the world of a run of a log, None if it is unknown. Blocks, long the first time for each mat.
+
+    Args:
+        subject: The log.
+        run: Which of its runs, from 0.
+    """
+    if run < len(subject.runs):
+        stored = subject.runs[run]
+        try:
+            mat = prepare_mat_of(stored)
+        except TuisimError:
+            mat = blank_mat(stored.spec)
+        return WorldAt(stored.spec, mat, stored, subject.log)
+    spec = _spec_in(subject.log.metadata, run)
+    if spec is None or not set(_POSE) <= set(subject.log.table.column_names):
+        return None
+    try:
+        mat = prepare_mat(spec)
+    except TuisimError:
+        mat = blank_mat(spec)
+    return WorldAt(spec, mat, None, subject.log)
+
+
+def _spec_in(metadata: Mapping[str, Any], run: int) -> RunSpec | None:
+    """Return the specification in the metadata of an export, if any."""
+    try:
+        entry = metadata["runs"][run]
+        return from_plain({key: value for key, value in entry.items() if key not in ("run", "program")})
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError, TuisimError):
+        return None
+
+
+class WorldPane(Vertical):
+    """The column at the right."""
+
+    DEFAULT_CSS = """
+    WorldPane { width: 34%; min-width: 30; }
+    WorldPane .frame { border: round #44505e; border-title-color: #9fb0c3; height: 1fr; }
+    WorldPane .frame > * { height: 1fr; width: 1fr; }
+    WorldPane > Arrays { height: 13; border: round #44505e; border-title-color: #9fb0c3; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.is_on = True
+        """Whether to show it if there is something to show."""
+        # The robot is shown where it was; the mouse cannot move it.
+        self._world = WorldView(lambda pose, done: None, lambda boxes, index: None)
+        self._world.disabled = True
+        self._source = LinesView()
+        self._arrays = Arrays()
+        self._worlds: dict[int, WorldAt | None] = {}
+        self._requested: set[int] = set()
+        self._model: Model | None = None
+        self._shown: WorldAt | None = None
+
+    def compose(self) -> ComposeResult:
+        """Create the child widgets."""
+        for title, view in (("World", self._world), ("Source", self._source)):
+            frame = Vertical(view, classes="frame")
+            frame.border_title = title
+            yield frame
+        yield self._arrays
+
+    def on_resize(self) -> None:
+        """Hide the pixels if there is little room."""
+        self._arrays.display = self.size.height >= 34
+        self.call_after_refresh(self._show_again)
+
+    def _show_again(self) -> None:
+        if self._model is not None:
+            self.show(self._model)
+
+    def set_model(self, model: Model) -> None:
+        """Switch to another log."""
+        self._model, self._shown = model, None
+        self._worlds.clear()
+        self._requested.clear()
+        self.display = self.is_on and has_poses(model.subject)
+        self.show(model)
+
+    def show(self, model: Model) -> None:
+        """Show the row of the cursor."""
+        self._model = model
+        if not model.log.rows or not self.display:
+            return
+        run = model.run_of(model.row)
+        if run not in self._requested:
+            self._requested.add(run)
+            work = partial(world_at, model.subject, run)
+            background.run(self, work, partial(self._prepared, model, run), group="worlds")
+        world = self._worlds.get(run)
+        if world is None:
+            note = NO_POSES if run in self._worlds else "The mat is being prepared …"
+            self._source.set_lines([[(note, _DIM)]])
+            return
+        snapshot = world.at(model.time_of(model.row), model.row)
+        if world is not self._shown:
+            self._shown = world
+            self._world.set_mat(world.mat.pixels)
+        self._world.show(snapshot)
+        if self._arrays.display:
+            self._arrays.show(snapshot)
+        self._source.set_lines(self._lines(world, model.printed_line() or snapshot.line))
+
+    def _prepared(self, model: Model, run: int, world: WorldAt | None) -> None:
+        if model is self._model:
+            self._worlds[run] = world
+            self.show(model)
+
+    def _lines(self, world: WorldAt, line: int) -> list[list[Run]]:
+        """Return the program around a line, with that line in the middle."""
+        texts = source_lines(world.text)
+        height, width = self._source.size.height, self._source.size.width
+        if not texts or not height:
+            return [[(f"line {line}", _PLAIN)]]
+        first = min(max(line - 1 - height // 2, 0), max(len(texts) - height, 0))
+        shown: list[list[Run]] = []
+        for number, text in enumerate(texts[first : first + height], first + 1):
+            here = number == line
+            shown.append(
+                [(f"{number:>3} ", _HERE if here else _DIM), (printable(text).ljust(width), _HERE if here else _PLAIN)]
+            )
+        return shown
