@@ -14,7 +14,7 @@ from tuisim.app.analyser.actions.table import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.panels import PANELS
 from tuisim.cli import COMMANDS
 from tuisim.commands.log import SUBCOMMANDS
-from tuisim.config.options import SWITCHES
+from tuisim.config.options import OPTIONS
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import MOUNTS
 from tuisim.logs.export import EXPORTERS
@@ -29,7 +29,7 @@ TABLES = {
     "subcommand of log": SUBCOMMANDS,
     "profile": PROFILES,
     "export format": EXPORTERS,
-    "switch": [switch.flags[0] for switch in SWITCHES],
+    "option": [option.flags[0] for option in OPTIONS],
     "panel's key": [panel.key for panel in PANELS.values()],
     "app's key": [action.key_label for action in ACTIONS.values() if not action.id.startswith("nudge-")],
     "analyser's key": [action.key_label for action in ANALYSER_ACTIONS.values()],

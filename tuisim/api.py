@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config.build import build_run_spec
-from tuisim.config.options import SWITCHES, Option, nearest, settings_of
+from tuisim.config.options import APP, OPTIONS, Option, nearest, settings_of
 from tuisim.config.program_file import ProgramSource, program_of_text, read_program
 from tuisim.errors import ConfigError
 from tuisim.runs.handle import RunOptions, start_run
@@ -70,12 +70,12 @@ class SimulatedRun:
 
 
 def _by_name() -> dict[str, Option]:
-    """Return every switch that affects a run, by its long names."""
+    """Return every option that affects a run, by its long names."""
     return {
-        flag.lstrip("-").replace("-", "_"): switch
-        for switch in SWITCHES
-        if not switch.panel and switch.group != "app"
-        for flag in switch.flags
+        flag.lstrip("-").replace("-", "_"): option
+        for option in OPTIONS
+        if not option.panel and option.group != APP
+        for flag in option.flags
         if flag.startswith("--")
     }
 
@@ -84,25 +84,25 @@ def choices_of(choices: Mapping[str, Any]) -> dict[str, Any]:
     """Convert keyword arguments to fields of `Settings`.
 
     Args:
-        choices: Values by the long name of a switch, such as `background` or `x`; None is ignored.
+        choices: Values by the long name of an option, such as `background` or `x`; None is ignored.
 
     Raises:
-        ConfigError: there is no such switch, or its value is wrong.
+        ConfigError: there is no such option, or its value is wrong.
     """
     known, found = _by_name(), {}
     for name, value in choices.items():
         if name not in known:
             raise ConfigError(f"no such argument {name!r}", nearest(name, known))
-        switch = known[name]
+        option = known[name]
         if value is None:
             continue
-        if switch.convert is None:
+        if option.convert is None:
             if not isinstance(value, bool):
                 raise ConfigError(f"must be True or False, got {value!r}", key=name)
-            found[switch.field] = switch.value if value else not switch.value
+            found[option.field] = option.value if value else not option.value
         else:
             text = ("on" if value else "off") if isinstance(value, bool) else str(value)
-            found[switch.field] = switch.convert(text, name)
+            found[option.field] = option.convert(text, name)
     return found
 
 

@@ -1,6 +1,6 @@
 """The command line: parses arguments, calls a command, turns errors into exit codes.
 
-To add a command: write its file in `commands/`, and add a line to `COMMANDS`.
+To add a command: write it in `commands/`, and add a line to `COMMANDS`.
 """
 
 from __future__ import annotations
@@ -8,34 +8,51 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from argparse import Namespace, RawDescriptionHelpFormatter
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
+from typing import cast
+
+import click
+from click.shell_completion import shell_complete
 
 from tuisim import __version__
-from tuisim.config.options import ARGUMENTS_FOLLOW, SwitchParser
+from tuisim.commands.completion import COMPLETE_VARIABLE
+from tuisim.config.command_line import Group, option
 from tuisim.errors import ConfigError, HostError, TuisimError, printable
 
-COMMANDS: Mapping[str, str] = {
-    "open": "open the app (the default command)",
-    "run": "run programs without the app",
-    "runs": "list, show, export or remove stored runs",
-    "log": "analyse logs: statistics, bands, events, signals",
-    "analyse": "explore logs in the app: table, chart, bands, notes",
-    "backgrounds": "list the mats",
-    "robots": "list the robots, or print one as a file",
-    "obstacles": "list the sets of obstacles, or print one as a file",
-    "programs": "list the example programs",
-    "profiles": "list the profiles and the simulated time of each call",
-    "kernel": "install the Jupyter kernel that runs a course's notebooks unchanged",
-}
-"""Every command and its help line."""
 
-_FOR_PROGRAMS = ("open", "run")
-"""Commands that pass the words after `--` to the program."""
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line of `COMMANDS`."""
+
+    path: str
+    """MODULE:NAME in `commands/`; imported on use."""
+    does: str
+
+    def load(self) -> click.Command:
+        """Import the command."""
+        module, _, name = self.path.partition(":")
+        return cast("click.Command", getattr(import_module(f"tuisim.commands.{module}"), name))
+
+
+COMMANDS: Mapping[str, Entry] = {
+    "open": Entry("app:open_app", "Open the app (the default command)"),
+    "run": Entry("run:run", "Run programs without the app"),
+    "runs": Entry("runs:runs", "List, show, export or remove stored runs"),
+    "log": Entry("log:log", "Analyse logs: statistics, bands, events, signals"),
+    "analyse": Entry("app:analyse", "Explore logs in the app: table, chart, bands, notes"),
+    "backgrounds": Entry("listings:backgrounds", "List the mats"),
+    "robots": Entry("listings:robots", "List the robots, or print one as a file"),
+    "obstacles": Entry("listings:obstacles", "List the sets of obstacles, or print one as a file"),
+    "programs": Entry("listings:programs", "List the example programs"),
+    "profiles": Entry("listings:profiles", "List the profiles and the simulated time of each call"),
+    "kernel": Entry("kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
+    "completion": Entry("completion:completion", "Print a script that completes commands in your shell"),
+}
+"""Every command."""
 
 LEAST_OPEN_FILES = 64
 """Open files that the app, a run and their libraries need, with some margin."""
@@ -43,121 +60,6 @@ LEAST_OPEN_FILES = 64
 EXIT_OUR_MISTAKE = 70
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
 """The exit codes of a program that was ended by SIGINT or SIGPIPE."""
-
-
-class _HelpFormatter(RawDescriptionHelpFormatter):
-    """Help in two columns, wide enough for one line per switch."""
-
-    def __init__(self, prog: str) -> None:
-        super().__init__(prog, max_help_position=36)
-
-
-def _parser(command: str) -> SwitchParser:
-    """Return the parser of one command; the help of `open` also lists the others."""
-    if command == "open":
-        listing = "\n".join(f"  tuisim {name:<12} {what}" for name, what in COMMANDS.items())
-        parser = SwitchParser(
-            prog="tuisim",
-            usage="tuisim [WORLD.toml] [PROGRAM] [switches] [-- ARGUMENTS]\n       tuisim COMMAND …",
-            description="A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.",
-            epilog=f"commands (each has its own --help):\n{listing}\n\n"
-            "A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, can also hold switches.\n"
-            "The command line takes precedence over a world file, the world file over the magic line.",
-            formatter_class=_HelpFormatter,
-            allow_abbrev=False,
-        )
-        parser.add_programs("words")
-        parser.add_argument("--run", metavar="RUN", help="open a stored run, see `tuisim runs`")
-        parser.add_argument("--version", action="version", version=f"tuisim {__version__}")
-        parser.add_switches()
-        return parser
-    what = f"{COMMANDS[command].capitalize()}."
-    parser = SwitchParser(
-        prog=f"tuisim {command}", description=what, formatter_class=_HelpFormatter, allow_abbrev=False
-    )
-    import_module(f"tuisim.commands.{command}").add_arguments(parser)
-    return parser
-
-
-def _open(arguments: Namespace) -> int:
-    """Start the app."""
-    from tuisim.commands.notebooks import print_list, to_list
-    from tuisim.commands.resolve import prepare_app, prepare_replay
-
-    if listed := to_list(arguments.words):
-        print_list(arguments.words[0], listed)
-        return 0
-    replay = None
-    if arguments.run is None:
-        prepared = prepare_app(arguments.words, arguments)
-    else:
-        replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
-    from tuisim.app.app import AppSettings, run_app
-
-    settings = prepared.settings
-    app_settings = AppSettings(
-        spec=prepared.spec,
-        settings=None if replay else settings,
-        replay=replay,
-        world_file=prepared.world.path if prepared.world else None,
-        program=prepared.program,
-        background=prepared.spec.world.background,
-        panels_on=frozenset(settings.panels_on),
-        panels_off=frozenset(settings.panels_off),
-        autorun=settings.autorun,
-        quiet=settings.quiet,
-        rays=settings.rays,
-        speed=1.0 if settings.speed is None else settings.speed,
-        fps=settings.fps,
-        colors=settings.colors,
-    )
-    with _drawing_on_stdout():
-        return run_app(app_settings)
-
-
-def _analyse(arguments: Namespace) -> int:
-    """Start the analyser."""
-    from tuisim.commands.analyse import asked
-
-    what = asked(arguments)
-    if not sys.stdout.isatty():
-        raise ConfigError("the analyser needs a terminal", "without one, use `tuisim log`")
-    from tuisim.analysis.source import LogRequest
-    from tuisim.app.analyser.app import run_analyser
-    from tuisim.logs.reader import STDIN
-
-    if what.file == STDIN:
-        _keys_from_terminal()
-    wanted = LogRequest(
-        what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
-    )
-    with _drawing_on_stdout():
-        return run_analyser(wanted)
-
-
-def _keys_from_terminal() -> None:
-    """Read the log from the original standard input, and keys from the terminal."""
-    try:
-        terminal = os.open("/dev/tty", os.O_RDWR)
-    except OSError as error:
-        raise ConfigError("there is no terminal to read keys from", "name a file instead of -") from error
-    sys.stdin = os.fdopen(os.dup(0))
-    os.dup2(terminal, 0)
-    os.close(terminal)
-
-
-@contextmanager
-def _drawing_on_stdout() -> Iterator[None]:
-    """Redirect stderr to the terminal of stdout: Textual draws on stderr, which may be redirected to a file."""
-    stderr = os.dup(2)
-    os.dup2(1, 2)
-    try:
-        yield
-    finally:
-        os.dup2(stderr, 2)
-        os.close(stderr)
 
 
 def _check_command(word: str) -> None:
@@ -185,27 +87,48 @@ def _check_open_files() -> None:
         raise HostError(f"this shell allows no more than {allowed} open files", hint) from None
 
 
+def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    if asked and not ctx.resilient_parsing:
+        click.echo(f"tuisim {__version__}")
+        ctx.exit()
+
+
+class _Root(Group):
+    """The command `tuisim`: a word that is no command is for `open`."""
+
+    def with_command(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Return the words with `open` first, unless they begin with a command or an option of `tuisim` itself."""
+        if args and (args[0] in COMMANDS or args[0] in ("-h", "--help", "--version")):
+            return args
+        if args and not args[0].startswith("-") and not ctx.resilient_parsing:
+            _check_command(args[0])
+        return [self.default, *args]
+
+
+_ROOT = _Root(
+    "tuisim",
+    {name: entry.does for name, entry in COMMANDS.items()},
+    lambda name: COMMANDS[name].load(),
+    default="open",
+    params=[option("--version", is_flag=True, expose_value=False, callback=_print_version, help="Print the version.")],
+    subcommand_metavar="[COMMAND] …",
+    help="""A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.
+
+    Without a command, `tuisim [WORLD.toml] [PROGRAM] [OPTIONS] [-- ARGUMENTS]` opens the app; `tuisim open --help`
+    lists its options.
+    """,
+)
+
+
 def _dispatch(words: Sequence[str]) -> int:
     _check_open_files()
-    command, rest = (words[0], words[1:]) if words and words[0] in COMMANDS else ("open", words)
-    if words and command != words[0]:
-        _check_command(words[0])
-    # Intermixed, because switches may appear between two programs.
-    given, ours = None, list(rest)
-    if command in _FOR_PROGRAMS and ARGUMENTS_FOLLOW in ours:
-        at = ours.index(ARGUMENTS_FOLLOW)
-        given, ours = tuple(ours[at + 1 :]), ours[:at]
-    arguments = _parser(command).parse_intermixed_args(ours)
-    if given is not None:
-        from tuisim.commands.resolve import check_arguments
-
-        arguments.arguments = given
-        check_arguments(arguments.words if command == "open" else arguments.programs, arguments)
-    if command == "open":
-        return _open(arguments)
-    if command == "analyse":
-        return _analyse(arguments)
-    return int(import_module(f"tuisim.commands.{command}").execute(arguments))
+    if instruction := os.environ.get(COMPLETE_VARIABLE):
+        return shell_complete(_ROOT, {}, "tuisim", COMPLETE_VARIABLE, instruction)
+    try:
+        with _ROOT.make_context("tuisim", list(words)) as context:
+            return int(_ROOT.invoke(context))
+    except click.exceptions.Exit as done:
+        return done.exit_code
 
 
 def _silence_stdout() -> None:

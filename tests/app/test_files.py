@@ -279,12 +279,9 @@ async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
 
 async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
     from tuisim.commands.resolve import prepare_app
-    from tuisim.config.options import SwitchParser
+    from tuisim.config.command_line import Arguments
 
-    parser = SwitchParser(prog="tuisim")
-    parser.add_programs("words")
-    parser.add_switches()
-    prepared = prepare_app(["lab.toml"], parser.parse_args([]))
+    prepared = prepare_app(["lab.toml"], Arguments(world=None, settings={}))
     assert prepared.world is not None
     opened = AppSettings(
         spec=prepared.spec,

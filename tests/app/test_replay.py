@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from argparse import Namespace
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +19,7 @@ from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.runs import RunChooser, matching
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
+from tuisim.config.command_line import Arguments
 from tuisim.config.options import Settings
 from tuisim.protocol import End, SetNoise, UserAction
 from tuisim.runs.catalogue import RunInfo
@@ -181,7 +181,7 @@ def test_the_namespace_of_the_command_has_the_run() -> None:
     from tuisim.commands.resolve import prepare_replay
 
     run_id = stored("print('A: 1')\n")
-    run, prepared = prepare_replay(run_id, [], Namespace(world=None, rays=True))
+    run, prepared = prepare_replay(run_id, [], Arguments(world=None, settings={"rays": True}))
     assert (run.id, prepared.settings.rays) == (run_id, True)
     assert prepared.program is not None
     assert prepared.program.text == "print('A: 1')\n"

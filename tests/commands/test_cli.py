@@ -193,7 +193,7 @@ def test_lists(command: str, name: str, here: Command) -> None:
 def test_every_command_has_a_help(command: str, here: Command) -> None:
     done = here(*filter(None, [command]), "--help")
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("usage: tuisim")
+    assert done.stdout.startswith("Usage: tuisim")
 
 
 def test_version(here: Command) -> None:

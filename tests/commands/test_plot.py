@@ -105,8 +105,8 @@ BAD = {
     "time that runs back": (("--from", "5", "--to", "1"), "--from must be less than --to"),
     "no number": (("--from", "nan"), "no range from"),
     "nothing then": (("--from", "50", "--to", "60"), "they are between 0 s and 9.9 s"),
-    "as JSON": (("--json",), "does not take --json"),
-    "an option of another": (("--width", "3"), "does not take --width"),
+    "as JSON": (("--json",), "no such option: --json"),
+    "an option of another": (("--width", "3"), "no such option: --width"),
 }
 
 

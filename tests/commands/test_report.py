@@ -202,8 +202,8 @@ BAD = {
     "no numbers": (("{words}",), "no numeric column"),
     "telemetry of two": (("1", "2", "--telemetry"), "takes one run"),
     "columns of a run": (("1", "--time", "x"), "are for files"),
-    "as JSON": (("{log}", "--json"), "does not take --json"),
-    "an option of another": (("{log}", "--facets"), "does not take --facets"),
+    "as JSON": (("{log}", "--json"), "no such option: --json"),
+    "an option of another": (("{log}", "--facets"), "no such option: --facets"),
 }
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tuisim.config.build import build_run_spec
+from tuisim.config.command_line import parse_words
 from tuisim.config.mats import backgrounds
 from tuisim.config.obstacles import OBSTACLES
-from tuisim.config.options import Settings, parse_words, settings_of
+from tuisim.config.options import Settings, settings_of
 from tuisim.config.robots import ROBOTS
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from tuisim.config.options import SWITCHES, Settings, parse_words, settings_of
+from tuisim.config.command_line import parse_words
+from tuisim.config.options import OPTIONS, Settings, settings_of
 from tuisim.config.program_file import MAX_PROGRAM_BYTES, find_magic, parse_program, read_program
 from tuisim.errors import ConfigError
 
@@ -63,9 +64,9 @@ def test_switches(words: str, fields: dict[str, Any]) -> None:
         ("--speed fast", r"^--speed: .*max"),
         ("--seed -1", "^--seed: "),
         ("--fps 0", "^--fps: "),
-        ("-b", "-b.*expected one argument"),
-        ("-Q", "no such switch or argument: -Q"),
-        ("--frob 3", "no such switch or argument: --frob 3"),
+        ("-b", "^option '-b' requires an argument"),
+        ("-Q", "no such option: -Q"),
+        ("--frob 3", "no such option: --frob"),
     ],
     ids=lambda value: value if value.startswith("-") else "",
 )
@@ -77,8 +78,8 @@ def test_wrong_switches_say_what_is_allowed(words: str, said: str) -> None:
 def test_every_switch_sets_a_field_and_no_flag_is_used_twice() -> None:
     names = {field.name for field in fields(Settings)}
     # What an infrared sensor meets is too much for a switch: a world file says it. Arguments stand after `--`.
-    assert {switch.field for switch in SWITCHES} == names - {"beacon", "remote", "arguments"}
-    flags = [flag for switch in SWITCHES for flag in (*switch.flags, *switch.magic_flags)]
+    assert {option.field for option in OPTIONS} == names - {"beacon", "remote", "arguments"}
+    flags = [flag for option in OPTIONS for flag in (*option.flags, *option.magic_flags)]
     assert len(flags) == len(set(flags))
 
 
@@ -179,7 +180,7 @@ def test_prelude(text: str, prelude: str) -> None:
         ("%%sim_magic_preloded -b Loop", r"^a\.py, line 1: no such magic .*sim_magic_preloaded"),
         ("# %%sim_magic -x abc", r"^a\.py, line 1: -x: must be a number"),
         ("# %%sim_magic -b 'Loop", r"^a\.py, line 1: the magic line cannot be split"),
-        ("# %%sim_magic -s other", r"^a\.py, line 1: no such switch"),
+        ("# %%sim_magic -s other", r"^a\.py, line 1: no such option"),
     ],
     ids=["name", "value", "quote", "switch"],
 )

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from tests.notebook.conftest import Cell, Shown
-from tuisim.notebook.magic_line import _parser
+from tuisim.notebook.magic_line import _command
 
 DRIVE = "tank_drive.on_for_rotations(SpeedPercent(50), SpeedPercent(50), 2)"
 PROGRAM = f"%%sim_magic_preloaded -b Grey_bands -WH\nprint('ran')\nsay('spoken', show=False)\n{DRIVE}\n"
@@ -155,7 +155,7 @@ CASES = [
     Case(("-W", "--hideworld", "--world"), "", text("<world,", ""), False),
     Case(("-H", "--hidecontrols", "--hide"), "", text("ready"), False),
     Case(("-s", "--sim"), "other", another_simulator, 99),
-    Case(("-h", "--help"), "", text("usage: %sim_magic")),
+    Case(("-h", "--help"), "", text("Usage: %sim_magic")),
     Case(("-v", "--preview"), "", text("print('ran')")),
     Case(("--previewcode",), "--preload imports", given_ready, True),
     Case(("-S", "--stop"), "", text("nothing is running")),
@@ -188,7 +188,7 @@ def test_without_it_that_is_not_so(case: Case, cell: Cell) -> None:
 
 
 def test_every_switch_is_here() -> None:
-    known = {flag for action in _parser("sim_magic")._actions for flag in action.option_strings}
+    known = {flag for param in _command("sim_magic").params for flag in param.opts}
     assert known == {flag for case in CASES for flag in case.flags} | OF_TERMINALS
 
 

@@ -99,7 +99,7 @@ def test_a_simulator_can_run_all_cells_at_once(cell: Cell) -> None:
 
 
 MISTAKES = [
-    ("-Y", "no such switch or argument: -Y"),
+    ("-Y", "no such option: -Y"),
     ("-b Nope", "no such mat 'Nope'"),
     ("-r Nope", "Nope"),
     ("-o Nope", "Nope"),
@@ -199,7 +199,7 @@ def test_the_old_switches_of_a_log_are_there(line: str, size: int | None, cell: 
 
 @pytest.mark.parametrize("magic", ["sim_data", "sim_robot_state", "sim_image_pair", "sim_bw_image_data"])
 def test_a_magic_of_a_log_has_a_help(magic: str, cell: Cell) -> None:
-    assert cell(f"%{magic} -h").out.startswith(f"usage: %{magic} ")
+    assert cell(f"%{magic} -h").out.startswith(f"Usage: %{magic} ")
 
 
 def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -> None:

@@ -7,17 +7,14 @@ import os
 import re
 import shutil
 import sys
-from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any
 
 from tuisim.atomic import replacing
-from tuisim.commands.echo import echo, echo_json, echo_lines
-from tuisim.commands.tables import table
-from tuisim.config.options import SwitchParser, nearest
+from tuisim.commands.echo import echo, echo_json, echo_lines, table
+from tuisim.config.command_line import AS_JSON, Group, command, option, short_help
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -31,14 +28,6 @@ _SPEC_FILE = "kernel.json"
 _VALID_NAME = re.compile(r"[a-z0-9_-][a-z0-9._-]*")
 
 
-class Action(StrEnum):
-    """The actions of `tuisim kernel`."""
-
-    LIST = "list"
-    INSTALL = "install"
-    REMOVE = "remove"
-
-
 @dataclass(frozen=True, slots=True)
 class InstalledKernel:
     """An installed tuisim kernel."""
@@ -50,52 +39,74 @@ class InstalledKernel:
     folder: str
 
 
-def add_arguments(parser: SwitchParser) -> None:
-    """Declare the arguments of `tuisim kernel`."""
-    parser.usage = (
-        "tuisim kernel [list] [--json]\n"
-        "       tuisim kernel install [--user|--sys-prefix|--prefix P] [--name N]\n"
-        "       tuisim kernel remove [--user|--sys-prefix|--prefix P] [--name N]"
-    )
-    parser.description = (
-        f"Install the kernel {DISPLAY_NAME!r} in Jupyter. It has every magic and the modules that a course's cells\n"
-        "import, so notebooks run unchanged."
-    )
-    parser.add_argument("action", nargs="?", default=Action.LIST, metavar="|".join(Action), help="what to do")
-    where = parser.add_mutually_exclusive_group()
-    where.add_argument("--user", action="store_true", help="for this user (the default)")
-    where.add_argument("--sys-prefix", action="store_true", help="in the Python environment of tuisim")
-    where.add_argument("--prefix", metavar="P", help="in P/share/jupyter/kernels")
-    parser.add_argument("--name", metavar="N", help=f"name of the kernel in Jupyter ({KERNEL_NAME})")
-    parser.add_argument("--json", action="store_true", help="print JSON")
+_NAME = option("--name", metavar="N", help=f"Name of the kernel in Jupyter ({KERNEL_NAME}).")
+_WHERE = (
+    option("--user", is_flag=True, help="For this user (the default)."),
+    option("--sys-prefix", is_flag=True, help="In the Python environment of tuisim."),
+    option("--prefix", metavar="P", help="In P/share/jupyter/kernels."),
+    _NAME,
+)
 
 
-def execute(arguments: Namespace) -> int:
-    """Run the action.
+@command(*_WHERE, AS_JSON, name="list")
+def list_kernels(as_json: bool, **where: Any) -> int:
+    """List the tuisim kernels that Jupyter finds."""
+    manager, folder, name = _place(**where)
+    folders = manager.kernel_dirs if folder is None else [folder]
+    _list([kernel for kernel in _kernels(folders) if name in (None, kernel.name)], as_json=as_json)
+    return 0
+
+
+@command(*_WHERE)
+def install(**where: Any) -> int:
+    """Add the kernel to Jupyter."""
+    manager, folder, name = _place(**where)
+    _install(manager, Path(folder or manager.user_kernel_dir), name or KERNEL_NAME)
+    return 0
+
+
+@command(*_WHERE)
+def remove(**where: Any) -> int:
+    """Remove a tuisim kernel from Jupyter."""
+    manager, folder, name = _place(**where)
+    _remove(manager.kernel_dirs if folder is None else [folder], name or KERNEL_NAME)
+    return 0
+
+
+_ACTIONS = {action.name or "": action for action in (list_kernels, install, remove)}
+kernel = Group(
+    "kernel",
+    {name: short_help(action) for name, action in _ACTIONS.items()},
+    _ACTIONS.__getitem__,
+    default="list",
+    subcommand_metavar="[COMMAND] …",
+    help=f"""Install the kernel {DISPLAY_NAME!r} in Jupyter.
+
+    It has every magic and the modules that a course's cells import, so notebooks run unchanged.
+    """,
+)
+"""`tuisim kernel`."""
+
+
+def _place(
+    user: bool, sys_prefix: bool, prefix: str | None, name: str | None
+) -> tuple[KernelSpecManager, str | None, str | None]:
+    """Return Jupyter's manager, the chosen kernel folder or None, and the chosen name or None.
 
     Raises:
-        ConfigError: no such action, ipykernel is missing, or a kernel cannot be written or found.
+        ConfigError: two places, a wrong name, or ipykernel is missing.
     """
-    if arguments.action not in tuple(Action):
-        raise ConfigError(f"no such action {arguments.action!r}", nearest(arguments.action, Action), key="kernel")
-    action, name = Action(arguments.action), arguments.name
-    if arguments.json and action is not Action.LIST:
-        raise ConfigError("is for `list` only", "leave it out", key="--json")
+    given = {"--user": user, "--sys-prefix": sys_prefix, "--prefix": prefix is not None}
+    places = [flag for flag, is_given in given.items() if is_given]
+    if len(places) > 1:
+        raise ConfigError(f"name one of {' and '.join(places)}", key="kernel")
     if name is not None and not _VALID_NAME.fullmatch(name):
         raise ConfigError(f"may contain only lower-case letters, digits and . _ -, got {name!r}", key="--name")
     manager = _manager()
-    folder = _folder_of(manager, arguments)
-    folders = manager.kernel_dirs if folder is None else [folder]
-    match action:
-        case Action.LIST:
-            _list([kernel for kernel in _kernels(folders) if name in (None, kernel.name)], as_json=arguments.json)
-        case Action.INSTALL:
-            _install(manager, Path(folder or manager.user_kernel_dir), name or KERNEL_NAME)
-        case Action.REMOVE:
-            _remove(folders, name or KERNEL_NAME)
-        case _:
-            assert_never(action)
-    return 0
+    where = sys.prefix if sys_prefix else prefix
+    if where is not None:
+        return manager, str(Path(os.path.abspath(os.path.expanduser(where)), "share", "jupyter", "kernels")), name
+    return manager, str(manager.user_kernel_dir) if user else None, name
 
 
 def _manager() -> KernelSpecManager:
@@ -112,14 +123,6 @@ def _manager() -> KernelSpecManager:
         hint = "pip install 'tuisim[notebook]'"
         raise ConfigError(f"the kernel needs {error.name}, which is not installed", hint) from None
     return KernelSpecManager()
-
-
-def _folder_of(manager: KernelSpecManager, arguments: Namespace) -> str | None:
-    """Return the kernel folder chosen by the switches, None if none is chosen."""
-    prefix = sys.prefix if arguments.sys_prefix else arguments.prefix
-    if prefix is not None:
-        return str(Path(os.path.abspath(os.path.expanduser(prefix)), "share", "jupyter", "kernels"))
-    return str(manager.user_kernel_dir) if arguments.user else None
 
 
 def _kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:

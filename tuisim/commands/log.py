@@ -5,20 +5,54 @@ To add a subcommand: write its function in `commands/logs/` and add a line to `S
 
 from __future__ import annotations
 
-from argparse import Namespace
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any, cast
+from typing import cast
 
-from tuisim.commands.logs.columns import add_columns
 from tuisim.commands.progress import Progress
-from tuisim.config.options import SwitchParser, nearest
-from tuisim.errors import ConfigError
+from tuisim.config.command_line import Arguments, Command, Group, GroupedOption, Value, argument, choice, option
 from tuisim.logs.export import LISTED
+from tuisim.logs.units import SECONDS
 
-COMMON = ("time", "unit", "value", "variable", "telemetry", "json", "out")
-_CHART = ("facets", "marks", "from", "to", "against", "size")
+TELEMETRY = option("--telemetry", is_flag=True, help="Use the telemetry of a run instead of its samples.")
+COLUMNS = (
+    option("--time", metavar="COLUMN", group="Columns", help="Time column; '' uses row numbers."),
+    choice("--unit", tuple(SECONDS), group="Columns", callback=lambda _, __, unit: unit or "",
+           help="Unit of the time column, if its name has none."),
+    option("--value", multiple=True, metavar="COLUMN", group="Columns", help="Value column; may be repeated."),
+)  # fmt: skip
+"""Options that name the columns of a file."""
+
+OPTIONS: Mapping[str, GroupedOption] = {
+    "at": option("--at", type=float, metavar="VALUE", help="Threshold."),
+    "hysteresis": option(
+        "--hysteresis", type=float, default=0.0, metavar="VALUE", help="Margin around the threshold (0)."
+    ),
+    "between": choice("--between", ("hold", "linear"), default="hold", help="Interpolation between samples (hold)."),
+    "width": option("--width", type=int, default=5, metavar="N", help="Window in samples, odd (5)."),
+    "period": option("--period", type=float, metavar="S", help="Seconds between rows."),
+    "expression": option("--expression", default="", metavar="TEXT", help="Such as '(left + right) / 2', see README."),
+    "facets": option("--facets", is_flag=True, help="Draw one chart per variable."),
+    "marks": option("--marks", is_flag=True, help="Draw points instead of lines."),
+    "from": option("--from", type=float, metavar="S", help="First second shown."),
+    "to": option("--to", type=float, metavar="S", help="Last second shown."),
+    "against": option(
+        "--against", default="", metavar="NAME", help="Variable or column for the x axis, instead of time."
+    ),
+    "size": option("--size", default="", metavar="WxH", help="Size in pixels; in characters for text."),
+    "variable": option("--variable", multiple=True, metavar="NAME", help="Only this variable; may be repeated."),
+    "telemetry": TELEMETRY,
+    "json": option("--json", is_flag=True, help="Print JSON."),
+    "out": option("--out", metavar="FILE", type=Value(), help=f"Write the result to a file: {LISTED}."),
+    "chart": option("--out", metavar="FILE", type=Value(), help="Write the chart to a file: .svg, .png, .txt."),
+    "page": option("--out", metavar="FILE", type=Value(), help="Write the page to this .html file."),
+}  # fmt: skip
+"""The options of the subcommands besides `COLUMNS`; three are called `--out`."""
+
+_TABLE = ("variable", "telemetry", "json", "out")
+_FRAME = ("telemetry", "json", "out")
+_CHART = ("facets", "marks", "from", "to", "against", "size", "variable", "telemetry", "chart")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,101 +62,72 @@ class Subcommand:
     does: str
     path: str
     """MODULE:FUNCTION in `commands/logs`; imported on use."""
-    options: tuple[str, ...] = ()
-    """Its options besides `COMMON`, from `OPTIONS`."""
+    options: tuple[str, ...] = _TABLE
+    """Its options, from `OPTIONS`."""
+    words: str = "LOG…"
+    """Its logs, as the help names them."""
 
-    def load(self) -> Callable[[Namespace], int]:
+    def load(self) -> Callable[[Arguments], int]:
         """Import the function."""
         module, _, function = self.path.partition(":")
-        return cast("Callable[[Namespace], int]", getattr(import_module(f"tuisim.commands.logs.{module}"), function))
+        return cast("Callable[[Arguments], int]", getattr(import_module(f"tuisim.commands.logs.{module}"), function))
 
 
 SUBCOMMANDS: Mapping[str, Subcommand] = {
-    "summary": Subcommand("count, min, max, mean, std and quantiles of each variable", "figures:summary"),
-    "bands": Subcommand("plateaus: level, name, times, width", "figures:bands"),
-    "events": Subcommand("where a variable crosses --at", "figures:events", ("at", "hysteresis")),
-    "derive": Subcommand("derivative, in units per second", "signals:derive"),
-    "integrate": Subcommand("integral, in units times seconds", "signals:integrate", ("between",)),
-    "average": Subcommand("centred rolling mean of --width samples", "signals:average", ("width",)),
-    "resample": Subcommand("resample all variables every --period seconds", "signals:even", ("period", "between")),
-    "calc": Subcommand("evaluate --expression over the columns", "signals:calculate", ("expression",)),
-    "reckon": Subcommand("dead reckoning from the wheel encoders, and its error", "signals:reckon"),
-    "diff": Subcommand("where two runs differ; exit code 1 if they do", "diff:diff"),
-    "export": Subcommand("the log in another format", "signals:export"),
-    "plot": Subcommand("the chart, as text, SVG or PNG", "plot:plot", _CHART),
-    "report": Subcommand("program, world, chart, bands, statistics and notes on one page", "report:report"),
+    "summary": Subcommand("Print count, min, max, mean, std and quantiles of each variable", "figures:summary"),
+    "bands": Subcommand("Find plateaus: level, name, times, width", "figures:bands"),
+    "events": Subcommand("Find where a variable crosses --at", "figures:events", ("at", "hysteresis", *_TABLE)),
+    "derive": Subcommand("Compute the derivative, in units per second", "signals:derive"),
+    "integrate": Subcommand("Compute the integral, in units times seconds", "signals:integrate", ("between", *_TABLE)),
+    "average": Subcommand("Compute a centred rolling mean of --width samples", "signals:average", ("width", *_TABLE)),
+    "resample": Subcommand("Resample all every --period seconds", "signals:even", ("period", "between", *_TABLE)),
+    "calc": Subcommand("Evaluate --expression over the columns", "signals:calculate", ("expression", *_FRAME)),
+    "reckon": Subcommand("Compute dead reckoning from the wheel encoders, and its error", "signals:reckon", _FRAME),
+    "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "diff:diff", ("json",), "RUN RUN"),
+    "export": Subcommand("Write the log in another format", "signals:export", ("variable", "telemetry", "out")),
+    "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),
+    "report": Subcommand(
+        "Write program, world, chart and bands on one page",
+        "documents:report",
+        ("variable", "telemetry", "page"),
+    ),
 }
 """The subcommands of `tuisim log`, by name."""
 
-OPTIONS: Mapping[str, Mapping[str, Any]] = {
-    "at": {"type": float, "metavar": "VALUE", "help": "events: threshold"},
-    "hysteresis": {"type": float, "default": 0.0, "metavar": "VALUE", "help": "events: margin around the threshold"},
-    "between": {
-        "choices": ("hold", "linear"),
-        "default": "hold",
-        "metavar": "hold|linear",
-        "help": "interpolation between samples (hold)",
-    },
-    "width": {"type": int, "default": 5, "metavar": "N", "help": "average: window in samples, odd (5)"},
-    "period": {"type": float, "metavar": "S", "help": "resample: seconds between rows"},
-    "expression": {"default": "", "metavar": "TEXT", "help": "calc: such as '(left + right) / 2', see README"},
-    "facets": {"action": "store_true", "default": False, "help": "plot: one chart per variable"},
-    "marks": {"action": "store_true", "default": False, "help": "plot: points instead of lines"},
-    "from": {"type": float, "metavar": "S", "help": "plot: first second shown"},
-    "to": {"type": float, "metavar": "S", "help": "plot: last second shown"},
-    "against": {"default": "", "metavar": "NAME", "help": "plot: variable or column for the x axis, instead of time"},
-    "size": {"default": "", "metavar": "WxH", "help": "plot: in pixels; in characters for text"},
-}
-"""Options of some subcommands only, by name, with their arguments for `add_argument`."""
+
+def _load(name: str) -> Command:
+    entry = SUBCOMMANDS[name]
+
+    def work(**given: object) -> int:
+        arguments = Arguments(action=name, **given)
+        with Progress(" ".join(("log", name, *arguments.words))):
+            return entry.load()(arguments)
+
+    options = [OPTIONS[option] for option in entry.options]
+    columns = () if name == "diff" else COLUMNS
+    words = argument("words", entry.words, lambda: ("last",), nargs=-1)
+    return Command(name, callback=work, params=[words, *options, *columns], help=f"{entry.does}.")
 
 
-def add_arguments(parser: SwitchParser) -> None:
-    """Declare the arguments of `tuisim log`."""
-    parser.usage = "tuisim log SUBCOMMAND LOG… [options]"
-    listing = "\n".join(f"  {name:<10} {entry.does}" for name, entry in SUBCOMMANDS.items())
-    parser.description = (
-        "Analyse logs. A LOG is a stored run (its number, its id, `last`), a CSV, Parquet, JSONL, Arrow or text\n"
-        "file, or - for the standard input.\n\nsubcommands:\n" + listing
-    )
-    parser.epilog = (
-        "examples:\n  tuisim log bands last\n  tuisim log events log.csv --at 50 --hysteresis 5 --json\n"
-        "  tuisim run prog.py | tuisim log summary -\n"
-        "  tuisim log resample last --telemetry --period 0.5 --out half.parquet\n"
-        "  tuisim log plot last --facets --out chart.svg\n"
-        "  tuisim log report last\n"
-        "  tuisim log plot last --telemetry --variable y_mm --against x_mm"
-    )
-    parser.add_argument("action", metavar="SUBCOMMAND", help="what to do")
-    parser.add_argument("words", nargs="*", metavar="LOG", help="runs, files or -")
-    parser.add_argument(
-        "--variable", action="append", default=[], metavar="NAME", help="only this variable; may be repeated"
-    )
-    parser.add_argument("--telemetry", action="store_true", help="use the telemetry of a run instead of its samples")
-    add_columns(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        help=f"write the result to a file: {LISTED}; plot: .svg, .png, .txt; report: .html",
-    )
-    for option, declared in OPTIONS.items():
-        parser.add_argument(f"--{option}", **declared)
+log = Group(
+    "log",
+    {name: entry.does for name, entry in SUBCOMMANDS.items()},
+    _load,
+    subcommand_metavar="COMMAND LOG… [OPTIONS]",
+    help="""Analyse logs.
 
-
-def execute(arguments: Namespace) -> int:
-    """Run the subcommand.
-
-    Raises:
-        ConfigError: no such subcommand, or an option that it does not have.
-        LogError: a log cannot be read.
-        ExportError: a file cannot be written.
-    """
-    entry = SUBCOMMANDS.get(arguments.action)
-    if entry is None:
-        raise ConfigError(f"no such subcommand {arguments.action!r}", nearest(arguments.action, SUBCOMMANDS), key="log")
-    for option, declared in OPTIONS.items():
-        if option not in entry.options and getattr(arguments, option) != declared.get("default"):
-            takes = " ".join(f"--{name}" for name in (*entry.options, *COMMON))
-            raise ConfigError(f"does not take --{option}", f"it takes {takes}", key=arguments.action)
-    with Progress(" ".join(("log", arguments.action, *arguments.words))):
-        return entry.load()(arguments)
+    A LOG is a stored run (its number, its id, `last`), a CSV, Parquet, JSONL, Arrow or text file, or - for the
+    standard input.
+    """,
+    epilog="""\b
+    Examples:
+      tuisim log bands last
+      tuisim log events log.csv --at 50 --hysteresis 5 --json
+      tuisim run prog.py | tuisim log summary -
+      tuisim log resample last --telemetry --period 0.5 --out half.parquet
+      tuisim log plot last --facets --out chart.svg
+      tuisim log plot last --telemetry --variable y_mm --against x_mm
+      tuisim log report last
+    """,
+)
+"""`tuisim log`."""

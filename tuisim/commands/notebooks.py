@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.commands import exit_status
-from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines
-from tuisim.commands.tables import table
+from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
 from tuisim.errors import ConfigError, counted
 from tuisim.notebook.cells import NotebookProgram, chosen_programs, is_notebook, notebook_programs, notebooks_in
 from tuisim.runs.run_folder import StoredRun

@@ -7,7 +7,6 @@ line over the defaults.
 from __future__ import annotations
 
 import os
-from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +14,8 @@ from pathlib import Path
 from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, known_programs_of
 from tuisim.config.build import build_run_spec
-from tuisim.config.options import ARGUMENTS_FOLLOW, RobotChoice, Settings, given, settings_of
+from tuisim.config.command_line import Arguments
+from tuisim.config.options import ARGUMENTS_FOLLOW, RobotChoice, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, read_program
 from tuisim.config.robots import choose_robot
 from tuisim.config.worlds import WorldFile, load_world, means_world
@@ -42,8 +42,8 @@ class Prepared:
     """Its name in a table; empty for the program's name."""
 
 
-def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
-    """Check that the words after `--` belong to exactly one program.
+def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
+    """Check that the words after `--`, if any, belong to exactly one program.
 
     Args:
         words: Programs and worlds, as the user named them.
@@ -52,6 +52,8 @@ def check_arguments(words: Sequence[str], arguments: Namespace) -> None:
     Raises:
         ConfigError: there is no program, more than one, or a notebook.
     """
+    if "arguments" not in arguments.settings:
+        return
     programs = [word for word in words if not means_world(word)]
     if getattr(arguments, "run", None) is not None:
         raise ConfigError("a stored run has its own arguments", "leave them out", key=ARGUMENTS_FOLLOW)
@@ -86,28 +88,28 @@ def find_program(word: str) -> Path:
     return path
 
 
-def _world(words: Sequence[str], arguments: Namespace) -> WorldFile | None:
+def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     """Load the world that is named as a word or with `--world`, if any."""
     switch = arguments.world
     named = [word for word in words if means_world(word)] + ([] if switch is None else [switch])
     if len(named) > 1:
         raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
-    return load_world(named[0], given(arguments).get("mats")) if named else None
+    return load_world(named[0], arguments.settings.get("mats")) if named else None
 
 
-def _prepared(word: str | None, world: WorldFile | None, arguments: Namespace) -> Prepared:
+def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments) -> Prepared:
     in_world = world.settings if world else {}
     if word is None:
-        if "arguments" in arguments:
+        if "arguments" in arguments.settings:
             named = world.path if world else arguments.world
             raise ConfigError(f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW)
-        settings = settings_of(in_world, given(arguments))
+        settings = settings_of(in_world, arguments.settings)
         return Prepared(None, settings, _spec(settings), world)
     return _of_source(read_program(find_program(word)), world, arguments)
 
 
-def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
-    settings = settings_of(file.switches, world.settings if world else {}, given(arguments))
+def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Arguments) -> Prepared:
+    settings = settings_of(file.switches, world.settings if world else {}, arguments.settings)
     prelude = settings.preload or file.program.prelude
     program = replace(file.program, prelude=prelude, arguments=settings.arguments)
     return Prepared(program, settings, _spec(settings), world)
@@ -121,7 +123,7 @@ def _spec(settings: Settings) -> RunSpec:
     return build_run_spec(replace(settings, robot=robot) if robot.notes else settings)
 
 
-def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace) -> Prepared:
+def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Arguments) -> Prepared:
     try:
         return _of_source(file, world, arguments)
     except ConfigError as error:
@@ -129,7 +131,7 @@ def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Namespace)
         raise ConfigError(error.message, error.hint, file="" if error.file else file.program.name) from None
 
 
-def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
+def prepare_app(words: Sequence[str], arguments: Arguments) -> Prepared:
     """Prepare the app for nothing, a program, a world, or a program in a world.
 
     Args:
@@ -149,7 +151,7 @@ def prepare_app(words: Sequence[str], arguments: Namespace) -> Prepared:
     return _prepared(word, world, arguments)
 
 
-def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tuple[StoredRun, Prepared]:
+def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tuple[StoredRun, Prepared]:
     """Load a stored run for the app.
 
     Args:
@@ -161,7 +163,7 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tupl
         ConfigError: a program, a world or a switch of a run is given too.
         LogError: there is no such run, or it is damaged.
     """
-    chosen = given(arguments)
+    chosen = arguments.settings
     if words or arguments.world or (wrong := sorted(chosen.keys() - _OF_THE_APP)):
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
         raise ConfigError(f"a stored run has its own program and world: remove {what}", "name one", key="--run")
@@ -170,7 +172,7 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Namespace) -> tupl
     return stored, Prepared(opened, settings_of(chosen), stored.spec)
 
 
-def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared | NotRun]:
+def prepare_runs(words: Sequence[str], arguments: Arguments) -> list[Prepared | NotRun]:
     """Prepare programs to run one after another, all in the named world, if any.
 
     An error in one notebook of a folder does not prevent the others from running.
@@ -200,9 +202,9 @@ def prepare_runs(words: Sequence[str], arguments: Namespace) -> list[Prepared | 
     return prepared
 
 
-def _of_folder(word: str, world: WorldFile | None, arguments: Namespace) -> list[Prepared | NotRun]:
+def _of_folder(word: str, world: WorldFile | None, arguments: Arguments) -> list[Prepared | NotRun]:
     # Errors of the command line are raised once, not for each cell.
-    build_run_spec(settings_of(world.settings if world else {}, given(arguments)))
+    build_run_spec(settings_of(world.settings if world else {}, arguments.settings))
     found: list[Prepared | NotRun] = []
     for path in check_folder(word, run_all=arguments.all):
         label = os.path.relpath(path, word)

@@ -3,65 +3,88 @@
 from __future__ import annotations
 
 import sys
-from argparse import Namespace
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
+from tuisim.breakpoints import parse_breakpoints, parse_watch
 from tuisim.commands import exit_status
-from tuisim.commands.breakpoints import STOP, BreakOptions, BreakTeller, add_break_arguments, check_breaks
 from tuisim.commands.echo import echo_error
+from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
-from tuisim.commands.outputs import check_targets
 from tuisim.commands.press import parse_press, press_actions
 from tuisim.commands.progress import Progress, is_watched, tell
 from tuisim.commands.relay import Follower, Interrupts
-from tuisim.commands.resolve import Prepared, prepare_runs
-from tuisim.config.options import SwitchParser, number
+from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
+from tuisim.config.command_line import Arguments, Value, argument, choice, command, option, shared_options
+from tuisim.config.options import APP, PANEL, number
+from tuisim.core.geometry import shown_heading_deg
+from tuisim.core.profile import NS_PER_S
 from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted
-from tuisim.logs.export import EXPORTERS, export_samples, export_telemetry
+from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
+from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
+from tuisim.source import source_lines
 
 MAX_TIME_LIMIT_S = 1e6
 DEFAULT_TIME_LIMIT_S = 600.0
+MOST_CHARACTERS = 200
+GO, STOP = "go", "stop"
+_limit = number(0.001, MAX_TIME_LIMIT_S)
+_REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
+_OPTIONS = (
+    argument("programs", "PROGRAM…", lambda: names_of("programs"), nargs=-1),
+    option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
+    option("--export", multiple=True, metavar="FILE", type=Value(), group=_REPORTS,
+           help=f"Write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated."),
+    option("--telemetry", metavar="FILE", type=Value(), group=_REPORTS,
+           help="Write the telemetry of a single program, one row per tick."),
+    option("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", group=_REPORTS,
+           type=Value(lambda text: _limit(text, "--timeout")),
+           help=f"Stop after this simulated time in seconds ({DEFAULT_TIME_LIMIT_S:g})."),
+    option("--input", multiple=True, metavar="TEXT", group=_REPORTS, help="Answer an input(); may be repeated."),
+    option("--press", multiple=True, metavar="BUTTON@S", type=Value(parse_press), group=_REPORTS,
+           help="Press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated."),
+    option("--all", is_flag=True, group=_REPORTS,
+           help="Run all program cells of a notebook, or of a folder's notebooks; print a table."),
+    option("--json", is_flag=True, group=_REPORTS,
+           help="Print one JSON object per program; program output goes to stderr."),
+    option("--break", "breaks", multiple=True, metavar="TEXT", group=_BREAKPOINTS,
+           help="Set a breakpoint, reported on stderr: 12, 12 if x > 3, left.red% < 10, left.color changes, "
+           "ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; may be repeated."),
+    option("--watch", "watches", multiple=True, metavar="EXPR", group=_BREAKPOINTS,
+           help="Evaluate an expression at each breakpoint; may be repeated."),
+    choice("--break-then", (GO, STOP), default=GO, group=_BREAKPOINTS,
+           help="What to do after a breakpoint (go); stop ends the run with exit code 3."),
+)  # fmt: skip
 
 
-def add_arguments(parser: SwitchParser) -> None:
-    """Declare the arguments of `tuisim run`."""
-    limit = number(0.001, MAX_TIME_LIMIT_S)
-    parser.description = (
-        "Run programs without the app. Program output goes to stdout, the rest to stderr. Exit "
-        "code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or breakpoint (the worst counts)."
-    )
-    parser.usage = "tuisim run [WORLD.toml] PROGRAM… [switches] [--export FILE]… [--json] … [-- ARGUMENTS]"
-    parser.add_programs("programs")
-    add = parser.add_argument_group("data and limits").add_argument
-    add("--export", action="append", default=[], metavar="FILE",
-        help=f"write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated")  # fmt: skip
-    add("--telemetry", metavar="FILE", help="write the telemetry of a single program, one row per tick")
-    add("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", type=lambda text: limit(text, "--timeout"),
-        help=f"simulated seconds allowed ({DEFAULT_TIME_LIMIT_S:g})")  # fmt: skip
-    add("--input", action="append", default=[], metavar="TEXT", help="answer an input(); may be repeated")
-    add("--press", action="append", default=[], metavar="BUTTON@S", type=parse_press,
-        help="press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated")  # fmt: skip
-    add_break_arguments(parser)
-    add(
-        "--all",
-        action="store_true",
-        help="run all program cells of a notebook, or of a folder's notebooks; print a table",
-    )
-    add("--json", action="store_true", help="print one JSON object per program; program output goes to stderr")
-    parser.add_switches()
+@command(
+    *_OPTIONS,
+    *shared_options(hidden=(APP, PANEL), names=names_of),
+    options_metavar="[OPTIONS]",
+    passes_arguments=True,
+    help="""Run programs without the app.
 
+    A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world file or an example by name. Its
+    output goes to stdout, everything else to stderr; the words after -- are its arguments.
 
-def execute(arguments: Namespace) -> int:
+    Exit code: 0 finished, 1 the program raised, 2 wrong input, 3 stopped by a limit or a breakpoint. The worst
+    counts.
+    """,
+)
+def run(**given: Any) -> int:
     """Run the programs and return the worst exit code.
 
     Raises:
-        ConfigError: a program, a world, a mat or a switch is wrong; nothing was run.
+        ConfigError: a program, a world, a mat or an option is wrong; nothing was run.
         ExportError: a target cannot be written; checked before anything is run.
         HostError: a child process could not be started, or sent invalid data.
     """
+    arguments = Arguments(**given)
+    check_arguments(arguments.programs, arguments)
     if listed := to_list(arguments.programs, run_all=arguments.all):
         _check_only_listed(arguments, len(listed))
         print_list(arguments.programs[0], listed)
@@ -83,7 +106,88 @@ def execute(arguments: Namespace) -> int:
     return max(code, interrupts.exit_code)
 
 
-def _export(done: Sequence[StoredRun], arguments: Namespace) -> None:
+@dataclass(frozen=True, slots=True)
+class BreakOptions:
+    """The values of `--break`, `--watch` and `--break-then`."""
+
+    breaks: tuple[str, ...]
+    watches: tuple[str, ...]
+    stops: bool
+    """Whether the first breakpoint ends the run."""
+
+
+def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]) -> None:
+    """Check breakpoints and watches before anything is run.
+
+    Raises:
+        ConfigError: a text is not a breakpoint, or not valid for a program's robot; a watch is not an expression,
+            or there are watches without breakpoints.
+    """
+    for one in prepared:
+        parse_breakpoints(texts, one.spec.robot)
+    for watch in watches:
+        parse_watch(watch)
+    if watches and not texts:
+        raise ConfigError("needs a breakpoint", "add one with --break, such as --break 'time 1'", key="watch")
+
+
+class BreakTeller:
+    """Reports the breakpoints of one run on stderr.
+
+    Args:
+        handle: The run.
+        options: Breakpoints, watches, and whether to stop.
+    """
+
+    def __init__(self, handle: RunHandle, options: BreakOptions) -> None:
+        self._handle, self._options = handle, options
+        self._held: Paused | None = None
+        self._source = source_lines(handle.program.text)
+        self.stopped = False
+        """Whether a breakpoint has ended the run."""
+
+    def take(self, event: Message) -> None:
+        """Handle an event of the run: inspect it when it pauses, then report and resume or stop it."""
+        match event:
+            case Paused():
+                self._held = event
+                self._handle.send(Inspect(self._options.watches))
+            case Inspected() if self._held is not None:
+                for line in self._told(self._held, event):
+                    echo_error(line)
+                self._held = None
+                self._go_on()
+
+    def _go_on(self) -> None:
+        if self._options.stops:
+            self.stopped = True
+            self._handle.stop()
+        else:
+            self._handle.send(Resume())
+
+    def _told(self, held: Paused, looked: Inspected) -> list[str]:
+        """Return the lines of the report: position, variables, watches, what the program waits for."""
+        name = held.file or self._handle.program.path or self._handle.program.name
+        value = f" ({held.value})" if held.value else ""
+        thread = f", thread {held.thread}" if len(looked.threads) > 1 else ""
+        last = self._handle.telemetry.last()
+        pose = (
+            f", x {last.x_mm:.2f} mm, y {last.y_mm:.2f} mm, heading {shown_heading_deg(last.heading_deg):.2f}°"
+            if last
+            else ""
+        )
+        where = f"{name}:{held.line}, {held.time_ns / NS_PER_S:.3f} s, tick {held.tick}{pose}{thread}"
+        lines = [f"break {held.detail}{value}: {where}"]
+        if not held.file and 0 < held.line <= len(self._source):
+            lines.append(f"    {held.line} | {self._source[held.line - 1].strip()}")
+        lines += [f"    {variable.name} = {variable.value}" for variable in looked.variables]
+        lines += [f"    {watch.text} → {watch.value or watch.error}" for watch in looked.watches]
+        lines += [f"    {note}" for note in (looked.waiting, looked.note) if note]
+        return [line if len(line) <= MOST_CHARACTERS or at == 0 else line[:MOST_CHARACTERS] + "…"
+                for at, line in enumerate(lines)]  # fmt: skip
+
+
+def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
     """Write every export; report failures on stderr, and raise the first after all have been tried."""
     writers: list[tuple[str, Callable[[str], None]]] = [
         (target, lambda target: export_samples(done, target)) for target in arguments.export
@@ -108,7 +212,7 @@ def _export(done: Sequence[StoredRun], arguments: Namespace) -> None:
         raise errors[0]
 
 
-def _check_only_listed(arguments: Namespace, count: int) -> None:
+def _check_only_listed(arguments: Arguments, count: int) -> None:
     """Raise ConfigError if an export or JSON is asked for where a notebook is only listed."""
     if arguments.json or arguments.export or arguments.telemetry is not None:
         (word,) = arguments.programs
@@ -116,7 +220,7 @@ def _check_only_listed(arguments: Namespace, count: int) -> None:
 
 
 def _run_all(
-    prepared: Sequence[Prepared | NotRun], arguments: Namespace, store: RunStore, interrupts: Interrupts
+    prepared: Sequence[Prepared | NotRun], arguments: Arguments, store: RunStore, interrupts: Interrupts
 ) -> tuple[int, list[tuple[str, StoredRun | None]]]:
     """Run the programs in turn until done or interrupted; return the worst exit code, and (label, run) pairs."""
     results: list[tuple[str, StoredRun | None]] = []
@@ -154,7 +258,7 @@ def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
 
 
 def _run_one(
-    one: Prepared, arguments: Namespace, store: RunStore, interrupts: Interrupts, how_far: Callable[[RunHandle], None]
+    one: Prepared, arguments: Arguments, store: RunStore, interrupts: Interrupts, how_far: Callable[[RunHandle], None]
 ) -> tuple[int, RunHandle]:
     """Run one program to its end; return exit code and run."""
     assert one.program is not None

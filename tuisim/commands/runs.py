@@ -5,22 +5,19 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tuisim.commands.echo import echo, echo_error, echo_json, echo_json_head, echo_lines
+from tuisim.commands.echo import echo, echo_error, echo_json, echo_json_head, echo_lines, table
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.logs.diff import diff_text
-from tuisim.commands.outputs import check_targets
 from tuisim.commands.progress import Progress, tell
-from tuisim.commands.tables import table
-from tuisim.config.options import SwitchParser, nearest
+from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option, short_help
 from tuisim.errors import ConfigError, LogError, counted
-from tuisim.logs.export import EXPORTERS, export_samples, export_telemetry
+from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Unended
 from tuisim.runs.frames import damage_note
 from tuisim.runs.handle import ASK_AGAIN_S
@@ -29,7 +26,6 @@ from tuisim.runs.rerun import rerun, same
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 
-ACTIONS = ("list", "show", "rm", "rerun", "export", "compact")
 QUICK_BYTES = 8 << 20
 """Samples are not counted in outputs longer than this."""
 
@@ -41,63 +37,94 @@ MAX_SUMMARY = 40
 """Maximum characters of a summary in the list."""
 
 
-def add_arguments(parser: SwitchParser) -> None:
-    """Declare the arguments of `tuisim runs`."""
-    parser.usage = (
-        "tuisim runs [list] [--json]\n"
-        "       tuisim runs show RUN… [--json]\n"
-        "       tuisim runs rm RUN…|--older-than 30d\n"
-        "       tuisim runs rerun RUN… [--json]\n"
-        "       tuisim runs export RUN… FILE… [--telemetry FILE]\n"
-        "       tuisim runs compact RUN…|--all [--json]"
-    )
-    parser.description = (
-        "List, show, export or remove stored runs.\n\n"
-        "A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.\n"
-        f"Runs of {COMPACT_TICKS} ticks or more are compacted when they end; compaction is lossless."
-    )
-    parser.add_argument("action", nargs="?", default="list", metavar="|".join(ACTIONS), help="what to do")
-    parser.add_argument("words", nargs="*", metavar="RUN", help=f"runs; for export also files: {', '.join(EXPORTERS)}")
-    parser.add_argument("--telemetry", metavar="FILE", help="export the telemetry of a single run, one row per tick")
-    parser.add_argument("--all", action="store_true", help="compact every finished run")
-    parser.add_argument("--older-than", metavar="AGE", help="remove finished runs older than this: 12h, 30d, 8w")
-    parser.add_argument("--json", action="store_true", help="print JSON")
+_runs = argument("words", "RUN…", lambda: ("last",), nargs=-1)
 
 
-def execute(arguments: Namespace) -> int:
-    """Run the action.
+def _need(words: Sequence[str], action: str) -> None:
+    if not words:
+        raise ConfigError("which run?", f"see `tuisim runs {action} --help`", key=action)
 
-    Raises:
-        ConfigError: no such action, or arguments that it does not accept.
-        LogError: no such run.
-        ExportError: a target cannot be written.
-    """
-    action, words, store = arguments.action, arguments.words, RunStore()
-    if arguments.older_than is not None and action != "rm":
-        raise ConfigError("belongs to rm", "`tuisim runs rm --older-than 30d`", key="--older-than")
-    match action:
-        case "list" if not words:
-            _list(store, as_json=arguments.json)
-        case "show" if words:
-            for run in _load(store, words):
-                _show(run, as_json=arguments.json)
-        case "rm" if words or arguments.older_than is not None:
-            with Progress("rm"):
-                _remove(store, words, arguments.older_than)
-        case "rerun" if words:
-            with Progress("rerun"):
-                return max(_rerun(run, as_json=arguments.json) for run in _load(store, words))
-        case "compact" if words or arguments.all:
-            with Progress("compact"):
-                return _compact(store, words, as_json=arguments.json)
-        case "export":
-            with Progress("export"):
-                _export(store, words, arguments.telemetry)
-        case _ if action not in ACTIONS:
-            raise ConfigError(f"no such action {action!r}", nearest(action, ACTIONS), key="runs")
-        case _:
-            raise ConfigError("which run?" if not words else "takes no run", "see `tuisim runs --help`", key=action)
+
+@command(AS_JSON, name="list")
+def list_runs(as_json: bool) -> int:
+    """List the stored runs and their sizes."""
+    _list(RunStore(), as_json=as_json)
     return 0
+
+
+@command(_runs, AS_JSON)
+def show(words: Sequence[str], as_json: bool) -> int:
+    """Show how a run ended, what it printed and when."""
+    _need(words, "show")
+    for run in _load(RunStore(), words):
+        _show(run, as_json=as_json)
+    return 0
+
+
+@command(
+    _runs,
+    option("--older-than", metavar="AGE", help="Remove finished runs older than this: 12h, 30d, 8w."),
+)
+def rm(words: Sequence[str], older_than: str | None) -> int:
+    """Remove runs."""
+    if older_than is None:
+        _need(words, "rm")
+    with Progress("rm"):
+        _remove(RunStore(), words, older_than)
+    return 0
+
+
+@command(_runs, AS_JSON, name="rerun")
+def rerun_runs(words: Sequence[str], as_json: bool) -> int:
+    """Run again, and compare with what is stored.
+
+    Exit code: 0 if all are bit-identical, else 1.
+    """
+    _need(words, "rerun")
+    with Progress("rerun"):
+        return max(_rerun(run, as_json=as_json) for run in _load(RunStore(), words))
+
+
+@command(
+    argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
+    option("--telemetry", metavar="FILE", type=Value(), help="Export the telemetry of a single run, one row per tick."),
+    help=f"Export samples, or the telemetry of one run.\n\nA FILE ends in {', '.join(EXPORTERS)}.",
+)
+def export(words: Sequence[str], telemetry: str | None) -> int:
+    """Export samples or telemetry of runs."""
+    with Progress("export"):
+        _export(RunStore(), words, telemetry)
+    return 0
+
+
+@command(
+    _runs,
+    option("--all", "every", is_flag=True, help="Compact every finished run."),
+    AS_JSON,
+    help="Compress recordings to a few bytes per tick, losslessly. "
+    f"Runs of {COMPACT_TICKS} ticks or more are compressed when they end.",
+)
+def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
+    """Compact the named runs, or all finished ones."""
+    if not every:
+        _need(words, "compact")
+    with Progress("compact"):
+        return _compact(RunStore(), words, as_json=as_json)
+
+
+_ACTIONS = {action.name or "": action for action in (list_runs, show, export, rerun_runs, compact, rm)}
+runs = Group(
+    "runs",
+    {name: short_help(action) for name, action in _ACTIONS.items()},
+    _ACTIONS.__getitem__,
+    default="list",
+    subcommand_metavar="[COMMAND] …",
+    help="""List, show, export or remove stored runs.
+
+    A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.
+    """,
+)
+"""`tuisim runs`."""
 
 
 def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:

@@ -1,16 +1,15 @@
-"""The switches shared by the command line and a program's magic line, and the settings that they set.
+"""The options shared by the command line and a program's magic line, and the settings that they set.
 
-To add a switch: add a line to `SWITCHES`, and its field to `Settings`.
+To add an option: add a line to `OPTIONS`, and its field to `Settings`.
 """
 
 from __future__ import annotations
 
-import argparse
 import difflib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NoReturn
+from typing import Any
 
 from tuisim.core.parts import BeaconSpec, RemotePress
 from tuisim.core.profile import ProfileSpec
@@ -47,7 +46,7 @@ class RobotChoice:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The settings made by switches and a world file. None: the mat, robot, profile or program decides."""
+    """The settings made by options and a world file. None: the mat, robot, profile or program decides."""
 
     background: str = "Empty_Map"
     """The name of a mat, or the path of an image."""
@@ -93,7 +92,7 @@ class Settings:
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """One line of `SWITCHES`."""
+    """One line of `OPTIONS`."""
 
     group: str
     flags: tuple[str, ...]
@@ -101,11 +100,11 @@ class Option:
     """The field of `Settings` that it sets."""
     help: str
     metavar: str = ""
-    """The name of its value in the help; empty for a switch without a value."""
+    """The name of its value in the help; empty for an option without a value."""
     convert: Callable[[str, str], Any] | None = None
     """Convert the value's text to the value of the field; the second argument is the flag, for errors."""
     panel: str = ""
-    """The panel that a switch without a value shows or hides; empty if the switch sets its field to `value`."""
+    """The panel that an option without a value shows or hides; empty if the option sets its field to `value`."""
     value: bool = True
     magic_flags: tuple[str, ...] = ()
     """Further names in a magic line only, because they mean something else on the command line."""
@@ -149,7 +148,9 @@ def whole(low: int, high: int) -> Callable[[str, str], int]:
     return convert
 
 
-def _one_of(allowed: Sequence[str]) -> Callable[[str, str], str]:
+def one_of(allowed: Sequence[str]) -> Callable[[str, str], str]:
+    """Return a converter that checks the text after a flag; it raises ConfigError for other texts."""
+
     def convert(text: str, flag: str) -> str:
         if text not in allowed:
             raise ConfigError(f"no such value {text!r}", f"one of {', '.join(allowed)}", key=flag)
@@ -165,7 +166,7 @@ def _name(text: str, flag: str) -> str:
 
 
 def _on_off(text: str, flag: str) -> bool:
-    return _one_of(("on", "off"))(text, flag) == "on"
+    return one_of(("on", "off"))(text, flag) == "on"
 
 
 def pen_color(text: str, flag: str) -> str:
@@ -196,126 +197,64 @@ def _speed(text: str, flag: str) -> float:
 _position = number(-MAX_POSITION_MM, MAX_POSITION_MM)
 _angle = number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
 
-WORLD, RUN, APP, PANEL = "world", "run", "app", "panels (app)"
+WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
 
-SWITCHES: tuple[Option, ...] = (
+OPTIONS: tuple[Option, ...] = (
     Option(
-        WORLD, ("-b", "--background"), "background", "a mat of `tuisim backgrounds`, or an image file", "MAT", _name
+        WORLD, ("-b", "--background"), "background", "A mat of `tuisim backgrounds`, or an image file.", "MAT", _name
     ),
-    Option(WORLD, ("--mats",), "mats", "folder of images that `-b` finds by name", "FOLDER", _name),
+    Option(WORLD, ("--mats",), "mats", "Folder of images that `-b` finds by name.", "FOLDER", _name),
     Option(
         WORLD,
         ("--background-fit",),
         "background_fit",
-        "how an image is placed on the field",
+        "How an image is placed on the field.",
         "|".join(BACKGROUND_FITS),
-        _one_of(BACKGROUND_FITS),
+        one_of(BACKGROUND_FITS),
     ),
-    Option(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "a robot of `tuisim robots`, or a file", "ROBOT", _name),
-    Option(WORLD, ("-o", "--obstacles"), "obstacles", "a set of `tuisim obstacles`, or a file", "NAME", _name),
-    Option(WORLD, ("--walls",), "walls", "walls on the edges of the field", "on|off", _on_off),
-    Option(WORLD, ("--solid",), "solid", "obstacles and walls stop the robot"),
-    Option(WORLD, ("--no-solid",), "solid", "the robot drives through obstacles and walls", value=False),
-    Option(WORLD, ("-x", "--x", "--xpos"), "x_mm", "start x in mm", "MM", _position),
-    Option(WORLD, ("-y", "--y", "--ypos"), "y_mm", "start y in mm", "MM", _position),
-    Option(WORLD, ("-a", "--angle"), "heading_deg", "start heading, counter-clockwise from +x", "DEG", _angle),
-    Option(WORLD, ("-N", "--sensornoise"), "light_noise", "light noise, 0 … 128", "N", whole(0, MAX_LIGHT_NOISE)),
-    Option(WORLD, ("-M", "--motornoise"), "motor_noise", "motor noise, 0 … 500", "N", whole(0, MAX_MOTOR_NOISE)),
-    Option(WORLD, ("-p", "--pendown"), "pen_down", "start with the pen down"),
-    Option(WORLD, ("-P", "--pencolor"), "pen_color", "any CSS colour name, or #rrggbb", "COLOUR", pen_color),
-    Option(WORLD, ("--pen-width",), "pen_width_mm", "width of the trace", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
-    Option(WORLD, ("--pen-marks",), "pen_marks", "the sensors see what the pen draws"),
-    Option(RUN, ("--profile",), "profile", "a profile of `tuisim profiles`, or a file", "NAME", _name),
-    Option(RUN, ("--seed",), "seed", "seed for noise and `random`", "N", whole(0, MAX_SEED)),
-    Option(RUN, ("--speed",), "speed", "max, or a multiple of real time", "N", _speed),
-    Option(RUN, ("--preload",), "preload", "names predefined for the program", "|".join(PRELOADS), _one_of(PRELOADS)),
-    Option(APP, ("-R", "--autorun"), "autorun", "run at once"),
-    Option(APP, ("-C", "--clear"), "clear_trace", "start with a clear trace"),
-    Option(APP, ("-u", "--ultrasound"), "rays", "show the ultrasonic rays"),
-    Option(APP, ("-q", "--quiet"), "quiet", "make no sound"),
-    Option(APP, ("--fps",), "fps", "maximum frames per second, 1 … 60", "N", whole(1, 60)),
-    Option(APP, ("--colors",), "colors", "auto, truecolor, 256, 16 or none", "DEPTH", _one_of(COLOR_DEPTHS)),
-    Option(PANEL, ("-O", "--output"), "panels_on", "show the output", panel="output"),
-    Option(PANEL, ("-A", "--array"), "panels_on", "show the sensor arrays", panel="arrays"),
-    Option(PANEL, ("-c", "--chart"), "panels_on", "show the chart", panel="chart"),
-    Option(PANEL, ("-i", "--instrumentation"), "panels_on", "show the instrumentation", panel="instrumentation"),
-    Option(PANEL, ("-z", "--noisecontrols"), "panels_on", "show the noise controls", panel="noise"),
-    Option(PANEL, ("-Z", "--settings"), "panels_on", "show the settings", panel="settings"),
-    Option(PANEL, ("-X", "--positioning"), "panels_on", "show the positioning controls", panel="positioning"),
-    Option(PANEL, ("-D", "--code"), "panels_on", "show the code", panel="code"),
-    Option(PANEL, ("-W", "--hideworld"), "panels_off", "hide the world", panel="world", magic_flags=("--world",)),
-    Option(PANEL, ("-H", "--hidecontrols", "--hide"), "panels_off", "hide the simulator controls", panel="controls"),
+    Option(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "A robot of `tuisim robots`, or a file.", "ROBOT", _name),
+    Option(WORLD, ("-o", "--obstacles"), "obstacles", "A set of `tuisim obstacles`, or a file.", "NAME", _name),
+    Option(WORLD, ("--walls",), "walls", "Walls on the edges of the field.", "on|off", _on_off),
+    Option(WORLD, ("--solid",), "solid", "Obstacles and walls stop the robot."),
+    Option(WORLD, ("--no-solid",), "solid", "The robot drives through obstacles and walls.", value=False),
+    Option(WORLD, ("-x", "--x", "--xpos"), "x_mm", "Start x in mm.", "MM", _position),
+    Option(WORLD, ("-y", "--y", "--ypos"), "y_mm", "Start y in mm.", "MM", _position),
+    Option(WORLD, ("-a", "--angle"), "heading_deg", "Start heading, counter-clockwise from +x.", "DEG", _angle),
+    Option(WORLD, ("-N", "--sensornoise"), "light_noise", "Light noise, 0 … 128.", "N", whole(0, MAX_LIGHT_NOISE)),
+    Option(WORLD, ("-M", "--motornoise"), "motor_noise", "Motor noise, 0 … 500.", "N", whole(0, MAX_MOTOR_NOISE)),
+    Option(WORLD, ("-p", "--pendown"), "pen_down", "Start with the pen down."),
+    Option(WORLD, ("-P", "--pencolor"), "pen_color", "Colour of the pen: a CSS name, or #rrggbb.", "COLOUR", pen_color),
+    Option(WORLD, ("--pen-width",), "pen_width_mm", "Width of the trace.", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
+    Option(WORLD, ("--pen-marks",), "pen_marks", "The sensors see what the pen draws."),
+    Option(RUN, ("--profile",), "profile", "A profile of `tuisim profiles`, or a file.", "NAME", _name),
+    Option(RUN, ("--seed",), "seed", "Seed for noise and `random`.", "N", whole(0, MAX_SEED)),
+    Option(RUN, ("--speed",), "speed", "A multiple of real time, or max.", "N", _speed),
+    Option(RUN, ("--preload",), "preload", "Names predefined for the program.", "|".join(PRELOADS), one_of(PRELOADS)),
+    Option(APP, ("-R", "--autorun"), "autorun", "Run at once."),
+    Option(APP, ("-C", "--clear"), "clear_trace", "Start with a clear trace."),
+    Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays."),
+    Option(APP, ("-q", "--quiet"), "quiet", "Make no sound."),
+    Option(APP, ("--fps",), "fps", "Maximum frames per second, 1 … 60.", "N", whole(1, 60)),
+    Option(APP, ("--colors",), "colors", "Colours: auto, truecolor, 256, 16 or none.", "DEPTH", one_of(COLOR_DEPTHS)),
+    Option(PANEL, ("-O", "--output"), "panels_on", "Show the output.", panel="output"),
+    Option(PANEL, ("-A", "--array"), "panels_on", "Show the sensor arrays.", panel="arrays"),
+    Option(PANEL, ("-c", "--chart"), "panels_on", "Show the chart.", panel="chart"),
+    Option(PANEL, ("-i", "--instrumentation"), "panels_on", "Show the instrumentation.", panel="instrumentation"),
+    Option(PANEL, ("-z", "--noisecontrols"), "panels_on", "Show the noise controls.", panel="noise"),
+    Option(PANEL, ("-Z", "--settings"), "panels_on", "Show the settings.", panel="settings"),
+    Option(PANEL, ("-X", "--positioning"), "panels_on", "Show the positioning controls.", panel="positioning"),
+    Option(PANEL, ("-D", "--code"), "panels_on", "Show the code.", panel="code"),
+    Option(PANEL, ("-W", "--hideworld"), "panels_off", "Hide the world.", panel="world", magic_flags=("--world",)),
+    Option(PANEL, ("-H", "--hidecontrols", "--hide"), "panels_off", "Hide the simulator controls.", panel="controls"),
 )
-"""Every shared switch, in the order of the help."""
+"""Every shared option, in the order of the help."""
 
-PANELS = tuple(switch.panel for switch in SWITCHES if switch.panel)
-"""Every panel that a switch shows or hides."""
-
-
-class SwitchParser(argparse.ArgumentParser):
-    """An argument parser that raises ConfigError on bad input, and can add `SWITCHES`."""
-
-    def error(self, message: str) -> NoReturn:
-        """Raise a ConfigError instead of printing the usage.
-
-        Raises:
-            ConfigError: always.
-        """
-        text = message.removeprefix("argument ").replace("unrecognized arguments:", "no such switch or argument:")
-        raise ConfigError(text, f"see `{self.prog} --help`" if self.add_help else "")
-
-    def add_programs(self, dest: str) -> None:
-        """Add the arguments that a magic line cannot have: the programs, and `--world`."""
-        what = "a Python file, a notebook, one of its cells (FILE.ipynb#2), or an example by name"
-        self.add_argument(dest, nargs="*", metavar="PROGRAM", help=what)
-        self.add_argument("--world", metavar="FILE", help="a world file; may also precede the program")
-
-    def add_switches(self, *, magic: bool = False) -> None:
-        """Add every shared switch; the namespace has no attribute for a switch that is not given.
-
-        Args:
-            magic: Whether a magic line is parsed, not the command line.
-        """
-        groups = {group: self.add_argument_group(group) for group in dict.fromkeys(s.group for s in SWITCHES)}
-        for switch in SWITCHES:
-            how: dict[str, Any] = {"dest": switch.field, "default": argparse.SUPPRESS, "help": switch.help}
-            if switch.panel:
-                how |= {"action": "append_const", "const": switch.panel}
-            elif switch.metavar:
-                how |= {"type": _converter(switch), "metavar": switch.metavar}
-            else:
-                how |= {"action": "store_const", "const": switch.value}
-            groups[switch.group].add_argument(*switch.flags, *(switch.magic_flags if magic else ()), **how)
-
-
-def _converter(switch: Option) -> Callable[[str], Any]:
-    convert, flag = switch.convert, switch.flags[0]
-    assert convert is not None
-    return lambda text: convert(text, flag)
-
-
-_FIELDS = frozenset(switch.field for switch in SWITCHES) | {"arguments"}
-
-
-def given(namespace: argparse.Namespace) -> dict[str, Any]:
-    """Return the shared switches and program arguments that were given, keyed by field of `Settings`."""
-    found = {field: value for field, value in vars(namespace).items() if field in _FIELDS}
-    return {field: tuple(value) if isinstance(value, list) else value for field, value in found.items()}
-
-
-def parse_words(words: Sequence[str]) -> dict[str, Any]:
-    """Parse the words of a magic line and return its switches, keyed by field of `Settings`.
-
-    Raises:
-        ConfigError: a word is not a switch, or a value is wrong.
-    """
-    parser = SwitchParser(prog="tuisim", add_help=False, allow_abbrev=False)
-    parser.add_switches(magic=True)
-    return given(parser.parse_args(list(words)))
+PANELS = tuple(option.panel for option in OPTIONS if option.panel)
+"""Every panel that an option shows or hides."""
 
 
 def settings_of(*layers: Mapping[str, Any]) -> Settings:
-    """Merge layers of given switches: a later layer takes precedence, panels accumulate."""
+    """Merge layers of given options: a later layer takes precedence, panels accumulate."""
     settings = Settings()
     for layer in layers:
         panels = {

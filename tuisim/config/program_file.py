@@ -12,8 +12,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tuisim.config.command_line import parse_words
 from tuisim.config.folders import programs_folder
-from tuisim.config.options import nearest, parse_words
+from tuisim.config.options import nearest
 from tuisim.config.preludes import PRELUDE_TEXTS, PRELUDES
 from tuisim.errors import ConfigError
 from tuisim.source import Program, decode_source, source_lines

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from tuisim.atomic import replacing
 from tuisim.core.spec import to_plain
-from tuisim.errors import ExportError
+from tuisim.errors import ConfigError, ExportError
 from tuisim.logs.units import TIMEDELTA, WHOLE, unit_of
 from tuisim.runs.frames import samples_frame, telemetry_frame
 from tuisim.runs.run_folder import StoredRun
@@ -48,6 +48,22 @@ def check_target(path: str | Path) -> Path:
     for place in (target, companion_of(target)) if exporter.companion else (target,):
         check_place(place)
     return target
+
+
+def check_targets(targets: Iterable[str | Path]) -> None:
+    """Raise if a file cannot be written, or is named twice.
+
+    Raises:
+        ConfigError: two of them are the same file.
+        ExportError: one cannot be written.
+    """
+    seen: set[str] = set()
+    for target in targets:
+        check_target(target)
+        real = os.path.realpath(target)
+        if real in seen:
+            raise ConfigError(f"{real} is named twice", "give each export its own file", key="--export")
+        seen.add(real)
 
 
 def check_place(place: Path) -> None:

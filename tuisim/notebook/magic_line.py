@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import shlex
-from argparse import Namespace
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tuisim.config.options import SwitchParser, given, number
+from tuisim.config.command_line import Command, Value, help_of, option, parse, shared_options
+from tuisim.config.options import number
 from tuisim.errors import ConfigError
 
 MIN_REFRESH_S, MAX_REFRESH_S = 0.02, 60.0
@@ -44,21 +44,22 @@ class MagicWords:
     """The help text, if it was requested."""
 
 
-def _parser(magic: str) -> SwitchParser:
-    parser = SwitchParser(prog=f"%{magic}", add_help=False, allow_abbrev=False)
-    parser.add_switches(magic=True)
+def _command(magic: str) -> Command:
     refresh = number(MIN_REFRESH_S, MAX_REFRESH_S)
-    add = parser.add_argument_group("notebook").add_argument
-    add("-s", "--sim", metavar="NAME", help="variable that holds the simulator (roboSim)")
-    add("-h", "--help", action="store_true", help="show this")
-    add("-v", "--preview", action="store_true", help="show the program and its predefined names")
-    add("--previewcode", action="store_true", help="only return the text of the prelude")
-    add("-S", "--stop", action="store_true", help="has no effect: a program ends with its cell")
-    add("-m", "--move", action="store_true", help="move the robot back to its start")
-    add("-F", "--refresh", nargs="?", const=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S, metavar="S",
-        type=lambda text: refresh(text, "-F"), help="seconds between two redraws")  # fmt: skip
-    add("-L", "--collab", action="store_true", help="`roboSim.responder` answers the program")
-    return parser
+    group = "Notebook"
+    params = [
+        *shared_options(magic=True),
+        option("-s", "--sim", metavar="NAME", group=group, help="Variable that holds the simulator (roboSim)."),
+        option("-h", "--help", is_flag=True, group=group, help="Show this."),
+        option("-v", "--preview", is_flag=True, group=group, help="Show the program and its predefined names."),
+        option("--previewcode", is_flag=True, group=group, help="Only return the text of the prelude."),
+        option("-S", "--stop", is_flag=True, group=group, help="Has no effect: a program ends with its cell."),
+        option("-m", "--move", is_flag=True, group=group, help="Move the robot back to its start."),
+        option("-F", "--refresh", is_flag=False, flag_value=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S, metavar="S",
+               type=Value(lambda text: refresh(text, "-F")), group=group, help="Seconds between two redraws."),
+        option("-L", "--collab", is_flag=True, group=group, help="`roboSim.responder` answers the program."),
+    ]  # fmt: skip
+    return Command(f"%{magic}", params=params, add_help_option=False)
 
 
 def parse_line(line: str, magic: str) -> MagicWords:
@@ -67,17 +68,17 @@ def parse_line(line: str, magic: str) -> MagicWords:
     Raises:
         ConfigError: a word is no switch, or a value is wrong.
     """
-    parser = _parser(magic)
+    command = _command(magic)
     try:
         words = shlex.split(line)
     except ValueError as error:
         raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
     try:
-        found: Namespace = parser.parse_args(words)
+        found = parse(command, words)
     except ConfigError as error:
         raise ConfigError(error.message, f"see %{magic} -h" if not error.hint else error.hint) from None
     return MagicWords(
-        settings=given(found),
+        settings=found.settings,
         sim=found.sim,
         preview=found.preview,
         preview_code=found.previewcode,
@@ -85,7 +86,7 @@ def parse_line(line: str, magic: str) -> MagicWords:
         move_back=found.move,
         refresh_s=found.refresh,
         collaborative=found.collab,
-        help=parser.format_help() if found.help else "",
+        help=help_of(command) if found.help else "",
     )
 
 

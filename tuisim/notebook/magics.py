@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import shlex
 import sys
-from argparse import SUPPRESS, Namespace
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +18,7 @@ from tuisim.notebook import eds
 from tuisim.notebook.lab import Lab, roboSim
 
 if TYPE_CHECKING:
-    from tuisim.config.options import SwitchParser
+    from tuisim.config.command_line import Arguments, Command, Value
 
 MAX_INDEX = 1_000_000
 
@@ -77,13 +76,14 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
     return act
 
 
-Log = Callable[[Lab, Namespace], Any]
+Log = Callable[[Lab, "Arguments"], Any]
 
 
-def _whole(flag: str, low: int, high: int) -> Callable[[str], int]:
+def _whole(flag: str, low: int, high: int) -> Value:
+    from tuisim.config.command_line import Value
     from tuisim.config.options import whole
 
-    return lambda text: whole(low, high)(text, flag)
+    return Value(lambda text: whole(low, high)(text, flag))
 
 
 def _corners(text: str) -> tuple[int, ...]:
@@ -93,53 +93,57 @@ def _corners(text: str) -> tuple[int, ...]:
     return corners
 
 
-def _log_parser(magic: str) -> SwitchParser:
+def _log_command(magic: str) -> Command:
     """Return the parser of a magic that reads the log."""
-    from tuisim.config.options import SwitchParser
+    from tuisim.config.command_line import Command, Value, option
 
-    parser = SwitchParser(prog=f"%{magic}", add_help=False, allow_abbrev=False)
-    add = parser.add_argument
-    add("-s", "--sim", metavar="NAME", help="variable that holds the simulator (roboSim)")
-    add("-h", "--help", action="store_true", help="show this")
+    params = [
+        option("-s", "--sim", metavar="NAME", help="Variable that holds the simulator (roboSim)."),
+        option("-h", "--help", is_flag=True, help="Show this."),
+    ]
+    index = {"type": _whole("--index", -MAX_INDEX, MAX_INDEX), "default": -1, "metavar": "N"}
     if magic == "sim_data":
-        add("-c", "--clear", action="store_true", help="forget what was logged")
+        params.append(option("-c", "--clear", is_flag=True, help="Forget what was logged."))
     elif magic == "sim_robot_state":
-        add("-c", "--clear", action="store_true", help=SUPPRESS)
+        params.append(option("-c", "--clear", is_flag=True, hidden=True))
     elif magic == "sim_image_pair":
-        add("-i", "--index", "-p", "--pairindex", type=_whole("--index", -MAX_INDEX, MAX_INDEX), default=-1,
-            metavar="N", help="which pair, from 0; -1 is the last")  # fmt: skip
+        flags = ("-i", "--index", "-p", "--pairindex", "index")
+        params.append(option(*flags, **index, help="Which pair, from 0; -1 is the last."))
     else:
-        add("-i", "--index", type=_whole("--index", -MAX_INDEX, MAX_INDEX), default=-1, metavar="N",
-            help="which picture, from 0; -1 is the last")  # fmt: skip
-        add("-r", "--random", action="store_true", help="any picture")
-        add("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
-            help="the lightest grey that counts as dark (127)")  # fmt: skip
-        add("-c", "--crop", type=_corners, metavar="L,T,R,B", help="a part of the picture, in pixels")
-        add("-n", "--nocrop", action="store_true", help="the whole picture (unless --crop is given)")
-        add("-d", "--digitclass", action="store_true", help=SUPPRESS)
-    return parser
+        params += [
+            option("-i", "--index", **index, help="Which picture, from 0; -1 is the last."),
+            option("-r", "--random", is_flag=True, help="Any picture."),
+            option("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
+                   help="The lightest grey that counts as dark (127)."),
+            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B", help="A part of the picture, in pixels."),
+            option("-n", "--nocrop", is_flag=True, help="The whole picture (unless --crop is given)."),
+            option("-d", "--digitclass", is_flag=True, hidden=True),
+        ]  # fmt: skip
+    return Command(f"%{magic}", params=params, add_help_option=False)
 
 
 def _log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
     def read(line: str, cell: str | None) -> Any:
-        parser = _log_parser(magic)
+        from tuisim.config.command_line import help_of, parse
+
+        command = _log_command(magic)
         try:
-            found = parser.parse_args(shlex.split(line))
+            found = parse(command, shlex.split(line))
         except ValueError as error:
             raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
         if found.help:
-            print(parser.format_help())
+            print(help_of(command))
             return None
         return act(_lab(shell, found.sim), found)
 
     return read
 
 
-def _sim_data(lab: Lab, found: Namespace) -> Any:
+def _sim_data(lab: Lab, found: Arguments) -> Any:
     return lab.clear_datalog() if found.clear else lab.data()
 
 
-def _sim_robot_state(lab: Lab, found: Namespace) -> dict[str, Any]:
+def _sim_robot_state(lab: Lab, found: Arguments) -> dict[str, Any]:
     from IPython.display import display
 
     from tuisim.notebook.display import table_bundle
@@ -149,7 +153,7 @@ def _sim_robot_state(lab: Lab, found: Namespace) -> dict[str, Any]:
     return state
 
 
-def _sim_image_pair(lab: Lab, found: Namespace) -> None:
+def _sim_image_pair(lab: Lab, found: Arguments) -> None:
     from IPython.display import display
 
     from tuisim.notebook.display import picture_bundle
@@ -158,7 +162,7 @@ def _sim_image_pair(lab: Lab, found: Namespace) -> None:
         display(picture_bundle(picture.resize((160, 160), 0), "sensor"), raw=True)
 
 
-def _sim_bw_image_data(lab: Lab, found: Namespace) -> Any:
+def _sim_bw_image_data(lab: Lab, found: Arguments) -> Any:
     from random import randrange
 
     frame = lab.image_data()

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
 from pathlib import Path
 
-from tuisim.commands.echo import echo_json, echo_lines
-from tuisim.commands.tables import table
+from tuisim.commands.echo import echo_json, echo_lines, table
+from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError
 from tuisim.runs.diff import RunDiff, diff_runs, recording_in_words, setup_in_words
 from tuisim.runs.store import RunStore
 
 
-def diff(arguments: Namespace) -> int:
+def diff(arguments: Arguments) -> int:
     """Print where two stored runs differ; return 0 if they are the same, else 1.
 
     Raises:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
 from dataclasses import asdict
 from typing import Any
 
@@ -10,6 +9,7 @@ from tuisim.analysis.events import crossings
 from tuisim.commands.echo import echo_lines
 from tuisim.commands.logs.results import show_rows
 from tuisim.commands.logs.sources import names_of, open_sources
+from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError
 from tuisim.logs.bands import band_report, in_words
 from tuisim.logs.signals import QUANTILES, summary_of
@@ -17,7 +17,7 @@ from tuisim.logs.signals import QUANTILES, summary_of
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
 
 
-def summary(arguments: Namespace) -> int:
+def summary(arguments: Arguments) -> int:
     """Print count, min, max, mean, std and quantiles of every variable."""
     rows: list[dict[str, Any]] = []
     for log in open_sources(arguments):
@@ -33,7 +33,7 @@ def summary(arguments: Namespace) -> int:
     return 0
 
 
-def bands(arguments: Namespace) -> int:
+def bands(arguments: Arguments) -> int:
     """Print the plateaus of every variable: level, name, times, width."""
     rows: list[dict[str, Any]] = []
     notes = []
@@ -52,7 +52,7 @@ def bands(arguments: Namespace) -> int:
     return 0
 
 
-def events(arguments: Namespace) -> int:
+def events(arguments: Arguments) -> int:
     """Print where each variable crosses the threshold."""
     if arguments.at is None:
         raise ConfigError("at which threshold?", "such as --at 50", key="events")

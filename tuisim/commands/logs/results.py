@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from tuisim.commands.echo import CsvOut, echo_json, echo_lines
-from tuisim.commands.tables import table
+from tuisim.commands.echo import CsvOut, echo_json, echo_lines, table
+from tuisim.config.command_line import Arguments
 from tuisim.logs.export import check_target, export_frame
 
 if TYPE_CHECKING:
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 ANALYSIS_FORMAT = 1
 
 
-def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Namespace, formats: Mapping[str, str]) -> None:
+def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Arguments, formats: Mapping[str, str]) -> None:
     """Print or write rows that all have the same keys.
 
     Args:
@@ -36,7 +35,7 @@ def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Namespace, formats: 
         echo_lines(table(heads, [[_written(row[name], how) for name, how in formats.items()] for row in rows]))
 
 
-def show_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
+def show_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     """Output a frame: to a file, as JSON lines, or as CSV on stdout."""
     if arguments.out:
         write_frame(frame, arguments)
@@ -53,7 +52,7 @@ def _print_json(frame: pd.DataFrame) -> None:
         echo_json({name: _plain(cell) for name, cell in zip(names, cells, strict=True)})
 
 
-def write_frame(frame: pd.DataFrame, arguments: Namespace) -> None:
+def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     """Write a frame to the file `out`; the suffix selects the format."""
     check_target(arguments.out)
     metadata = {"format": ANALYSIS_FORMAT, "table": arguments.action, "columns": list(frame.columns)}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from tuisim.commands.logs.results import show_frame
 from tuisim.commands.logs.sources import names_of, the_source
+from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError
 from tuisim.logs.arrow import numbers_of, unique_names
 from tuisim.logs.columns import is_numeric
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def _each(arguments: Namespace, column: str, change: Callable[[Series], FloatArray]) -> int:
+def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:
     """Output a long frame with one more column, computed per variable."""
     import pandas as pd
 
@@ -38,22 +38,22 @@ def _each(arguments: Namespace, column: str, change: Callable[[Series], FloatArr
     return 0
 
 
-def derive(arguments: Namespace) -> int:
+def derive(arguments: Arguments) -> int:
     """Output the derivative of each variable, in units per second."""
     return _each(arguments, "derivative", lambda series: derivative(series.time_s, series.values))
 
 
-def integrate(arguments: Namespace) -> int:
+def integrate(arguments: Arguments) -> int:
     """Output the integral of each variable, in units times seconds."""
     return _each(arguments, "integral", lambda s: integral(s.time_s, s.values, arguments.between))
 
 
-def average(arguments: Namespace) -> int:
+def average(arguments: Arguments) -> int:
     """Output the centred rolling mean of each variable."""
     return _each(arguments, "average", lambda series: moving_average(series.values, arguments.width))
 
 
-def even(arguments: Namespace) -> int:
+def even(arguments: Arguments) -> int:
     """Output every variable resampled at a fixed period, one column each."""
     log = the_source(arguments)
     if arguments.period is None:
@@ -75,7 +75,7 @@ def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Be
     return pd.DataFrame(dict(zip(names, columns, strict=True)))
 
 
-def calculate(arguments: Namespace) -> int:
+def calculate(arguments: Arguments) -> int:
     """Output the log with a column computed from an expression."""
     if not arguments.expression:
         raise ConfigError("which expression?", "such as --expression '(left + right) / 2'", key="calc")
@@ -99,7 +99,7 @@ def wide_frame(log: Log) -> pd.DataFrame:
     return _sampled_at(moments, series)
 
 
-def reckon(arguments: Namespace) -> int:
+def reckon(arguments: Arguments) -> int:
     """Output the pose by dead reckoning from the wheel encoders, and its error."""
     arguments.telemetry = True
     log = the_source(arguments)
@@ -109,7 +109,7 @@ def reckon(arguments: Namespace) -> int:
     return 0
 
 
-def export(arguments: Namespace) -> int:
+def export(arguments: Arguments) -> int:
     """Write the log, or some of its variables, in another format."""
     if not arguments.out:
         raise ConfigError("to which file?", "such as --out log.parquet", key="export")
@@ -119,7 +119,7 @@ def export(arguments: Namespace) -> int:
     return 0
 
 
-def _chosen_part(log: Log, arguments: Namespace) -> LogTable:
+def _chosen_part(log: Log, arguments: Arguments) -> LogTable:
     """Return the rows of the chosen variables; of a wide log, their columns and those that are not variables."""
     if not arguments.variable:
         return log.table

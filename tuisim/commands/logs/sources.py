@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.commands.echo import echo_error
 from tuisim.commands.progress import tell
+from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError, LogError, listed
 from tuisim.logs.columns import choose_columns, time_in_words
 from tuisim.logs.log import Log
@@ -26,7 +27,29 @@ def is_file(word: str) -> bool:
     return word == STDIN or bool(path.suffix)
 
 
-def open_sources(arguments: Namespace) -> Iterator[Log]:
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The log to open: a file, or runs."""
+
+    file: str
+    """Empty for runs."""
+    runs: tuple[str, ...]
+
+
+def asked(arguments: Arguments) -> Asked:
+    """Return the file or the runs that the arguments name.
+
+    Raises:
+        ConfigError: a file together with another log.
+    """
+    words = arguments.words or ["last"]
+    files = [word for word in words if is_file(word)]
+    if files and len(words) > 1:
+        raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
+    return Asked(files[0] if files else "", () if files else tuple(words))
+
+
+def open_sources(arguments: Arguments) -> Iterator[Log]:
     """Yield the named logs: each file by itself, consecutive runs as one log.
 
     Raises:
@@ -47,7 +70,7 @@ def open_sources(arguments: Namespace) -> Iterator[Log]:
     yield from _open_runs(runs, arguments)
 
 
-def the_source(arguments: Namespace) -> Log:
+def the_source(arguments: Arguments) -> Log:
     """Return the single named log.
 
     Raises:
@@ -60,7 +83,7 @@ def the_source(arguments: Namespace) -> Log:
     return logs[0]
 
 
-def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
+def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
     if not words:
         return
     store = RunStore()
@@ -76,7 +99,7 @@ def _open_runs(words: Sequence[str], arguments: Namespace) -> Iterator[Log]:
         yield _with_notes(log.with_layout(layout))
 
 
-def _open_file(word: str, arguments: Namespace) -> Log:
+def _open_file(word: str, arguments: Arguments) -> Log:
     log = None
     for loaded in read_pieces(word, arguments.time, arguments.value, arguments.unit):
         log = loaded.log or log
@@ -97,7 +120,7 @@ def _with_notes(log: Log) -> Log:
     return log
 
 
-def names_of(log: Log, arguments: Namespace) -> tuple[str, ...]:
+def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
     """Return the chosen variables, all by default; `A` also matches `A #1` and `A #2`.
 
     Raises:

@@ -1,4 +1,4 @@
-"""`tuisim log plot`: draws the chart of a log in the shell or to a file."""
+"""`tuisim log plot` and `report`: the chart of a log in the shell or in a file, and a one-page report."""
 
 from __future__ import annotations
 
@@ -6,16 +6,18 @@ import math
 import re
 import shutil
 import sys
-from argparse import Namespace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.analysis.chart import View, chart_of
+from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import CHART_FORMATS, Size, format_of, save_chart
-from tuisim.commands.echo import echo_chart, echo_error
-from tuisim.commands.logs.sources import names_of, the_source
+from tuisim.commands.echo import echo, echo_chart, echo_error
+from tuisim.commands.logs.sources import asked, names_of, the_source
+from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError, LogError, listed
+from tuisim.report.report import check_report, default_name, write_report
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -26,7 +28,7 @@ _LEAST_COLUMNS, _ROWS = 20, (12, 32)
 """Size of the chart in the shell: minimum width, and limits of its height."""
 
 
-def plot(arguments: Namespace) -> int:
+def plot(arguments: Arguments) -> int:
     """Draw a log: to the file `out`, else as text on stdout.
 
     Raises:
@@ -34,8 +36,6 @@ def plot(arguments: Namespace) -> int:
         LogError: the log cannot be read, or there is no such variable.
         ExportError: the file cannot be written.
     """
-    if arguments.json:
-        raise ConfigError("does not take --json", "--out chart.svg, chart.png or chart.txt", key="plot")
     target = Path(arguments.out) if arguments.out else None
     kind = format_of(target) if target else CHART_FORMATS[".txt"]
     size = _size(arguments.size, kind.least, kind.most) if arguments.size else None
@@ -72,7 +72,7 @@ def _size(text: str, least: Size, most: Size) -> Size:
     return size
 
 
-def _model(log: Log, arguments: Namespace) -> Model:
+def _model(log: Log, arguments: Arguments) -> Model:
     """Return the model of a log with the chosen variables and time range."""
     from tuisim.analysis.model import Model
     from tuisim.analysis.source import LogRequest, OpenedLog
@@ -93,7 +93,7 @@ def _model(log: Log, arguments: Namespace) -> Model:
     return model
 
 
-def _against(log: Log, model: Model, arguments: Namespace) -> tuple[str, str] | None:
+def _against(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | None:
     if not arguments.against:
         return None
     if len(arguments.variable) > 1:
@@ -122,3 +122,31 @@ def _show(model: Model, view: View, size: Size | None) -> None:
     with console.capture() as captured:
         console.print(text_of(chart, width, height, colors=colors), soft_wrap=True)
     echo_chart(captured.get())
+
+
+def report(arguments: Arguments) -> int:
+    """Write the report and print its path.
+
+    Raises:
+        ConfigError: no log, or a file together with another log.
+        LogError: the log cannot be read, or there is no such variable.
+        ExportError: the file cannot be written.
+    """
+    if not arguments.words:
+        raise ConfigError("which log?", "a file, `-`, or a stored run such as `last`", key="report")
+    if arguments.out:
+        check_report(Path(arguments.out))
+    what = asked(arguments)
+    if arguments.telemetry and len(what.runs) > 1:
+        raise ConfigError("takes one run", f"got {len(what.runs)}", key="--telemetry")
+    if what.runs and (arguments.time is not None or arguments.value):
+        raise ConfigError("are for files only", "the columns of a run are fixed", key="--time and --value")
+    wanted = LogRequest(
+        what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
+    )
+    *_, subject = opening(wanted)
+    names = names_of(subject.log, arguments) if arguments.variable else ()
+    target = Path(arguments.out or default_name(subject))
+    write_report(subject, target, names)
+    echo(str(target))
+    return 0

@@ -1,0 +1,143 @@
+"""`tuisim open` and `tuisim analyse`: the commands that start the app."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import click
+
+from tuisim import __version__
+from tuisim.commands.listings import names_of
+from tuisim.commands.log import COLUMNS, TELEMETRY
+from tuisim.config.command_line import Arguments, Value, argument, command, option, shared_options
+from tuisim.errors import ConfigError
+
+
+def print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    """Print the version and exit, if `--version` is given."""
+    if asked and not ctx.resilient_parsing:
+        click.echo(f"tuisim {__version__}")
+        ctx.exit()
+
+
+@command(
+    argument("words", "[PROGRAM]", lambda: names_of("programs"), nargs=-1),
+    option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
+    option("--run", metavar="RUN", help="Open a stored run, see `tuisim runs`."),
+    option("--version", is_flag=True, expose_value=False, is_eager=True, hidden=True, callback=print_version),
+    *shared_options(names=names_of),
+    passes_arguments=True,
+    name="open",
+    help="""Open the app.
+
+    A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world file or an example by name. The
+    words after -- are its arguments.
+
+    A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, can also hold options. The command line
+    takes precedence over a world file, the world file over the magic line.
+    """,
+)
+def open_app(**given: Any) -> int:
+    """Start the app.
+
+    Raises:
+        ConfigError: a program, a world, a run or an option is wrong, or there is no terminal.
+    """
+    from tuisim.commands.notebooks import print_list, to_list
+    from tuisim.commands.resolve import check_arguments, prepare_app, prepare_replay
+
+    arguments = Arguments(**given)
+    check_arguments(arguments.words, arguments)
+    if listed := to_list(arguments.words):
+        print_list(arguments.words[0], listed)
+        return 0
+    replay = None
+    if arguments.run is None:
+        prepared = prepare_app(arguments.words, arguments)
+    else:
+        replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
+    from tuisim.app.app import AppSettings, run_app
+
+    settings = prepared.settings
+    app_settings = AppSettings(
+        spec=prepared.spec,
+        settings=None if replay else settings,
+        replay=replay,
+        world_file=prepared.world.path if prepared.world else None,
+        program=prepared.program,
+        background=prepared.spec.world.background,
+        panels_on=frozenset(settings.panels_on),
+        panels_off=frozenset(settings.panels_off),
+        autorun=settings.autorun,
+        quiet=settings.quiet,
+        rays=settings.rays,
+        speed=1.0 if settings.speed is None else settings.speed,
+        fps=settings.fps,
+        colors=settings.colors,
+    )
+    with _drawing_on_stdout():
+        return run_app(app_settings)
+
+
+@command(
+    argument("words", "[RUN…|FILE|-]", lambda: ("last",), nargs=-1),
+    TELEMETRY,
+    *COLUMNS,
+    help="""Explore logs in the app: table, chart, bands, notes.
+
+    A RUN is given by its number, its id, or `last` (the default); several are drawn in one chart. A FILE is CSV,
+    Parquet, JSONL, Arrow or text with lines such as `Colour: 98.8`; - is the standard input.
+    """,
+)
+def analyse(**given: Any) -> int:
+    """Start the analyser.
+
+    Raises:
+        ConfigError: the logs are wrong, or there is no terminal.
+    """
+    from tuisim.commands.logs.sources import asked
+
+    arguments = Arguments(**given)
+    what = asked(arguments)
+    if not sys.stdout.isatty():
+        raise ConfigError("the analyser needs a terminal", "without one, use `tuisim log`")
+    from tuisim.analysis.source import LogRequest
+    from tuisim.app.analyser.app import run_analyser
+    from tuisim.logs.reader import STDIN
+
+    if what.file == STDIN:
+        _keys_from_terminal()
+    wanted = LogRequest(
+        what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
+    )
+    with _drawing_on_stdout():
+        return run_analyser(wanted)
+
+
+def _keys_from_terminal() -> None:
+    """Read the log from the original standard input, and keys from the terminal."""
+    try:
+        terminal = os.open("/dev/tty", os.O_RDWR)
+    except OSError as error:
+        raise ConfigError("there is no terminal to read keys from", "name a file instead of -") from error
+    sys.stdin = os.fdopen(os.dup(0))
+    os.dup2(terminal, 0)
+    os.close(terminal)
+
+
+@contextmanager
+def _drawing_on_stdout() -> Iterator[None]:
+    """Redirect stderr to the terminal of stdout: Textual draws on stderr, which may be redirected to a file."""
+    stderr = os.dup(2)
+    os.dup2(1, 2)
+    try:
+        yield
+    finally:
+        os.dup2(stderr, 2)
+        os.close(stderr)

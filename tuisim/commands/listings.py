@@ -1,0 +1,177 @@
+"""`tuisim backgrounds`, `robots`, `obstacles`, `programs` and `profiles`: list what there is by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
+from tuisim.config.command_line import AS_JSON, argument, command, option
+from tuisim.config.folders import programs_folder
+from tuisim.config.mats import Background, Taken, import_originals, mats, own_folder
+from tuisim.config.obstacles import OBSTACLES, load_obstacles, obstacle_file
+from tuisim.config.profiles import SOURCES, load_profile
+from tuisim.config.program_file import programs as example_programs
+from tuisim.config.robots import ROBOTS, load_robot, robot_file
+from tuisim.core.profile import MS, PROFILES
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
+from tuisim.errors import counted, listed
+
+
+def names_of(field: str) -> Iterable[str]:
+    """Return the names of programs, or those that an option such as `background` accepts."""
+    match field:
+        case "programs":
+            return [program.name.removesuffix(".py") for program in example_programs()]
+        case "background":
+            return mats(None)
+    return {"robot": ROBOTS, "obstacles": OBSTACLES, "profile": PROFILES}.get(field, ())
+
+
+# Mats
+
+
+@command(
+    option("--mats", "folder", metavar="FOLDER", help="List another folder of your own mats."),
+    option("--use-originals", metavar="FOLDER", help="Import the browser simulator's mat images from this folder."),
+    AS_JSON,
+)
+def backgrounds(folder: str | None, use_originals: str | None, as_json: bool) -> int:
+    """List the mats with their start poses, or import images."""
+    if use_originals is not None:
+        taken, left = import_originals(Path(use_originals).expanduser())
+        _show_taken(taken, left, as_json=as_json)
+        return 0
+    found = mats(folder).values()
+    if as_json:
+        echo_json([_plain(mat) for mat in found])
+    else:
+        starts = [f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in found]
+        rows = [(mat.name, start, _shows(mat)) for mat, start in zip(found, starts, strict=True)]
+        echo_lines(table(("NAME", "START x, y, heading", "SHOWS"), rows))
+        if any(map(_is_missing, found)):
+            echo()
+            echo(f"Put your own images into {own_folder()}")
+    return 0
+
+
+def _is_missing(mat: Background) -> bool:
+    return not mat.shipped and not mat.is_own
+
+
+def _shows(mat: Background) -> str:
+    if _is_missing(mat):
+        return f"{mat.title} (no image: supply {mat.original})"
+    return f"{mat.title} (your {mat.image.name})" if mat.is_own and mat.original else mat.title
+
+
+def _plain(mat: Background) -> dict[str, object]:
+    return {
+        "name": mat.name, "title": mat.title, "x_mm": mat.start.x_mm, "y_mm": mat.start.y_mm,
+        "heading_deg": mat.start.heading_deg, "picture": None if _is_missing(mat) else str(mat.image),
+    }  # fmt: skip
+
+
+def _show_taken(taken: Sequence[Taken], left: Sequence[str], *, as_json: bool) -> None:
+    if as_json:
+        echo_json([{"name": one.name, "file": one.file, "size_px": list(one.size_px)} for one in taken])
+    else:
+        rows = [(one.name, one.file, _size(one)) for one in taken]
+        echo_lines(table(("MAT", "PICTURE", "PIXELS"), rows))
+    echo_error(f"{counted(len(taken), 'image')} copied to {own_folder()}; remove one there to undo it")
+    if left:
+        echo_error(f"skipped, not named like a mat: {listed(left)}")
+
+
+def _size(one: Taken) -> str:
+    width, height = one.size_px
+    other = "" if one.size_px == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) else f", not {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM}"
+    return f"{width} × {height}{other}"
+
+
+# Robots and obstacles
+
+
+@command(argument("robot", "[NAME|FILE]", lambda: ROBOTS, required=False), AS_JSON)
+def robots(robot: str | None, as_json: bool) -> int:
+    """List the robots, or print one as TOML to start your own from."""
+    chosen = None if robot is None else load_robot(robot)
+    if as_json:
+        echo_json([asdict(one) for one in ([chosen] if chosen else ROBOTS.values())])
+    elif chosen:
+        echo_lines("\n".join(robot_file(chosen)))
+    else:
+        heads = ("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter", "PORTS")
+        echo_lines(table(heads, list(map(_robot_row, ROBOTS.values()))))
+    return 0
+
+
+def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
+    wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
+    sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
+    ports = [
+        (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
+        for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
+    ]
+    ports += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
+    ports += [(sensor.port, sensor.name) for sensor in robot.sensors]
+    on_ports = ", ".join(f"{port} {name}" for port, name in sorted(ports))
+    return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors), on_ports
+
+
+@command(argument("word", "[NAME|FILE]", lambda: OBSTACLES, required=False), AS_JSON)
+def obstacles(word: str | None, as_json: bool) -> int:
+    """List the sets of obstacles, or print one as TOML to start your own from."""
+    chosen = OBSTACLES if word is None else {word: load_obstacles(word)}
+    if as_json:
+        echo_json([{"name": name, "obstacles": [asdict(box) for box in boxes]} for name, boxes in chosen.items()])
+    elif word is not None:
+        echo_lines("\n".join(obstacle_file(chosen[word])))
+    else:
+        rows = [
+            (name, "; ".join(f"{b.x_mm:g}, {b.y_mm:g}, {b.width_mm:g}, {b.height_mm:g}" for b in boxes) or "nothing")
+            for name, boxes in chosen.items()
+        ]
+        echo_lines(table(("NAME", "BOXES x, y, width, height in mm"), rows))
+    return 0
+
+
+# Programs and profiles
+
+
+@command(AS_JSON)
+def programs(as_json: bool) -> int:
+    """List the example programs."""
+    found = example_programs()
+    if as_json:
+        echo_json([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found])
+    else:
+        echo_lines(table(("NAME", "DOES"), [(one.name, one.title) for one in found]))
+        echo(f"They are in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it.")
+    return 0
+
+
+@command(argument("words", "[NAME|FILE]…", lambda: PROFILES, nargs=-1), AS_JSON)
+def profiles(words: Sequence[str], as_json: bool) -> int:
+    """List the profiles: the simulated time of each call, and the source of each number."""
+    shown = [asdict(profile) for profile in [load_profile(word) for word in words] or PROFILES.values()]
+    if as_json:
+        echo_json(shown)
+        return 0
+    echo_lines(table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in shown]) + "\n")
+    rows = [
+        [key.removesuffix("_ns"), *(_cost(key, profile[key]) for profile in shown), SOURCES.get(key, "")]
+        for key in shown[0]
+        if key not in ("name", "title")
+    ]
+    echo_lines(table(("", *(profile["name"] for profile in shown), "SOURCE"), rows))
+    return 0
+
+
+def _cost(key: str, value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if key.endswith("_ns") and isinstance(value, int):
+        return f"{value / MS:g} ms"
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,337 @@
+"""Commands by Click whose shared options come from `OPTIONS`, and whose wrong use is a ConfigError.
+
+The command line, the magic line of a program and the magics of a notebook are parsed here; the child process never
+imports it.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from difflib import get_close_matches
+from glob import escape, glob
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
+
+import click
+from click.core import ParameterSource
+from click.shell_completion import CompletionItem
+
+from tuisim.config.options import ARGUMENTS_FOLLOW, OPTIONS, Option, nearest, one_of
+from tuisim.errors import ConfigError
+
+GENERAL = "Options"
+Names = Callable[[str], Iterable[str]]
+Arguments = SimpleNamespace
+"""The parsed arguments of a command, by name; `settings` has those of `OPTIONS` by field of `Settings`."""
+
+_FILES = ("FILE", "[NAME|FILE]", "FOLDER", "MAT", "ROBOT", "NAME")
+"""Placeholders of values that may be files."""
+_ATTACHED = re.compile(r"(-[A-Za-z])=(.*)", re.DOTALL)
+"""A short option with its value, as in `-x=5`."""
+
+
+class Value(click.ParamType):  # type: ignore[type-arg]
+    """The type of an option's or argument's value.
+
+    Args:
+        convert: Convert the text; raises ConfigError.
+        names: Return the names that completion offers besides files.
+    """
+
+    name = "value"
+
+    def __init__(self, convert: Callable[[str], Any] = str, names: Callable[[], Iterable[str]] | None = None) -> None:
+        self._convert, self._names = convert, names
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Convert a text; a default is returned as it is."""
+        return self._convert(value) if isinstance(value, str) else value
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """Return the matching names and files."""
+        names = self._names() if self._names else ()
+        found = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+        return _with_files(found, incomplete) if param.metavar in _FILES or param.nargs == -1 else found
+
+
+def _with_files(found: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
+    """Add the matching files; if there is nothing else, leave them to the shell, which quotes them."""
+    if not found:
+        return [CompletionItem(incomplete, type="file")]
+    return found + [CompletionItem(path) for path in sorted(glob(escape(incomplete) + "*"))] if incomplete else found
+
+
+class GroupedOption(click.Option):
+    """An option under a heading of the help; only its first two names are listed there."""
+
+    def __init__(self, flags: Sequence[str], group: str = GENERAL, **how: Any) -> None:
+        super().__init__(flags, **how)
+        self.group = group
+        self.needs_value = not self.is_flag and "flag_value" not in how
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        """Return the names with the value, and the help."""
+        names = ", ".join(self.opts[:2])
+        return None if self.hidden else (f"{names} {self.metavar}" if self.metavar else names, self.help or "")
+
+
+def option(*flags: str, **how: Any) -> GroupedOption:
+    """Return an option, as `click.option` does for a decorator."""
+    return GroupedOption(flags, **how)
+
+
+def choice(flag: str, allowed: Sequence[str], **how: Any) -> GroupedOption:
+    """Return an option whose value is one of several words."""
+    kind = Value(lambda text: one_of(allowed)(text, flag), lambda: allowed)
+    return GroupedOption([flag], type=kind, metavar="|".join(allowed), **how)
+
+
+AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def argument(name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any) -> click.Argument:
+    """Return an argument that completion offers names for, besides files."""
+    return click.Argument([name], metavar=metavar, type=Value(names=names), **how)
+
+
+def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
+    """Return the Click option for a line of `OPTIONS`."""
+    flags = [*shared.flags, *(shared.magic_flags if magic else ())]
+    how: dict[str, Any] = {"group": shared.group, "help": shared.help, "hidden": hidden}
+    if shared.panel:
+        return GroupedOption([*flags, f"panel_{shared.panel}"], is_flag=True, **how)
+    if shared.convert is None:
+        return GroupedOption([*flags, shared.field], flag_value=shared.value, default=None, **how)
+    convert, flag = shared.convert, shared.flags[0]
+    choices = shared.metavar.split("|") if "|" in shared.metavar else ()
+    kind = Value(lambda text: convert(text, flag), lambda: choices or names(shared.field))
+    return GroupedOption([*flags, shared.field], type=kind, metavar=shared.metavar, **how)
+
+
+def shared_options(
+    *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
+) -> list[click.Parameter]:
+    """Return the Click options of `OPTIONS`.
+
+    Args:
+        magic: Whether a magic line is parsed, not the command line.
+        hidden: Groups that are accepted but not listed in the help.
+        names: Return the names that completion offers for a field of `Settings`.
+    """
+    return [_parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS]
+
+
+_PANELS = {f"panel_{one.panel}": one for one in OPTIONS if one.panel}
+_FIELDS = frozenset(one.field for one in OPTIONS if not one.panel)
+
+
+def _take_settings(ctx: click.Context) -> dict[str, Any]:
+    """Remove the shared options from the parameters; return those that were given, keyed by field of `Settings`."""
+    found: dict[str, Any] = {}
+    for name in [name for name in ctx.params if name in _FIELDS or name in _PANELS]:
+        value = ctx.params.pop(name)
+        if ctx.get_parameter_source(name) is not ParameterSource.COMMANDLINE:
+            continue
+        if panel := _PANELS.get(name):
+            found[panel.field] = (*found.get(panel.field, ()), panel.panel)
+        else:
+            found[name] = value
+    return found
+
+
+def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
+    """Return what Click says as a ConfigError: what was wrong, and what is allowed."""
+    see = f"see `{ctx.command_path} --help`" if ctx.command.add_help_option else ""
+    if isinstance(error, click.NoSuchOption):
+        names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
+        near = [names[name] for name in get_close_matches(error.option_name.lstrip("-"), names, 2)]
+        hint = f"did you mean {' or '.join(near)}?" if near else see
+        return ConfigError(f"no such option: {error.option_name}", hint)
+    text = error.message.rstrip(".")
+    if isinstance(error, click.BadParameter) and error.param:
+        return ConfigError(text, see, key=error.param.opts[0])
+    return ConfigError(text[:1].lower() + text[1:], see)
+
+
+class Command(click.Command):
+    """A command whose help groups its options, and whose wrong use raises ConfigError.
+
+    Its callback gets the shared options as `settings`.
+
+    Args:
+        passes_arguments: Whether the words after `--` are the program's arguments, and part of `settings`.
+    """
+
+    def __init__(self, name: str, *, passes_arguments: bool = False, **how: Any) -> None:
+        super().__init__(name, context_settings={"help_option_names": ["-h", "--help"]}, **how)
+        self._passes_arguments = passes_arguments
+        self._shared = any(param.name in _PANELS for param in self.params)
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse words as Click does, but also `-x=5`; refuse the name of an option as the value of another."""
+        ours, program = args, None
+        if self._passes_arguments and ARGUMENTS_FOLLOW in args:
+            at = args.index(ARGUMENTS_FOLLOW)
+            ours, program = args[:at], tuple(args[at + 1 :])
+        ours = [part for word in ours for part in _split(word)]
+        try:
+            if not ctx.resilient_parsing:
+                self._check_values(ctx, ours)
+            rest = super().parse_args(ctx, ours)
+        except click.UsageError as error:
+            raise _wrong_use(error, ctx) from None
+        if self._shared:
+            ctx.params["settings"] = _take_settings(ctx) | ({} if program is None else {"arguments": program})
+        return rest
+
+    def _check_values(self, ctx: click.Context, words: Sequence[str]) -> None:
+        known = {flag: param for param in self.get_params(ctx) for flag in param.opts if flag.startswith("-")}
+        for word, value in pairwise(words):
+            if value in known and getattr(known.get(word), "needs_value", False):
+                raise click.BadOptionUsage(word, f"Option '{word}' requires an argument.", ctx)
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options under the headings of their groups."""
+        groups: dict[str, list[tuple[str, str]]] = {}
+        for param in self.get_params(ctx):
+            if isinstance(param, click.Option) and (record := param.get_help_record(ctx)):
+                groups.setdefault(getattr(param, "group", GENERAL), []).append(record)
+        for title, rows in groups.items():
+            with formatter.section(title):
+                formatter.write_dl(rows)
+
+
+def command(*params: click.Parameter, **how: Any) -> Callable[[Callable[..., int]], Command]:
+    """Return a decorator that makes a function a command: its docstring is the help, its result the exit code."""
+
+    def make(work: Callable[..., int]) -> Command:
+        given = {"name": work.__name__, "help": inspect.getdoc(work)} | how
+        return Command(callback=work, params=list(params), **given)
+
+    return make
+
+
+def _split(word: str) -> tuple[str, ...]:
+    match = _ATTACHED.fullmatch(word)
+    return (match[1] + match[2],) if match else (word,)
+
+
+class Group(click.Group):
+    """Subcommands that are loaded on use.
+
+    Args:
+        listing: The help line of each subcommand.
+        load: Return a subcommand by its name.
+        default: The subcommand that is meant if none is named; empty if one must be named.
+    """
+
+    def __init__(
+        self, name: str, listing: Mapping[str, str], load: Callable[[str], click.Command], default: str = "", **how: Any
+    ) -> None:
+        settings = {"help_option_names": ["-h", "--help"]}
+        super().__init__(name, context_settings=settings, no_args_is_help=False, options_metavar="", **how)
+        self.listing, self.load, self.default = listing, load, default
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of the subcommands."""
+        return list(self.listing)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Load a subcommand."""
+        return self.load(cmd_name) if cmd_name in self.listing else None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the subcommands without loading them."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(self.listing.items()))
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse words that may begin with the subcommand's options, or leave out the default subcommand."""
+        if args or not ctx.resilient_parsing:
+            args = self.with_command(ctx, args)
+        try:
+            return super().parse_args(ctx, args)
+        except click.UsageError as error:
+            raise _wrong_use(error, ctx) from None
+
+    def with_command(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Return the words with the name of the subcommand first."""
+        if args and (not args[0].startswith("-") or args[0] in ctx.help_option_names):
+            return args
+        every = [param for name in self.listing for param in self.load(name).params if isinstance(param, click.Option)]
+        unique: list[click.Parameter] = list({param.opts[0]: param for param in every}.values())
+        reader = click.Command(None, params=unique, context_settings={"allow_interspersed_args": False})
+        with reader.make_context("", list(args), resilient_parsing=True) as found:
+            rest = found.args
+        if rest:
+            return [rest[0], *args[: len(args) - len(rest)], *rest[1:]]
+        return [self.default, *args] if self.default else args
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the named subcommand and the words after it.
+
+        Raises:
+            ConfigError: there is no such subcommand.
+        """
+        if args[0] in self.listing or ctx.resilient_parsing:
+            return super().resolve_command(ctx, args)
+        raise ConfigError(f"no such command {args[0]!r}", nearest(args[0], self.listing), key=self.name or "")
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the subcommand.
+
+        Raises:
+            ConfigError: none is named.
+        """
+        try:
+            return super().invoke(ctx)
+        except click.UsageError:
+            raise ConfigError("which command?", f"one of {', '.join(self.listing)}", key=self.name or "") from None
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Return the matching subcommands, and what else the default subcommand may begin with."""
+        found = [CompletionItem(name, help=text) for name, text in self.listing.items() if name.startswith(incomplete)]
+        if not (self.default and incomplete):
+            return found
+        default = self.load(self.default)
+        if incomplete.startswith("-"):
+            return default.shell_complete(ctx, incomplete)
+        more = [item for param in default.params if isinstance(param, click.Argument)
+                for item in param.shell_complete(ctx, incomplete)]  # fmt: skip
+        plain = [item for item in more if item.type == "plain"]
+        return found + plain if plain else _with_files(found, incomplete) if more else found
+
+
+def short_help(one: click.Command) -> str:
+    """Return the first line of a command's help without its full stop."""
+    return (one.help or "").partition("\n")[0].partition(". ")[0].rstrip(".")
+
+
+def parse_words(words: Sequence[str]) -> dict[str, Any]:
+    """Parse the words of a program's magic line and return its options, keyed by field of `Settings`.
+
+    Raises:
+        ConfigError: a word is no option, or a value is wrong.
+    """
+    return dict(parse(Command("tuisim", params=shared_options(magic=True), add_help_option=False), words).settings)
+
+
+def parse(command: Command, words: Sequence[str]) -> Arguments:
+    """Return the arguments of a command that is not run by Click, such as a magic.
+
+    Raises:
+        ConfigError: a word is no option, or a value is wrong.
+    """
+    with command.make_context(command.name, list(words)) as ctx:
+        return Arguments(**ctx.params)
+
+
+def help_of(command: Command) -> str:
+    """Return the help of a command."""
+    with command.make_context(command.name, [], resilient_parsing=True) as ctx:
+        return command.get_help(ctx) + "\n"
