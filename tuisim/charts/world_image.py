@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -45,23 +45,25 @@ _SPOT_MM = 10.0
 _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
 
 
-class View(Protocol):
-    """Which part of the field a picture shows, and how large."""
+@dataclass(frozen=True, slots=True)
+class Viewport:
+    """A picture of part of the field. Picture pixels are square; in the app, half a character cell."""
 
-    @property
-    def width_px(self) -> int:
-        """Width of the picture."""
-
-    @property
-    def height_px(self) -> int:
-        """Height of the picture."""
-
-    @property
-    def mm_per_px(self) -> float:
-        """Scale."""
+    width_px: int
+    height_px: int
+    mm_per_px: float
+    left_mm: float
+    """World x of the left edge of the picture."""
+    top_mm: float
+    """World y of the top edge of the picture."""
 
     def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
-        """Return the picture column and row of a point of the world; whole numbers are pixel corners."""
+        """Return the picture column and row of a world point; whole numbers are pixel corners."""
+        return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_px
+
+    def to_mm(self, col_px: float, row_px: float) -> tuple[float, float]:
+        """Return the world point of a picture position."""
+        return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_px
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,14 +99,14 @@ def drawn_reach_mm(outline: RobotOutline) -> float:
     return max((outline.reach_mm, wheels_mm, *spots_mm, *bars_mm))
 
 
-def drawn_scale(outline: RobotOutline, view: View) -> float:
+def drawn_scale(outline: RobotOutline, view: Viewport) -> float:
     """Return the factor by which a robot is drawn enlarged, at least 1."""
     return max(1.0, _MIN_PX * view.mm_per_px / (2 * outline.half_width_mm))
 
 
 def draw_robot(
     picture: Pixels,
-    view: View,
+    view: Viewport,
     pose: Pose,
     outline: RobotOutline,
     colors: RobotColors,
@@ -213,37 +215,12 @@ def _at(x_mm: float, y_mm: float) -> Point:
     return x_mm / MM_PER_PX, (FIELD_HEIGHT_MM - y_mm) / MM_PER_PX
 
 
-@dataclass(frozen=True, slots=True)
-class WorldView:
-    """The area of a picture of the world: the field with a frame, and a margin for a robot at its edge."""
-
-    rim_px: int
-    """Width of the margin."""
-
-    @property
-    def width_px(self) -> int:
-        """Width of the picture."""
-        return _FIELD_PX[0] + 2 * self.rim_px
-
-    @property
-    def height_px(self) -> int:
-        """Height of the picture."""
-        return _FIELD_PX[1] + 2 * self.rim_px
-
-    @property
-    def mm_per_px(self) -> float:
-        """Scale."""
-        return MM_PER_PX
-
-    def to_px(self, x_mm: float, y_mm: float) -> Point:
-        """Return the picture column and row of a point of the world; whole numbers are pixel corners."""
-        x_px, y_px = _at(x_mm, y_mm)
-        return self.rim_px + x_px, self.rim_px + y_px
-
-
-def world_view(robot: RobotSpec) -> WorldView:
+def world_view(robot: RobotSpec) -> Viewport:
     """Return an area in which a robot is completely visible while its axle is on the field."""
-    return WorldView(math.ceil(drawn_reach_mm(outline_of(robot)) / MM_PER_PX) + _FRAME_PX)
+    rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / MM_PER_PX) + _FRAME_PX
+    rim_mm = rim_px * MM_PER_PX
+    width_px, height_px = _FIELD_PX[0] + 2 * rim_px, _FIELD_PX[1] + 2 * rim_px
+    return Viewport(width_px, height_px, MM_PER_PX, -rim_mm, FIELD_HEIGHT_MM + rim_mm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -326,10 +303,11 @@ def world_picture(
         _draw_rays(draw, spec, pose)
     view = world_view(spec.robot)
     picture = Image.new("RGB", (view.width_px, view.height_px), _RIM)
-    corners = (view.rim_px - _FRAME_PX, view.rim_px - _FRAME_PX,
-               view.rim_px + _FIELD_PX[0] + _FRAME_PX - 1, view.rim_px + _FIELD_PX[1] + _FRAME_PX - 1)  # fmt: skip
+    left_px, top_px = (round(at) for at in view.to_px(0, FIELD_HEIGHT_MM))
+    corners = (left_px - _FRAME_PX, top_px - _FRAME_PX,
+               left_px + _FIELD_PX[0] + _FRAME_PX - 1, top_px + _FIELD_PX[1] + _FRAME_PX - 1)  # fmt: skip
     ImageDraw.Draw(picture).rectangle(corners, fill=_FRAME)
-    picture.paste(field, (view.rim_px, view.rim_px))
+    picture.paste(field, (left_px, top_px))
     pixels = np.array(picture)
     draw_robot(pixels, view, pose, outline_of(spec.robot), COLORED)
     return Image.fromarray(pixels)

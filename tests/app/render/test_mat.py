@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tuisim.app.render.mat import MatPictures, Pixels, shrink
-from tuisim.app.render.viewport import Viewport, whole_field
+from tuisim.app.render.viewport import whole_field
+from tuisim.charts.world_image import Viewport
 
 OUTSIDE = (1, 2, 3)
 

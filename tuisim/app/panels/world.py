@@ -17,13 +17,13 @@ from textual.widget import Widget
 from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.render.mat import Pixels
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
-from tuisim.app.render.viewport import ZOOMS, Viewport, following
+from tuisim.app.render.viewport import ZOOMS, following
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.app.timeline import ACTION, BREAK
 from tuisim.charts.axes import time_limits
 from tuisim.charts.text_runs import Run
-from tuisim.charts.world_image import drawn_scale
+from tuisim.charts.world_image import Viewport, drawn_scale
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.app.render.viewport import Viewport
 from tuisim.charts.world_image import Pixels as Pixels
+from tuisim.charts.world_image import Viewport
 from tuisim.core.field import disc_mask
 
 _REMEMBERED = 4

@@ -10,8 +10,7 @@ from itertools import groupby
 import numpy as np
 
 from tuisim.app.render.mat import MatPictures, Pixels
-from tuisim.app.render.viewport import Viewport
-from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, draw_robot
+from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, Viewport, draw_robot
 from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of

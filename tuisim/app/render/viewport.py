@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+from tuisim.charts.world_image import Viewport
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
@@ -13,27 +13,6 @@ ZOOMS = (1, 2, 4)
 
 _KEEP_INSIDE = 0.22
 """A following view moves once the robot is nearer to an edge than this share of its size."""
-
-
-@dataclass(frozen=True, slots=True)
-class Viewport:
-    """A picture of part of the field. Picture pixels are square: half a character cell."""
-
-    width_px: int
-    height_px: int
-    mm_per_px: float
-    left_mm: float
-    """World x of the left edge of the picture."""
-    top_mm: float
-    """World y of the top edge of the picture."""
-
-    def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
-        """Return the picture column and row of a world point; whole numbers are pixel corners."""
-        return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_px
-
-    def to_mm(self, col_px: float, row_px: float) -> tuple[float, float]:
-        """Return the world point of a picture position."""
-        return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_px
 
 
 def whole_field(width_px: int, height_px: int) -> Viewport:
