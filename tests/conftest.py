@@ -7,15 +7,18 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from tests.forkserver import ForkServer
 from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.cli import run_command
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.runs import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.source import Program
 
@@ -34,6 +37,23 @@ def _own_home(tmp_path_factory: pytest.TempPathFactory) -> object:
     patch.delenv("TUISIM_ASSETS", raising=False)
     yield
     patch.undo()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _forked_children() -> Iterator[None]:
+    """Fork the children of runs, where that is possible: to import the runtime costs more than most runs."""
+    patch, server = pytest.MonkeyPatch(), ForkServer()
+    if sys.platform == "linux":
+        patch.setattr(process, "subprocess", SimpleNamespace(Popen=server.child, DEVNULL=subprocess.DEVNULL))
+    yield
+    patch.undo()
+    server.close()
+
+
+@pytest.fixture
+def real_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start the children of runs as users do."""
+    monkeypatch.setattr(process, "subprocess", subprocess)
 
 
 @pytest.fixture

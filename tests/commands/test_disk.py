@@ -90,6 +90,7 @@ def test_run_that_fills_the_disk_stops_and_keeps_its_rows(endless: Path, tuisim:
     assert RunStore().find("last").end == "disk_full"
 
 
+@pytest.mark.usefixtures("real_start")
 def test_program_cannot_swallow_the_end_of_the_disk(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     text = "import time\nwhile True:\n    try:\n        print('x' * 5000)\n    except Exception:\n        pass\n"
     with files_of_at_most(TELEMETRY_CHUNK + 5000):
@@ -98,6 +99,7 @@ def test_program_cannot_swallow_the_end_of_the_disk(start: Start, monkeypatch: p
     assert {len(row.text) for row in handle.output.all_rows()} == {5000}
 
 
+@pytest.mark.usefixtures("real_start")
 def test_run_without_room_to_begin_leaves_nothing_reserved(start: Start) -> None:
     with files_of_at_most(TELEMETRY_CHUNK):
         done = over(start("print(1)"))

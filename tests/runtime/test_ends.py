@@ -42,6 +42,7 @@ ENDS = {
 
 
 @pytest.mark.parametrize(("text", "end", "exit_code"), ENDS.values(), ids=ENDS)
+@pytest.mark.usefixtures("real_start")
 def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None:
     done = run(text, time_limit_s=5.0)
     assert (done.ended.end, done.ended.exit_code) == (end, exit_code)

@@ -16,6 +16,8 @@ from tests.conftest import ROOT
 from tests.running import PATIENCE_S, Start, over, until
 from tuisim.protocol import Ended
 
+pytestmark = pytest.mark.usefixtures("real_start")
+
 FORK = """\
 import ctypes, time
 c = ctypes.CDLL(None)
