@@ -89,6 +89,9 @@ CLEAN = {
     "short last level": ([100.0] * 7 + [6.3, 0.0, 0.0], [(0, 7, 100.0), (8, 10, 0.0)]),
     "stray": ([3.0] * 6 + [50.0] + [3.0] * 6, [(0, 13, 3.0)]),
     "rising all the time": (list(np.arange(0.0, 90.0, 3.0)), []),
+    "levels of two samples": ([1.0, 1.0, 5.0, 5.0, 9.0, 9.0], [(0, 2, 1.0), (2, 4, 5.0), (4, 6, 9.0)]),
+    "stripes of two samples": ([1.0, 1.0, 9.0, 9.0] * 2, [(0, 2, 1.0), (2, 4, 9.0), (4, 6, 1.0), (6, 8, 9.0)]),
+    "levels of three and two": ([1.0] * 3 + [5.0] * 2 + [9.0] * 3, [(0, 3, 1.0), (3, 5, 5.0), (5, 8, 9.0)]),
     "not a number": ([2.0] * 4 + [float("nan")] + [2.0] * 4, [(0, 9, 2.0)]),
 }
 
@@ -116,6 +119,15 @@ def test_a_stray_giant_hides_no_step(giant: float) -> None:
 @pytest.mark.filterwarnings("error")
 def test_values_near_the_largest_number_do_no_harm() -> None:
     plateaus(np.tile([1e308, -1e308], 20))
+
+
+@pytest.mark.parametrize("samples", [2, 3])
+def test_short_levels_with_noise(samples: int) -> None:
+    levels = np.repeat([100.0, 80.0, 60.0, 20.0, 70.0, 0.0] * 2, samples)
+    found = plateaus(levels + np.random.default_rng(5).normal(0.0, 0.2, len(levels)))
+    assert [(plateau.start, plateau.stop) for plateau in found] == [
+        (at, at + samples) for at in range(0, len(levels), samples)
+    ]
 
 
 def test_level_of_equal_samples_is_exact() -> None:

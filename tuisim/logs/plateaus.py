@@ -37,6 +37,9 @@ _STRAY_SAMPLES = 2
 _EDGE_SAMPLES = 3
 """Longest stretch that may be an edge between two plateaus."""
 
+_FEW_STEPS = 0.2
+"""Up to this part of the differences of neighbours may be steps in a common log."""
+
 _FAR = 5.0
 """A sample so many standard deviations off is a stray one."""
 
@@ -95,6 +98,7 @@ def noise_of(values: FloatArray) -> float:
     if len(values) < 3:
         return 0.0
     differences = np.abs(np.diff(values))
+    differences = differences[~_steps(differences)]
     by_median = 1.4826 * float(np.median(differences)) / np.sqrt(2.0)
     # Values that jump between two neighbours of a coarse scale have no median difference.
     calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
@@ -102,19 +106,29 @@ def noise_of(values: FloatArray) -> float:
     return max(float(by_median), by_calm)
 
 
+def _steps(differences: FloatArray) -> NDArray[np.bool_]:
+    """Return which differences of neighbours are steps of a log that has many: none if a common log may have them.
+
+    Where more than a fifth of the differences is far larger than what is beside each of them, most levels have two or
+    three samples, without edges or strays between them. Noise has large differences beside each other.
+    """
+    calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
+    steps: NDArray[np.bool_] = differences > _FAR * calm
+    return steps if steps.sum() > _FEW_STEPS * len(differences) else np.zeros(len(differences), bool)
+
+
 @np.errstate(over="ignore", invalid="ignore")
-def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
+def plateaus(values: FloatArray) -> list[Plateau]:
     """Return the plateaus of a log, in order; what is between them are edges.
 
     Args:
         values: Evenly read samples, shape (n,); those that are not finite belong to no plateau.
-        noise: Standard deviation of the noise, by default estimated from the values.
     """
     finite = np.flatnonzero(np.isfinite(values))
     clean = np.asarray(values, np.float64)[finite]
     if not len(clean):
         return []
-    noise = noise_of(clean) if noise is None else noise
+    noise = noise_of(clean)
     low, high = _levels(clean)
     scale = high - low
     # Without noise the price of a cut is what the smallest step that counts is worth.
@@ -123,16 +137,20 @@ def plateaus(values: FloatArray, noise: float | None = None) -> list[Plateau]:
     # Squares of giants would leave no digits for the others.
     far = _GIANT * max(scale, sigma)
     pieces = _cut(np.clip(clean, low - far, high + far), sigma)
+    short_levels = bool(_steps(np.abs(np.diff(clean))).any())
     # Twice: what a drift has cut into short pieces can hide a stray between them.
     for _ in range(2):
-        pieces = _without_strays(clean, pieces, least_step, sigma)
+        if not short_levels:
+            pieces = _without_strays(clean, pieces, least_step, sigma)
         pieces = _joined(clean, pieces, least_step, sigma)
     found = [_plateau(clean, start, stop, sigma) for start, stop in pieces if stop - start >= MIN_SAMPLES]
-    found = [p for p in found if not _is_ramp(clean, p, sigma) and not _is_slope(clean, p, scale)]
-    found = [plateau for at, plateau in enumerate(found) if not _is_edge(found, at)]
-    if noise > 0.0:
-        # Two samples that noise has brought together are no level, but for the ends of a log.
-        found = [p for p in found if p.samples > MIN_SAMPLES or p.start == 0 or p.stop == len(clean)]
+    found = [p for p in found if not _is_slope(clean, p, scale)]
+    if not short_levels:
+        found = [p for p in found if not _is_ramp(clean, p, sigma)]
+        found = [plateau for at, plateau in enumerate(found) if not _is_edge(found, at)]
+        # With noise, two samples of about the same value are no level, except at the ends of a log.
+        least = MIN_SAMPLES + (noise > 0.0)
+        found = [p for p in found if p.samples >= least or p.start == 0 or p.stop == len(clean)]
     found = _grown(clean, found, sigma)
     # Grown, two may have no more than a stray between them.
     whole = {(p.start, p.stop): p for p in found}
