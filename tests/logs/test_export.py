@@ -258,7 +258,7 @@ BAD_TARGETS = {
     "file as folder": ("file/x.csv", r"there is no folder .*file"),
     "folder": ("folder.csv", r"it is a folder"),
     "companion is a folder": ("y.csv", r"y\.csv\.json: it is a folder"),
-    "pipe": ("pipe.csv", r"it is there and may not be replaced"),
+    "pipe": ("pipe.csv", r"it exists and cannot be replaced"),
 }
 
 

@@ -76,7 +76,7 @@ CASES: dict[str, Case] = {
     "words among numbers": (
         "a.csv",
         CSV.replace(",20\n", ",oops\n").encode(),
-        Read(40, left_out=1, note="1 cell of 'red' holds no number (row 12"),
+        Read(40, left_out=1, note="1 cell of 'red' is not a number (row 12"),
     ),
     "many words among numbers": (
         "a.csv",
@@ -86,7 +86,7 @@ CASES: dict[str, Case] = {
     "a line of blanks and words in one column": (
         "a.csv",
         b"red\n5\n  \n6\noops\n7\n",
-        Read(5, left_out=1, note="1 cell of 'red' holds no number (row 5"),
+        Read(5, left_out=1, note="1 cell of 'red' is not a number (row 5"),
     ),
     "empty cells": (
         "a.csv",
@@ -128,7 +128,7 @@ CASES: dict[str, Case] = {
         ("time,red,\n" + ROWS.replace("\n", ",7\n")).encode(),
         Read(40, ("red", "column 3")),
     ),
-    "no heading": ("a.csv", ROWS.encode(), Read(40, ("column 2",), note="no heading")),
+    "no heading": ("a.csv", ROWS.encode(), Read(40, ("column 2",), note="no header")),
     "latin-1": (
         "a.csv",
         CSV.replace("red", "gr\u00fcn").encode("latin-1"),
@@ -208,12 +208,12 @@ CASES: dict[str, Case] = {
     "json lines, some broken": (
         "a.jsonl",
         b'{"time": 0.0, "red": 1}\n{"time": 0.5, "re\n[1, 2]\nnull\n{"time": 1.0, "red": 3}\n',
-        Read(2, left_out=3, note="no JSON object"),
+        Read(2, left_out=3, note="not JSON objects"),
     ),
     "json lines with words among numbers": (
         "a.jsonl",
         b'{"time": 0, "red": 1}\n{"time": 1, "red": "x"}\n{"time": 2, "red": 5}\n',
-        Read(3, left_out=1, note="1 cell of 'red' holds no number (row 2"),
+        Read(3, left_out=1, note="1 cell of 'red' is not a number (row 2"),
     ),
     "json lines with other columns each": (
         "a.jsonl",
@@ -257,19 +257,19 @@ CASES: dict[str, Case] = {
     "truths": (
         "a.csv",
         b"time,on\n0,True\n1,false\n2,\n" + b"4,TRUE\n" * 50_000 + b"5,maybe\n",
-        Read(50_004, ("on",), 1, "1 cell of 'on' holds neither true", lambda log: values(log, "on")[:2] == [1, 0]),
+        Read(50_004, ("on",), 1, "1 cell of 'on' is not true", lambda log: values(log, "on")[:2] == [1, 0]),
     ),
     "times that cannot be read": ("a.csv", b"time,red\nnoon,1\none,2\n", Read(2, note="'time' cannot be read")),
     "json nested without end": ("a.jsonl", b"[" * 100_000 + b'\n{"time": 0, "red": 1}\n', Read(1, left_out=1)),
     "printed lines": (
         "a.txt",
         b"Colour: 98.8\nhello\nColour: 45\nUltrasonic: 3\n",
-        Read(3, ("Colour", "Ultrasonic"), left_out=1, note="1 line is no sample (row 2"),
+        Read(3, ("Colour", "Ultrasonic"), left_out=1, note="1 line is not a sample (row 2"),
     ),
     "few printed lines among other words": (
         "a.txt",
         b"says: hi\nColour: 98.8\nleft, then right\nhello\nColour: 45\nDist = 4\nbye\n",
-        Read(2, ("Colour",), left_out=5, note="5 lines are no sample (rows 1, 3, 4"),
+        Read(2, ("Colour",), left_out=5, note="5 lines are not samples (rows 1, 3, 4"),
     ),
     "a table below lines that look printed": (
         "a.txt",
@@ -328,7 +328,7 @@ def test_a_pipe_that_ends(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("time", "columns", "expected"),
-    [("tme", (), "did you mean 'time'"), (None, ("blue",), "no column 'blue'"), (None, ("word",), "no numbers")],
+    [("tme", (), "did you mean 'time'"), (None, ("blue",), "no column 'blue'"), (None, ("word",), "not numeric")],
     ids=["time", "value", "words"],
 )
 def test_columns_that_are_not_there(tmp_path: Path, time: str | None, columns: tuple[str, ...], expected: str) -> None:

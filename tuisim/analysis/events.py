@@ -24,9 +24,9 @@ class Crossing:
     """One crossing."""
 
     at: int
-    """Position of the first sample beyond the threshold."""
+    """Index of the first sample beyond the threshold."""
     time_s: float
-    """When the straight line between the samples on either side meets the threshold."""
+    """Time at which the line between the samples on either side meets the threshold."""
     value: float
     """The sample at `at`."""
     rising: bool
@@ -40,9 +40,9 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
 
     Args:
         time_s: Shape (n,), in any order.
-        values: Shape (n,); those that are not finite are passed over.
-        threshold: Where.
-        hysteresis: A crossing counts if the signal is so far from the threshold before it and after it.
+        values: Shape (n,); those that are not finite are skipped.
+        threshold: The threshold.
+        hysteresis: A crossing counts if the signal is this far from the threshold before and after it.
 
     Raises:
         LogError: the hysteresis is negative.
@@ -52,7 +52,7 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
     known = np.arange(len(values))[known_in_order(time_s, values)]
     signal = values[known]
     above = signal >= threshold
-    # The side on which the signal certainly is; 0 while it is too near the threshold to tell.
+    # The side of the threshold; 0 within the hysteresis.
     side = np.where(signal >= threshold + hysteresis, 1, np.where(signal < threshold - hysteresis, -1, 0))
     decided = np.flatnonzero(side)
     turns = side[decided[1:]] != side[decided[:-1]]
@@ -61,7 +61,7 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
     for start, end in zip(before.tolist(), changes.tolist(), strict=True):
         rising = bool(side[end] > 0)
         beyond = above[start + 1 : end + 1] == rising
-        # Where it went over for good, not where that became certain.
+        # The last crossing, not the sample beyond the hysteresis.
         at = start + 1 + (0 if beyond.all() else int(np.flatnonzero(~beyond)[-1]) + 1)
         first, last = int(known[at - 1]), int(known[at])
         found.append(Crossing(last, _meets(time_s, values, first, last, threshold), float(values[last]), rising))
@@ -69,7 +69,7 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
 
 
 def _meets(time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float) -> float:
-    # Halves, whose difference is finite.
+    # Halved, so that the difference is finite.
     start, stop = float(values[first]) / 2.0, float(values[last]) / 2.0
     part = (threshold / 2.0 - start) / (stop - start) if stop != start else 1.0
     return float(time_s[first]) + min(max(part, 0.0), 1.0) * float(time_s[last] - time_s[first])
@@ -97,7 +97,7 @@ class Threshold:
         return f"{self.name} {self.op.short} {self.value:g}{width}"
 
     def among(self, series: Sequence[Series]) -> list[Series]:
-        """Return those that it is about: of several runs all, unless one of them is named."""
+        """Return the series of its variable: of all runs, unless it names one."""
         return [one for one in series if self.name in (one.name, one.name.partition(" #")[0])]
 
     def crossings(self, series: Series) -> list[Crossing]:
@@ -114,19 +114,19 @@ class Event:
     threshold: Threshold
     rising: bool
     row: int
-    """Of the table: the first sample beyond the threshold."""
+    """Row of the table with the first sample beyond the threshold."""
     sample: int
-    """Of the variable: the same."""
+    """Index of this sample in its variable."""
     time_s: float
-    """When it crosses, between two samples."""
+    """Time of the crossing, between two samples."""
     since_s: float
     """Time since the variable's previous event; NaN for the first."""
     value: float
-    """At the row."""
+    """Value in the row."""
 
 
 def threshold_of(text: str) -> Threshold | None:
-    """Return what a text such as `Colour < 50` says, None if it says nothing of the kind."""
+    """Return the threshold in a text such as `Colour < 50`, None if it is none."""
     match = _WIDTH.fullmatch(text)
     found = comparison_in(match["comparison"], value=NUMBER) if match else None
     width = float(match["width"]) if match and found else 0.0
@@ -137,10 +137,10 @@ def threshold_of(text: str) -> Threshold | None:
 
 
 def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
-    """Return the thresholds in a text, as `FORM` says; none in an empty one.
+    """Return the thresholds in a text, see `FORM`; none in an empty one.
 
     Raises:
-        LogError: one is none, or there is no such variable.
+        LogError: one is not a threshold, or there is no such variable.
     """
     found = []
     for part in text.split(",") if text.strip() else ():

@@ -36,13 +36,13 @@ _SORTED_AT_ONCE = 200_000
 
 
 class Model:
-    """One log as it is looked at.
+    """The state of the analysis of one log.
 
     Args:
         subject: The log.
 
     Raises:
-        LogError: it has rows but no numbers, or its notes cannot be read.
+        LogError: it has rows but no numeric column, or its notes cannot be read.
     """
 
     def __init__(self, subject: OpenedLog) -> None:
@@ -93,7 +93,7 @@ class Model:
             name = str(table.column(layout.variable)[row].as_py())
         if layout.run and (key := f"{name} #{table.column(layout.run)[row].as_py()}") in self.traces:
             name = key
-        # What a row without a name or a run belongs to is not known.
+        # A row may have no name or no run.
         return self.traces.named(name if name in self.traces else self.selected)
 
     @property
@@ -122,7 +122,7 @@ class Model:
         """Return the values of a variable or column at each sample of the selected variable, shape (n,).
 
         Raises:
-            LogError: there is none of that name, or it holds no numbers.
+            LogError: there is none of that name, or it is not numeric.
         """
         series = self.trace.series
         if name in self.traces:
@@ -137,7 +137,7 @@ class Model:
         return self.log.numbers(name)[series.rows]
 
     def run_of(self, row: int) -> int:
-        """Return which run a row is of, from 0."""
+        """Return the index of a row's run, from 0."""
         return max(0, self.trace_of_row(row).series.run - 1)
 
     def printed_line(self) -> int:
@@ -169,7 +169,7 @@ class Model:
         """Restore the state of another model of the same log, which has grown since."""
         self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
         if other.row == other.log.rows - 1:
-            # Whoever looks at the end of a log that grows goes on looking at its end.
+            # The cursor stays at the end of a growing log.
             self.row = self.log.rows - 1
         self.define_as(other)
         for trace in other.traces:
@@ -186,7 +186,7 @@ class Model:
         """Compute the derived variables of another model of the same log. Slow for a long log: call it in a thread."""
         for name, text in other.definitions.items():
             if name not in self.definitions:
-                # Other columns may be variables by now: what needs those that are gone goes with them.
+                # Definitions that need variables which no longer exist are dropped.
                 with suppress(LogError):
                     derive(self, text)
 
@@ -317,7 +317,7 @@ class Model:
         if span is not None:
             pyramid = self.traces.named(name).pyramid
             values = pyramid.between(*span)[1]
-            # The quantiles of many would hold up the keys that move the cursor.
+            # Quantiles of many values would slow down the cursor.
             return summary_of(values) if len(values) <= _SORTED_AT_ONCE else pyramid.figures(*span)
         if name not in self._summaries:
             self.sum_up([name])
@@ -334,7 +334,7 @@ class Model:
         """Write a note to its run's file.
 
         Raises:
-            LogError: it cannot be written, or the log is none that can be found again.
+            LogError: it cannot be written, or the log is the standard input.
         """
         place = self._place(run)
         notes = [*self._notes[run]]
@@ -387,7 +387,7 @@ def with_definition(model: Model, text: str) -> tuple[str, Log]:
     """Return a definition as typed, and the log with the derived variable.
 
     Raises:
-        LogError: the line cannot be read, names what there is not, or there is no such variable to take away.
+        LogError: the line is invalid, or names an unknown variable.
     """
     text = text.strip()
     log = model.log

@@ -1,4 +1,4 @@
-"""The source of the analyser: a log, and its runs if they are in the store."""
+"""The source of an analysis: a log, and its runs if they are in the store."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ class LogRequest:
     telemetry: bool = False
     """Use the telemetry of the first run instead of samples."""
     time: str | None = None
-    """Column with the time, None to guess."""
+    """Time column, None to guess."""
     values: tuple[str, ...] = ()
-    """Columns with values, none to guess."""
+    """Value columns, empty to guess."""
     unit: str = ""
-    """Of times that are numbers, empty to guess."""
+    """Unit of numeric times, empty to guess."""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenedLog:
-    """A log that is open, perhaps only in part yet."""
+    """An open log, possibly not completely read yet."""
 
     wanted: LogRequest
     log: Log
@@ -45,10 +45,10 @@ class OpenedLog:
     done: bool = True
 
     def notes_places(self) -> tuple[Path, ...]:
-        """Return the file of the notes on each run, one for a file, none for a log that nobody can find again.
+        """Return the files with the notes: one per run, one for a file, none for the standard input.
 
         Raises:
-            LogError: the file is not there any more.
+            LogError: the file no longer exists.
         """
         if self.runs:
             return tuple(notes_of_run(run.folder) for run in self.runs)
@@ -66,7 +66,7 @@ class OpenedLog:
 
 
 def opening(wanted: LogRequest) -> Iterator[OpenedLog]:
-    """Open what was asked for; yield what there is of it, soon after the start and then now and then.
+    """Open a log; yield what has been read, soon after the start and then repeatedly.
 
     Slow for a large file: call it in a thread.
 

@@ -37,14 +37,14 @@ class TableTask:
 
 FORM = f"{comparison_form(Operator)} and NAME a column; several with `and`"
 _STRETCH = 100_000
-"""Rows searched at once."""
+"""Rows that are searched at a time."""
 
 
 def conditions_of(text: str, columns: list[str]) -> list[Comparison]:
     """Return the conditions in a text such as `variable == Colour and value > 50`.
 
     Raises:
-        LogError: one is none, or there is no such column.
+        LogError: one is not a condition, or there is no such column.
     """
     found = []
     for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
@@ -71,7 +71,7 @@ class TableView:
 
 
 class Rows:
-    """What the table shows.
+    """The rows and columns that the table shows.
 
     Args:
         log: The log.
@@ -118,17 +118,17 @@ class Rows:
         return cell_text(self._log.table.column(column)[row])
 
     def shown(self) -> LogTable:
-        """Return what is shown as a table of its own."""
+        """Return the rows and columns shown as a table."""
         table = self._log.table.select(self.columns)
         return table if self._order is None else table.take(self._order)
 
     # Which rows, in which order
 
     def filter(self, conditions: tuple[Comparison, ...]) -> None:
-        """Show only the rows that fulfil all conditions.
+        """Show only the rows that meet all conditions.
 
         Raises:
-            LogError: a value is none that its column could have.
+            LogError: a value does not fit its column.
         """
         self.arrange(self.filtered(conditions))
 
@@ -137,10 +137,10 @@ class Rows:
         self.arrange(self.sorted(column, descending))
 
     def filtered(self, conditions: tuple[Comparison, ...]) -> TableView:
-        """Return the rows that fulfil all conditions, in the order that they have. Slow for a long log.
+        """Return the rows that meet all conditions, in the current order. Slow for a long log.
 
         Raises:
-            LogError: a value is none that its column could have.
+            LogError: a value does not fit its column.
         """
         masks = [mask_of(self._log.table.column(condition.name), condition) for condition in conditions]
         fulfilled = np.flatnonzero(np.logical_and.reduce(masks)) if masks else None
@@ -196,7 +196,7 @@ class Rows:
         self.columns.insert(self.column, name)
 
     def take_log(self, log: Log) -> None:
-        """Turn to the same log with columns more or less; those that are new are shown."""
+        """Switch to the same log with other columns; new ones are shown."""
         before, names = self._log.table.column_names, log.table.column_names
         chosen = self.chosen
         self._log = log
@@ -218,15 +218,15 @@ class Rows:
     # Search
 
     def find(self, text: str, from_place: int, step: int, task: TableTask | None = None) -> int | None:
-        """Return the next place whose row has a text in one of the shown columns, going round; None if none has.
+        """Return the next position whose row contains a text in a shown column, wrapping around; None if none does.
 
-        Slow for a long log that has it nowhere.
+        Slow for a long log without a match.
 
         Args:
-            text: In any case of letters.
-            from_place: Where to begin; looked at last.
-            step: 1 for onwards, -1 for backwards.
-            task: Told how far the search has come, and asked whether anybody still waits.
+            text: The text, in any case of letters.
+            from_place: Position to begin at; searched last.
+            step: 1 for forwards, -1 for backwards.
+            task: Receives the progress; can stop the search.
         """
         seen = 0
         for first, last in _stretches(from_place, len(self), step):
@@ -241,7 +241,7 @@ class Rows:
         return None
 
     def _places_with(self, text: str, first: int, last: int) -> IntArray:
-        """The places from `first` to before `last` whose rows have a text."""
+        """Return the positions from `first` to before `last` whose rows contain a text."""
         table = self._log.table.select(self.columns)
         part = table.slice(first, last - first) if self._order is None else table.take(self._order[first:last])
         found = np.zeros(last - first, bool)
@@ -251,7 +251,7 @@ class Rows:
 
 
 def _stretches(from_place: int, count: int, step: int) -> Iterator[tuple[int, int]]:
-    """Yield all places in stretches, first and one after the last, from the one beside a place on, going round."""
+    """Yield all positions in ranges, first and one after the last, beginning next to a position and wrapping around."""
     middle = from_place + 1 if step > 0 else from_place
     onwards = [(first, min(first + _STRETCH, count)) for first in range(middle, count, _STRETCH)]
     before = [(first, min(first + _STRETCH, middle)) for first in range(0, middle, _STRETCH)]

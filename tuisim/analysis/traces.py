@@ -38,9 +38,9 @@ class LogTrace(Trace):
     """One variable of one run.
 
     Args:
-        log: Where it is.
+        log: The log.
         name: As in `Log.names`.
-        number: Chooses colour and mark.
+        number: Selects colour and mark.
     """
 
     def __init__(self, log: Log, name: str, number: int) -> None:
@@ -128,7 +128,7 @@ class LogTraces(Traces):
 
     def __init__(self, log: Log) -> None:
         super().__init__()
-        # A row may lack the name of its variable: then there is a name without samples.
+        # If a row has no variable, there is a name without samples.
         names = (name for name in log.names if not log.layout.variable or len(log.series(name).rows))
         self._all = [LogTrace(log, name, number) for number, name in enumerate(names)]
         self._show_light_columns()
@@ -184,7 +184,7 @@ class LogTraces(Traces):
         size = max(abs(low), abs(high))
         if high - low > max(_LEAST_OF_TIMES * size, _LEAST_S):
             return low, high
-        # Half a second more or less makes no difference to a very large time.
+        # Half a second is below the precision of a very large time.
         room = max(0.5, size * _LEAST_OF_TIMES)
         return low - room, high + room
 
@@ -197,12 +197,12 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
     """Return the x positions of the samples of each series; None: their times.
 
     Args:
-        log: Where they come from.
+        log: The log.
         series: Variables of its runs.
-        way: As `FORM` says.
+        way: See `FORM`.
 
     Raises:
-        LogError: `way` is none, or the log cannot be aligned like that.
+        LogError: `way` is invalid, or the log cannot be aligned like that.
     """
     if way == TIME:
         return [None] * len(series)
@@ -217,5 +217,5 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
     found = {one.run: there[0].time_s for one in event.among(series) if (there := event.crossings(one))}
     if not found:
         raise LogError(f"no run comes to {way}", FORM)
-    # A run in which it never happens stays where the earliest one is.
+    # A run without the event is aligned like the earliest one.
     return [one.time_s - found.get(one.run, min(found.values())) for one in series]

@@ -151,7 +151,7 @@ def _printed(search: _Search, pattern: str) -> int:
     try:
         regex = re.compile(pattern)
     except re.error as error:
-        raise ConfigError(f"{pattern!r} is no regular expression: {error}") from error
+        raise ConfigError(f"{pattern!r} is not a regular expression: {error}") from error
     tick = search.tick_of(lambda row: row.stream in TEXT_STREAMS and regex.search(row.text) is not None)
     if tick is None:
         raise ConfigError(f"nothing printed {search.words} matches {pattern!r}")

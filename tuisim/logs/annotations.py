@@ -14,29 +14,29 @@ from tuisim.errors import LogError
 
 NOTES_FILE = "notes.jsonl"
 _HASHED_BYTES = 1 << 16
-"""Of a file's beginning: enough to tell it from another one that takes its place, and it may still grow."""
+"""Bytes at the beginning of a file that identify it, also if it grows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Something written about a sample or a span."""
+    """A note on a sample or a span."""
 
     text: str
     start_s: float
-    """Time of the sample, or where the span begins."""
+    """Time of the sample, or beginning of the span."""
     stop_s: float
-    """Where the span ends; the same as `start_s` for a sample."""
+    """End of the span; the same as `start_s` for a sample."""
     variable: str = ""
-    """Variable it is about, empty for none in particular."""
+    """The variable; empty for none in particular."""
 
 
 def notes_of_run(folder: Path) -> Path:
-    """Return where the notes of a run are, by its folder."""
+    """Return the file with the notes of a run, by its folder."""
     return folder / NOTES_FILE
 
 
 def notes_of_file(path: Path) -> Path:
-    """Return where the notes of a log file are: they follow its place and its beginning.
+    """Return the file with the notes of a log file, which depends on its path and its beginning.
 
     Raises:
         LogError: the file cannot be read.
@@ -54,7 +54,7 @@ def read_notes(place: Path) -> tuple[Note, ...]:
     """Return the notes in a file, none if there is no such file.
 
     Raises:
-        LogError: it cannot be read, or a row is no note.
+        LogError: it cannot be read, or a row is not a note.
     """
     try:
         lines = [line for line in place.read_bytes().split(b"\n") if line]
@@ -74,10 +74,10 @@ def read_notes(place: Path) -> tuple[Note, ...]:
 
 
 def write_notes(place: Path, notes: Sequence[Note]) -> None:
-    """Write notes in the place of those that were there.
+    """Replace the notes in a file.
 
     Raises:
-        LogError: they cannot be written; those that were there stay.
+        LogError: they cannot be written; the file is unchanged.
     """
     try:
         make_private_folder(place.parent)

@@ -149,7 +149,7 @@ _CUT_OFF = "the file was cut off: read as far as it goes"
 
 
 def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
-    """Return what our own exports say of themselves; empty for other files."""
+    """Return the metadata of our own exports; empty for other files."""
     try:
         found = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
     except ValueError:
@@ -158,10 +158,10 @@ def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
 
 
 def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
-    """Yield the row groups of a file, each with the part of the file that is read then.
+    """Yield the row groups of a file, each with the fraction of the file that has been read.
 
     Raises:
-        LogError: the file has no readable footer, without which nothing can be found in it.
+        LogError: the file has no readable footer.
     """
     import pyarrow.parquet as pq
 
@@ -169,7 +169,7 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
         file = pq.ParquetFile(path)
     except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a Parquet file that was cut off cannot be read: its table of contents is at its end"
-        raise LogError(f"no readable Parquet file: {_short(error)}", hint, file=str(path)) from error
+        raise LogError(f"not a readable Parquet file: {_short(error)}", hint, file=str(path)) from error
     with file:
         count = file.metadata.num_row_groups
         if not count:
@@ -180,14 +180,14 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
             try:
                 part = file.read_row_group(at)
             except (pa.ArrowException, OSError, ValueError):
-                notes.add("row is damaged and was left out", "rows are damaged and were left out", [first], rows)
+                notes.add("row is damaged and was skipped", "rows are damaged and were skipped", [first], rows)
             else:
                 yield (at + 1) / count, _named(part, notes)
             first += rows
 
 
 def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
-    """Yield the record batches of a file; of one that was cut off those that are whole.
+    """Yield the record batches of a file; if it was cut off, those that are complete.
 
     Raises:
         LogError: not even the names of the columns can be read.
@@ -203,8 +203,8 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                         part = _whole(reader.get_batch(at))
                     except (pa.ArrowException, OSError, ValueError):
                         notes.add(
-                            "batch of rows is damaged and was left out",
-                            "batches of rows are damaged and were left out",
+                            "batch of rows is damaged and was skipped",
+                            "batches of rows are damaged and were skipped",
                             [],
                             1,
                         )
@@ -213,12 +213,12 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                 return
         except (pa.ArrowException, OSError, ValueError):
             notes.say(_CUT_OFF)
-        # Behind eight bytes of magic an Arrow file is a stream of batches.
+        # After eight magic bytes, an Arrow file is a stream of batches.
         yield from _stream_parts(path, source, 8, notes)
 
 
 def arrow_stream_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
-    """Yield the record batches of an Arrow stream; of one that was cut off those that are whole.
+    """Yield the record batches of an Arrow stream; if it was cut off, those that are complete.
 
     Raises:
         LogError: not even the names of the columns can be read.
@@ -233,7 +233,7 @@ def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator
     try:
         stream = pa.ipc.open_stream(source)
     except (pa.ArrowException, OSError, ValueError) as error:
-        raise LogError(f"no readable Arrow file: {_short(error)}", file=str(path)) from error
+        raise LogError(f"not a readable Arrow file: {_short(error)}", file=str(path)) from error
     yield 0.0, stream.schema.empty_table()
     while True:
         try:
@@ -247,7 +247,7 @@ def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator
 
 
 def _whole(batch: pa.RecordBatch) -> pa.Table:
-    """Return a batch as a table, checked to its last value; dates in milliseconds keep their time of day."""
+    """Return a validated batch as a table; dates in milliseconds keep their time of day."""
     columns = [
         column.view(pa.timestamp("ms")) if pa.types.is_date64(column.type) else column for column in batch.columns
     ]
@@ -257,7 +257,7 @@ def _whole(batch: pa.RecordBatch) -> pa.Table:
 
 
 def _named(part: pa.Table, notes: Notes) -> pa.Table:
-    # Renaming alone would lose what the file says about itself.
+    # Renaming drops the metadata.
     renamed = part.rename_columns(unique_names(part.column_names, notes))
     for at, field in enumerate(part.schema):
         usual = _usual(field.type)
@@ -267,7 +267,7 @@ def _named(part: pa.Table, notes: Notes) -> pa.Table:
 
 
 def _usual(kind: pa.DataType) -> pa.DataType:
-    """Return the type that columns of a kind are worked with; most are their own."""
+    """Return the type in which columns of a type are processed; mostly the same."""
     if pa.types.is_decimal(kind):
         return pa.float64()
     return pa.string() if pa.types.is_string_view(kind) else kind

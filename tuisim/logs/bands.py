@@ -1,4 +1,4 @@
-"""Bands: the plateaus of a log with times, places, widths, and the names of their greys."""
+"""Bands: the plateaus of a log with times, distances, widths, and the names of their greys."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.runs.arrays import FloatArray
 
 NEAR_PERCENT = 2.0
-"""A grey farther off than this is another one."""
+"""Largest distance from a named grey."""
 
 FULL = 255.0
 
 _PLAIN_NAMES = MappingProxyType({0: "black", 128: "grey", 255: "white", 211: "light grey", 220: "pale grey",
                                  169: "dark grey", 105: "dim grey", 192: "silver"})  # fmt: skip
-"""Names as people say them, by channel value; the others are the names of CSS."""
+"""Common names by channel value; the others are those of CSS."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Grey:
 
 @cache
 def greys() -> Mapping[int, Grey]:
-    """Return every grey that has a name, by channel value 0 to 255."""
+    """Return the named greys by channel value, 0 to 255."""
     found = {red: name for name, (red, green, blue) in css_names().items() if red == green == blue}
     found |= _PLAIN_NAMES
     return {value: Grey(name, 100.0 * value / FULL) for value, name in sorted(found.items())}
@@ -51,11 +51,11 @@ def nearest_grey(percent: float) -> Grey | None:
 
 
 def without_clamping(percent: float, noise: int) -> float:
-    """Return the level that a mean of noisy pixels stands for.
+    """Return the true level from the mean of noisy pixels.
 
-    Noise moves each pixel by up to ±`noise`, evenly spread, and what would leave 0 to 255
-    is clamped: near both ends the mean comes out too far inside. The mean of a pixel of
-    value 255 - u, u below the noise, is 255 - (noise + u)² / (4 noise).
+    Noise is uniform within ±`noise`, and values outside 0 to 255 are clamped, so that
+    near both ends the mean is too far inside. The mean of a pixel of value 255 - u, u
+    below the noise, is 255 - (noise + u)² / (4 noise).
 
     Args:
         percent: Mean level, 0 to 100.
@@ -68,7 +68,7 @@ def without_clamping(percent: float, noise: int) -> float:
 
 
 def _unclamped(below: float, noise: int) -> float:
-    """Undo the clamping at one end; `below` counts from that end."""
+    """Undo the clamping at one end; `below` is the distance from it."""
     if below >= noise:
         return below
     return max(0.0, 2.0 * sqrt(noise * max(below, 0.0)) - noise)
@@ -76,7 +76,7 @@ def _unclamped(below: float, noise: int) -> float:
 
 NAN = float("nan")
 ONE_SAMPLE = "one sample"
-"""Marks a level that only the first or the last sample of the log shows."""
+"""Marks a level that only the first or the last sample of the log has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,13 +97,13 @@ class Band:
     """Standard deviation."""
     strays: int
     grey: str
-    """Name of the nearest known grey, empty if there is none or the variable is no light level."""
+    """Name of the nearest grey; empty if there is none, or if the variable is not a light level."""
     grey_percent: float
     """The level of that grey."""
     true_level: float
-    """The level that the noise of the run has pulled away from an end of the scale, put back; else the level."""
+    """The level, corrected for clamped noise near the ends of the scale."""
     start_mm: float
-    """Distance driven at the first sample; not a number where the log knows no places."""
+    """Distance driven at the first sample; NaN if the log has no positions."""
     stop_mm: float
     """Distance driven at the last sample."""
     width_mm: float
@@ -128,9 +128,9 @@ def band_report(log: Log, name: str, search: Callable[[FloatArray], list[Plateau
     """Return the bands of a variable.
 
     Args:
-        log: Where it is.
-        name: Of the variable.
-        search: What finds its plateaus.
+        log: The log.
+        name: The variable.
+        search: Returns the plateaus of its values.
 
     Raises:
         LogError: there is no such variable.
@@ -177,7 +177,7 @@ def _band(series: Series, number: int, plateau: Plateau, driven: FloatArray | No
 
 
 def light_scale(values: FloatArray) -> float:
-    """Return what turns readings of light into percent: 1 for 0 to 100, 100/255 for 0 to 255, 0 for other things."""
+    """Return the factor from light readings to percent: 1 for 0 to 100, 100/255 for 0 to 255; 0 for other values."""
     finite = values[np.isfinite(values)]
     if not len(finite) or finite.min() < 0.0 or finite.max() > 255.0:
         return 0.0
@@ -185,7 +185,7 @@ def light_scale(values: FloatArray) -> float:
 
 
 def light_noise(metadata: Mapping[str, Any], run: int) -> int:
-    """Return the light noise of a run (0: the first) by what its export says of it, 0 if it says nothing."""
+    """Return the light noise of a run (0: the first) from the metadata of its log; 0 if they do not say."""
     runs = metadata.get("runs", ())
     found = [entry for entry in runs if isinstance(entry, Mapping) and run in (0, entry.get("run"))]
     try:
@@ -195,7 +195,7 @@ def light_noise(metadata: Mapping[str, Any], run: int) -> int:
 
 
 def driven_mm(log: Log, series: Series) -> FloatArray | None:
-    """Return how far the robot had driven at each sample, shape (n,); None if the log does not say where it was."""
+    """Return the distance driven at each sample, shape (n,); None if the log has no positions."""
     names = log.table.column_names
     if "x_mm" not in names or "y_mm" not in names or not len(series.rows):
         return None
@@ -206,14 +206,14 @@ def driven_mm(log: Log, series: Series) -> FloatArray | None:
 
 
 def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
-    """Return how far the robot has gone since the first place, shape (n,)."""
+    """Return the distance along a path since its first point, shape (n,)."""
     if not len(x_mm):
         return np.empty(0)
     return np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm)))))
 
 
 def in_words(report: BandReport) -> str:
-    """Return the answer to what value each band has."""
+    """Return the levels of a report in words, for people."""
     levels: dict[str, list[Band]] = {}
     for band in report.bands:
         levels.setdefault(band.grey or f"{band.true_level:.4g}", []).append(band)

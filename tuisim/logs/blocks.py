@@ -17,24 +17,24 @@ from tuisim.errors import LogError
 from tuisim.logs.warnings import Notes
 
 BLOCK_BYTES = 4 << 20
-"""About how much is read and parsed at once."""
+"""Bytes that are read and parsed at a time."""
 
 MAX_LINE_BYTES = 1 << 20
-"""A longer line is no row of a log."""
+"""Longer lines are left out."""
 
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Some whole lines."""
+    """Whole lines of a file."""
 
     first_row: int
     """Row of the first line in the file, from 1."""
     text: bytes
     """UTF-8, each line with its newline."""
     newline: str = "\n"
-    """What ends the lines in the file, where it is one character: all else is read as this in `text`."""
+    """Line ending of the file, if it is a single character; `text` always has line feeds."""
 
     def lines(self) -> Iterator[tuple[int, str]]:
         """Yield each line that is not blank, with its row."""
@@ -47,7 +47,7 @@ class LineCutter:
     """Cuts bytes into blocks of whole lines.
 
     Args:
-        notes: Where it says what was wrong.
+        notes: Receives warnings about bad input.
     """
 
     def __init__(self, notes: Notes) -> None:
@@ -58,10 +58,10 @@ class LineCutter:
         self._started = False
         self._newline = "\n"
         self._dropping = False
-        """Whether the line at hand is too long, so that its rest is passed over."""
+        """Whether the current line is too long, so that the rest of it is skipped."""
 
     def feed(self, data: bytes) -> Block | None:
-        """Take more bytes; return the lines that are whole now, if any."""
+        """Add bytes; return the lines that are complete now, if any."""
         if not self._started and data:
             self._started = True
             data = self._begin(data)
@@ -69,10 +69,10 @@ class LineCutter:
         if self._decoder is not None:
             data = self._decoder.decode(data).encode()
         if b"\0" in data:
-            self._notes.say("null bytes were left out")
+            self._notes.say("null bytes were skipped")
             data = data.replace(b"\0", b"")
         if b"\r" in data:
-            # Also a carriage return alone ends a line; one at the very end may have its newline still to come.
+            # A carriage return alone ends a line, too; the line feed of one at the very end may still follow.
             held = data.endswith(b"\r")
             data = data.replace(b"\r\n", b"\n")
             data = data[:-1].replace(b"\r", b"\n") + b"\r" if held and data else data.replace(b"\r", b"\n")
@@ -106,7 +106,7 @@ class LineCutter:
                 return data[len(mark) :]
         head = data[:2000]
         for odd, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
-            # Text in two bytes a character without a mark: every second one is null.
+            # UTF-16 without a byte order mark: every second byte is null.
             if (
                 len(head) > 3
                 and head[odd::2].count(0) > 0.4 * len(head[odd::2]) > 0
@@ -122,7 +122,7 @@ class LineCutter:
         self._rest += rest
         if len(self._rest) > MAX_LINE_BYTES:
             limit = f"longer than {MAX_LINE_BYTES >> 20} MiB"
-            self._notes.add(f"line {limit} was left out", f"lines {limit} were left out", [self._row])
+            self._notes.add(f"line {limit} was skipped", f"lines {limit} were skipped", [self._row])
             self._rest, self._dropping = b"", True
 
     def _block(self, text: bytes) -> Block:
@@ -138,10 +138,10 @@ class LineCutter:
 
 
 class Readable(Protocol):
-    """Bytes that come one after the other."""
+    """A stream of bytes."""
 
     def read(self, count: int, /) -> bytes | None:
-        """Return at most so many more bytes, none at the end."""
+        """Return up to `count` bytes, none at the end."""
 
 
 _UNPACKED_BYTES = 1 << 18
@@ -180,10 +180,10 @@ def unpacked(title: str, head: bytes, handle: Any, notes: Notes) -> Readable | N
         title: Name of the file.
         head: Its first `MAGIC_BYTES` bytes.
         handle: The file, open at its beginning.
-        notes: What was wrong.
+        notes: Receives warnings about bad input.
 
     Raises:
-        LogError: it holds no text, or text in a form that is not read.
+        LogError: the format cannot be read.
     """
     refused = next((what for magic, what in _REFUSED.items() if head.startswith(magic)), "")
     if refused:

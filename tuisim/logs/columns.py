@@ -22,9 +22,9 @@ NAMES = (
     "zeit", "temps", "tiempo", "tempo", "minutes", "millis", "milliseconds", "ms", "micros", "microseconds", "us",
     "nanos", "nanoseconds", "ns", "index", "row",
 )  # fmt: skip
-"""Names of time columns, the surest first."""
+"""Names of time columns, the most certain first."""
 _WORDS = frozenset({"time", "timestamp", "datetime", "elapsed", "stamp"})
-"""A column with one of these among the words of its name is a time if it rises, too: `sim_time`, `Time Stamp`."""
+"""A rising column with one of these words in its name is a time, too: `sim_time`, `Time Stamp`."""
 
 _UNIT_WORDS_S = {
     1.0: ("s", "sec", "secs", "second", "seconds"),
@@ -38,7 +38,7 @@ _UNITS_S = {word: seconds for seconds, words in _UNIT_WORDS_S.items() for word i
 _UNIT = re.compile(
     r"(?:[ _]*[(\[](?P<bracket>[^)\]]*)[)\]]|\s*/\s*(?P<slash>[^\W\d_]+)|[_ ](?:in[_ ])?(?P<end>[^\W\d_]+))$"
 )
-"""How a name ends with its unit: `time (ms)`, `Time [s]`, `t/s`, `timestamp_ms`, `time in ms`."""
+"""The unit at the end of a name: `time (ms)`, `Time [s]`, `t/s`, `timestamp_ms`, `time in ms`."""
 _SINCE_1970_S = (6.3e8, 4.2e9)
 """Seconds since 1970 of the years 1990 to 2103: times of this size are dates."""
 UNIT_NAMES = {
@@ -49,16 +49,16 @@ UNIT_NAMES = {
     60.0: "minutes",
     3600.0: "hours",
 }
-"""Units of times by their seconds."""
+"""Names of units of time by their seconds."""
 
 
 class TimeName(NamedTuple):
-    """A name of a column, taken apart."""
+    """A column name, split into its parts."""
 
     base: str
-    """Lower case, without its unit and without signs around it."""
+    """Lower case, without its unit and without surrounding punctuation."""
     unit_s: float | None
-    """Seconds that its unit stands for, None if it names none."""
+    """Its unit in seconds, None if it has none."""
 
 
 def time_name(name: str) -> TimeName:
@@ -76,20 +76,20 @@ def time_name(name: str) -> TimeName:
 
 
 def has_time_word(name: str) -> bool:
-    """Return whether one of the words of a name stands for a time."""
+    """Return whether one of the words of a name means a time."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     return not _WORDS.isdisjoint(re.split(r"[\W_]+", spaced.lower()))
 
 
 def unit_since_1970_s(column: pa.ChunkedArray, unit_s: float | None) -> float | None:
-    """Return the unit of a column of numbers that are dates, counted from the beginning of 1970.
+    """Return the unit of a column with times since the beginning of 1970.
 
     Args:
         column: Numbers.
-        unit_s: Seconds that one stands for; None if nothing but its size says so.
+        unit_s: Unit in seconds, None to guess it from the size of the numbers.
 
     Returns:
-        Seconds that one stands for; None if the numbers are no dates.
+        The unit in seconds; None if the numbers are not such times.
     """
     first = _first(column)
     units: tuple[float, ...] = (1.0, 1e-3, 1e-6, 1e-9) if unit_s is None else (unit_s,)
@@ -107,33 +107,33 @@ def _first(column: pa.ChunkedArray) -> float:
 
 
 _SPAN = r"^(?P<sign>-?)(?:(?P<days>\d+) days? )?(?P<h>\d+):(?P<m>\d{2}):(?P<s>\d{2}(?:\.\d+)?)$"
-"""A span as pandas prints it, or hours, minutes and seconds."""
+"""A time span as pandas prints it, or hours, minutes and seconds."""
 _REST = r":\d{2}(?P<part>\.\d+)? ?(?:(?P<sign>[+-])(?P<h>\d{2}):?(?P<m>\d{2})|Z|UTC)?$"
-"""Parts of a second, and how far a clock is ahead of the world's."""
+"""Fraction of a second, and offset from UTC."""
 
 
 def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> FloatArray:
     """Return a time column in seconds, shape (n,): dates since the first of them, numbers times their unit.
 
     Args:
-        column: Numbers, moments, spans of time, or texts that say one.
-        unit_s: Seconds that one stands for, if they are numbers.
+        column: Numbers, dates, time spans, or texts with dates or time spans.
+        unit_s: Unit of numbers in seconds.
         since_first: Whether numbers are dates, too.
     """
     kind = column.type
     if pa.types.is_date(kind):
         column, kind = column.cast(pa.timestamp("s")), pa.timestamp("s")
     if pa.types.is_temporal(kind):
-        # From 32 bits there is no way to a number but that of its own size.
+        # Arrow casts 32-bit times only to integers of the same size.
         wide: Any = column.cast(pa.int32()).cast(pa.int64()) if pa.types.is_time32(kind) else column.cast(pa.int64())
         if pa.types.is_timestamp(kind):
-            # Before they become floats, which have no digits left for parts of a date in nanoseconds.
+            # Subtracted as integers: floats have no digits left for nanoseconds since 1970.
             wide = pc.subtract(wide, pc.first(wide))
         return _floats(wide) / PER_S[kind.unit]
     if pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_dictionary(kind):
         return seconds_of_texts(column)
     if since_first and pa.types.is_integer(kind):
-        # Before they become floats, as above.
+        # Subtracted as integers, as above.
         column = pc.subtract(column.cast(pa.int64()), pc.first(column.cast(pa.int64())))
     seconds = _since_first(_floats(column)) if since_first else _floats(column)
     return seconds if unit_s == 1.0 else seconds * unit_s
@@ -149,13 +149,13 @@ def _floats(column: pa.ChunkedArray) -> FloatArray:
 
 
 def seconds_of_texts(column: pa.ChunkedArray) -> FloatArray:
-    """Return texts in seconds: spans as they are, dates since the first; not a number for what is neither."""
+    """Return texts in seconds: time spans as they are, dates since the first; NaN for other texts."""
     texts: Any = column.cast(pa.string())
     spans: Any = pc.extract_regex(texts, _SPAN)
     parts = {}
     for name, seconds in (("days", 86400.0), ("h", 3600.0), ("m", 60.0), ("s", 1.0)):
         field = pc.struct_field(spans, name)
-        # Where the days are not mentioned the text is empty, where nothing matches it is null.
+        # Empty if there are no days, null if nothing matches.
         field = pc.if_else(pc.equal(field, ""), "0", field)
         parts[name] = np.asarray(pc.cast(field, pa.float64()).to_numpy(), np.float64) * seconds
     total: FloatArray = parts["days"] + parts["h"] + parts["m"] + parts["s"]
@@ -173,7 +173,7 @@ def _seconds_of_dates(texts: Any) -> FloatArray:
                         format="%Y-%m-%d %H:%M:%S", unit="s", error_is_null=True)  # fmt: skip
     if dates.null_count == len(dates):
         return np.full(len(texts), np.nan)
-    # What follows the seconds, such as .250+02:00.
+    # The text after the seconds, such as .250+02:00.
     rest: Any = pc.extract_regex(texts, _REST)
     part, sign, hours, minutes = (pc.struct_field(rest, name) for name in ("part", "sign", "h", "m"))
     ahead_s = 3600.0 * _filled(hours) + 60.0 * _filled(minutes)
@@ -184,57 +184,57 @@ def _seconds_of_dates(texts: Any) -> FloatArray:
 
 
 def _filled(texts: Any) -> FloatArray:
-    """Texts as numbers, 0 for what is empty."""
+    """Return texts as numbers, 0 for empty ones."""
     return np.array(pc.cast(pc.if_else(pc.equal(texts, ""), "0", texts).fill_null("0"), pa.float64()).to_numpy())
 
 
 ROW = ""
-"""Instead of a time column: the samples are counted."""
+"""In place of a time column: the samples are counted."""
 
 _TEXT_TIMES = frozenset(NAMES) - {"index", "row"}
 
 _VARIABLE_NAMES = ("variable", "name", "sensor", "channel", "signal", "key", "metric")
 _VALUE_NAMES = ("value", "val", "y", "reading", "measurement")
 _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
-"""Columns of our own long frames that say where a sample comes from."""
+"""Columns of our own long frames with the origin of a sample."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What the columns mean."""
+    """The roles of the columns."""
 
     time: str = ROW
-    """Column with the time; `ROW` where the samples are only counted."""
+    """Column with the time; `ROW` if the samples are counted."""
     unit_s: float = 1.0
-    """Seconds that a unit of the time column stands for."""
+    """Unit of the time column in seconds."""
     since_first: bool = False
-    """Whether the time column holds numbers that are dates, shown as the time since the first of them."""
+    """Whether the time column has numbers that are dates, shown as the time since the first one."""
     variable: str = ""
-    """Column that names the variable of each row; empty where each column is a variable of its own."""
+    """Column with the variable of each row; empty if each column is a variable."""
     values: tuple[str, ...] = ()
-    """Columns with values; one if `variable` names them."""
+    """Columns with values; only one if there is a `variable` column."""
     run: str = ""
-    """Column that tells runs apart; empty if there is one run only."""
+    """Column with the number of the run; empty if there is only one run."""
     sure: bool = True
-    """Whether the names of the columns say so; otherwise the user is better asked."""
+    """Whether the names of the columns are clear; otherwise the user should be asked."""
 
 
 def is_numeric(kind: pa.DataType) -> bool:
-    """Return whether a column holds numbers."""
+    """Return whether a type is numeric."""
     return bool(pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_boolean(kind))
 
 
 def is_time(kind: pa.DataType) -> bool:
-    """Return whether a column holds moments or spans of time."""
+    """Return whether a type is a date, a time or a time span."""
     return bool(pa.types.is_temporal(kind) and not pa.types.is_interval(kind))
 
 
 def guess_columns(table: pa.Table) -> Layout:
-    """Return what the columns seem to mean.
+    """Guess the roles of the columns from their names and types.
 
-    The time is the column with the surest name, else one whose type says so, else the rows are counted.
-    Only where no column has a name, the first one that rises is the time. A text column with a known name
-    next to one called `value` names the variables; otherwise every other column of numbers is one.
+    The time is the column with the most certain name, else one with a type for times, else the rows are counted.
+    If no column has a name, the first one is the time if it rises. A text column with a known name next to a
+    column `value` has the variables; otherwise every other numeric column is a variable.
     """
     names = table.column_names
     named = _named_time(table)
@@ -249,15 +249,15 @@ def guess_columns(table: pa.Table) -> Layout:
     if value and value in numeric:
         kept = [n for n in numeric if n not in _NO_VALUES]
     else:
-        # In a frame of every tick the pose is a value like any other.
+        # In telemetry, the pose is a value like any other.
         kept = [n for n in numeric if n not in ("line", "row")]
-    # Of one column of numbers there is nothing to choose.
+    # With a single numeric column, there is no choice.
     sure = bool(named) or (len(numeric) < 2 and not time)
     return _timed(Layout(time, 1.0, False, "", tuple(kept or numeric), run, sure), table)
 
 
 def _timed(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
-    """The same layout with the unit of its time column: a given one, else what name and size of the numbers say."""
+    """Return a layout with the unit of its time column: as given, or guessed from name and size of the numbers."""
     if not layout.time or not is_numeric(table.schema.field(layout.time).type):
         return replace(layout, unit_s=1.0, since_first=False)
     if unit_s is None:
@@ -269,7 +269,7 @@ def _timed(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layo
 
 
 def _named_time(table: pa.Table) -> str:
-    """The column that by its name or type is the time, empty if there is none."""
+    """Return the column that is the time by its name or type, empty if there is none."""
     bases: dict[str, list[str]] = {}
     for name in table.column_names:
         bases.setdefault(time_name(name).base, []).append(name)
@@ -287,7 +287,7 @@ def _is_rising_time(table: pa.Table, name: str) -> bool:
 
 
 def unread_time(table: pa.Table, layout: Layout) -> str:
-    """Return the column that should be the time by its name, but whose texts say none; empty if there is none."""
+    """Return the column that is the time by its name but has no readable times; empty if there is none."""
     if layout.time:
         return ""
     named = (name for name in table.column_names if time_name(name).base in _TEXT_TIMES)
@@ -295,7 +295,7 @@ def unread_time(table: pa.Table, layout: Layout) -> str:
 
 
 def time_in_words(layout: Layout) -> str:
-    """Return which column is the time, for people."""
+    """Return a sentence on which column is the time."""
     if layout.time in (ROW, "row"):
         return "no column is a time: the rows are counted"
     unit = UNIT_NAMES.get(layout.unit_s, f"{layout.unit_s:g} s")
@@ -303,7 +303,7 @@ def time_in_words(layout: Layout) -> str:
 
 
 def _rising(table: pa.Table) -> str:
-    """Where no column has a name, the first one if it rises; else nothing: the rows are counted."""
+    """Return the first column if no column has a name and it rises; else `ROW`."""
     names = table.column_names
     nameless = all(name == f"column {at}" for at, name in enumerate(names, 1))
     first = names[0] if nameless and len(names) > 1 else ROW
@@ -311,20 +311,20 @@ def _rising(table: pa.Table) -> str:
 
 
 def _is_usable(table: pa.Table, name: str) -> bool:
-    """Whether a column holds times or numbers, at least one."""
+    """Return whether a column has at least one time or number."""
     column = table.column(name)
     return column.null_count < table.num_rows and (is_numeric(column.type) or _is_moment(table, name))
 
 
 def is_text(kind: pa.DataType) -> bool:
-    """Return whether a column holds texts, also as codes."""
+    """Return whether a type is text, also dictionary-encoded."""
     if pa.types.is_dictionary(kind):
         kind = kind.value_type
     return bool(pa.types.is_string(kind) or pa.types.is_large_string(kind))
 
 
 def _is_moment(table: pa.Table, name: str) -> bool:
-    """Whether a column holds times, also as text in ISO form."""
+    """Return whether a column has times, also as ISO texts."""
     kind = table.schema.field(name).type
     if is_time(kind):
         return True
@@ -338,22 +338,22 @@ def _rises(table: pa.Table, name: str) -> bool:
     column = table.column(name)
     if column.null_count or table.num_rows < 2:
         return False
-    # Compared, not subtracted: what is infinite has no difference.
+    # Compared, not subtracted: infinite values have no difference.
     numbers = numbers_of(column)
     return bool((numbers[1:] > numbers[:-1]).all())
 
 
 def choose_columns(table: pa.Table, time: str | None, values: Sequence[str], unit: str = "") -> Layout:
-    """Return what the columns mean where the user names some of them.
+    """Return the roles of the columns; the user may name some of them.
 
     Args:
         table: The log.
         time: Column with the time; empty to count the rows; None to guess.
         values: Columns with values; none to guess.
-        unit: Of a time column that holds numbers, one of `SECONDS`; empty to guess it by the column's name.
+        unit: Unit of a numeric time column, one of `SECONDS`; empty to guess it.
 
     Raises:
-        LogError: there is no such column, or it holds no numbers.
+        LogError: there is no such column, or it is not numeric.
     """
     layout = guess_columns(table)
     if time is not None:
@@ -365,7 +365,7 @@ def choose_columns(table: pa.Table, time: str | None, values: Sequence[str], uni
         for name in values:
             _require(table, name)
             if not is_numeric(table.schema.field(name).type):
-                raise LogError(f"column {name!r} holds no numbers")
+                raise LogError(f"column {name!r} is not numeric")
         keep = layout.variable if len(values) == 1 and layout.variable else ""
         layout = replace(layout, variable=keep, values=tuple(values), sure=True)
     return _timed(layout, table, SECONDS[unit] if unit else None)

@@ -156,14 +156,14 @@ class Reckoned:
 def dead_reckoning(
     left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec
 ) -> Reckoned:
-    """Return where the robot is if every turn of a wheel carried it along.
+    """Return the poses of the robot if its wheels do not slip.
 
     Between two counts the robot drives an arc, whose chord points halfway between the
-    headings at its ends.
+    headings at both ends.
 
     Args:
-        left_position_deg: Turned by the left wheel since the start, shape (n,).
-        right_position_deg: Turned by the right wheel.
+        left_position_deg: Position of the left wheel since the start, shape (n,).
+        right_position_deg: Position of the right wheel.
         start: Pose at the first count.
         robot: Wheel diameter and spacing.
     """
@@ -195,7 +195,7 @@ def reckoned_series(log: Log) -> list[Series]:
     """Return a series for each name of `RECKONED`.
 
     Raises:
-        LogError: the log is none of every tick, or does not know the robot.
+        LogError: the log is not telemetry, or has no metadata of the robot.
     """
     missing = [name for name in NEEDED if name not in log.table.column_names]
     if missing:

@@ -35,11 +35,11 @@ _UNITS: Mapping[str, str] = {
 
 
 def check_target(path: str | Path) -> Path:
-    """Return the path of an export, if a file can be written there; nothing is left behind.
+    """Return the path of an export after checking that a file can be written there.
 
     Raises:
-        ExportError: unknown suffix, no such folder, a folder that cannot be written, or a
-            target that is there and is no file that may be replaced.
+        ExportError: unknown suffix, no such folder, a folder that cannot be written, or an
+            existing target that may not be replaced.
     """
     target = Path(path)
     exporter = EXPORTERS.get(target.suffix.lower())
@@ -67,42 +67,41 @@ def check_targets(targets: Iterable[str | Path]) -> None:
 
 
 def check_place(place: Path) -> None:
-    """Make sure that a file can be written at a place; nothing is left behind.
+    """Check that a file can be written; nothing is left behind.
 
     Raises:
-        ExportError: no such folder, a folder that cannot be written, or something is there that is no file
-            that may be replaced.
+        ExportError: no such folder, a folder that cannot be written, or an existing target that may not be replaced.
     """
     try:
         if place.is_dir():
             raise ExportError(f"cannot write {place}: it is a folder")
         if place.exists() and not (place.is_file() and os.access(place, os.W_OK)):
-            raise ExportError(f"cannot write {place}: it is there and may not be replaced")
+            raise ExportError(f"cannot write {place}: it exists and cannot be replaced")
         if not place.parent.is_dir():
             raise ExportError(f"cannot write {place}: there is no folder {place.parent}")
-        # The rights alone do not tell: a file system may be full or read-only.
+        # Permissions alone are not enough: a file system may be full or read-only.
         with tempfile.TemporaryFile(dir=place.parent):
             pass
     except OSError as error:
-        # Also a name that is too long for the file system, which every look at it says.
+        # Also raised if the name is too long for the file system.
         raise ExportError(f"cannot write {place}: {error.strerror or error}") from error
 
 
 def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> None:
-    """Write a frame in the format that the suffix names; files that are there are replaced.
+    """Write a frame in the format of the suffix; existing files are replaced.
 
     Args:
         frame: Columns of numbers, texts and time spans.
-        path: Where to.
-        metadata: What travels with it, ready for JSON. It must be the same for identical runs.
+        path: The target.
+        metadata: Stored with it, ready for JSON. It must be the same for identical runs.
 
     Raises:
-        ExportError: it cannot be written; what was there is as it was.
+        ExportError: it cannot be written; an existing file is unchanged.
     """
     target = check_target(path)
     exporter = EXPORTERS[target.suffix.lower()]
     try:
-        # The text that belongs to the file is renamed just before it, when both are whole.
+        # The companion file is renamed just before the file, when both are complete.
         with ExitStack() as files:
             exporter.write(frame, metadata, files.enter_context(replacing(target)))
             if exporter.companion:
@@ -137,15 +136,15 @@ def export_telemetry(run: StoredRun, path: str | Path, field: Field | None = Non
 
 
 def export_log(log: Log, table: LogTable, path: str | Path) -> None:
-    """Write rows and columns of a log in the format that the suffix names; files that are there are replaced.
+    """Write rows and columns of a log in the format of the suffix; existing files are replaced.
 
     Args:
-        log: Where they come from; what it says of its runs goes with them.
+        log: The log, whose metadata are stored with the rows.
         table: Some of its rows and columns, in any order.
-        path: Where to.
+        path: The target.
 
     Raises:
-        ExportError: it cannot be written; what was there is as it was.
+        ExportError: it cannot be written; an existing file is unchanged.
     """
     frame = typed_frame(table)
     names = list(frame.columns)
@@ -159,7 +158,7 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
 def typed_frame(table: LogTable) -> pd.DataFrame:
     """Return a table as a frame whose columns have the types of `frames.samples_frame`, also if it was read as text.
 
-    A column keeps the type that it was read with where another would change a value.
+    A column keeps its type if another would change a value.
     """
     import numpy as np
     import pandas as pd
@@ -180,14 +179,14 @@ def typed_frame(table: LogTable) -> pd.DataFrame:
 
 
 def log_metadata(table: str, frame: pd.DataFrame, runs: Sequence[StoredRun]) -> dict[str, Any]:
-    """Return what travels with a log: units, and program, seed, robot, world and profile of each run.
+    """Return the metadata of a log: units, and program, seed, robot, world and profile of each run.
 
-    Nothing in it tells two identical runs apart: no id, no time of day, no path.
+    They are equal for identical runs: no id, no time of day, no path.
 
     Args:
         table: `samples` or `telemetry`.
         frame: The log.
-        runs: Where it comes from, in the order of its `run` column.
+        runs: Its runs, in the order of the `run` column.
     """
     return {
         "format": LOG_FORMAT,
@@ -215,11 +214,11 @@ def _unit(column: str) -> str:
 
 
 Metadata = Mapping[str, Any]
-"""What travels with a log, ready for JSON."""
+"""The metadata of a log, ready for JSON."""
 
 
 def companion_of(path: Path) -> Path:
-    """Return where the metadata of a file without room for them goes."""
+    """Return the file for the metadata of a file in a format without metadata."""
     return path.with_name(path.name + ".json")
 
 
@@ -241,12 +240,12 @@ def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
     columns = [frame[name].astype("str") if name in TIMEDELTA else frame[name] for name in frame.columns]
     for values in zip(*(column.tolist() for column in columns), strict=True):
         row = {name: _plain(value) for name, value in zip(names, values, strict=True)}
-        # Moments and the like become the text that says them.
+        # Dates and the like are written as text.
         handle.write(json.dumps(row, ensure_ascii=False, default=str).encode() + b"\n")
 
 
 def _plain(value: Any) -> Any:
-    """Return a cell for JSON: lists as such, nothing for what is missing, which is not equal to itself."""
+    """Return a cell for JSON: arrays as lists, None for NaN, which is not equal to itself."""
     plain = value.tolist() if hasattr(value, "tolist") else value
     return plain if plain == plain else None
 
@@ -269,7 +268,7 @@ EXPORTERS: Mapping[str, Exporter] = {
     ".jsonl": Exporter(_write_jsonl),
     ".arrow": Exporter(_write_arrow, companion=False),
 }
-"""Every format by the suffix of its files. To add one: write its functions and a line here."""
+"""The formats by suffix. To add one: write its function and a line here."""
 
 ALLOWED = ", ".join(EXPORTERS)
 LISTED = f"{', '.join([*EXPORTERS][:-1])} or {[*EXPORTERS][-1]}"

@@ -1,7 +1,7 @@
 """A small language over columns: arithmetic, comparisons and a few functions, such as `(left + right) / 2`.
 
-An expression is parsed by Python's own parser and then carried out node by node: what is
-not in the tables below does not exist, so that an expression can reach nothing but its columns.
+An expression is parsed by Python's own parser and evaluated node by node. Only what is in the
+tables below is allowed, so that an expression can access nothing but its columns.
 """
 
 from __future__ import annotations
@@ -58,28 +58,28 @@ def _difference(values: FloatArray) -> FloatArray:
 
 
 Functions = Mapping[str, tuple[int, Callable[..., Any], str]]
-"""By name: how many arguments, what it does, in words."""
+"""By name: number of arguments, function, description."""
 
 FUNCTIONS: Functions = {
-    "abs": (1, np.abs, "without its sign"),
+    "abs": (1, np.abs, "absolute value"),
     "sqrt": (1, np.sqrt, "square root"),
     "exp": (1, np.exp, "e to this power"),
     "log": (1, np.log, "natural logarithm"),
     "sin": (1, lambda x: np.sin(np.radians(x)), "sine of degrees"),
     "cos": (1, lambda x: np.cos(np.radians(x)), "cosine of degrees"),
     "atan2": (2, lambda y, x: np.degrees(np.arctan2(y, x)), "angle in degrees"),
-    "hypot": (2, np.hypot, "length of a right triangle's long side"),
-    "round": (1, np.round, "to the next whole number"),
-    "floor": (1, np.floor, "whole number below"),
+    "hypot": (2, np.hypot, "hypotenuse of a right triangle"),
+    "round": (1, np.round, "nearest whole number"),
+    "floor": (1, np.floor, "next whole number below"),
     "sign": (1, np.sign, "-1, 0 or 1"),
     "min": (2, np.minimum, "the smaller of two"),
     "max": (2, np.maximum, "the larger of two"),
-    "clip": (3, np.clip, "kept between two bounds"),
-    "where": (3, np.where, "the second where the first is true, else the third"),
-    "shift": (1, _shifted, "the row before"),
-    "diff": (1, _difference, "the change since the row before"),
+    "clip": (3, np.clip, "limited to a range"),
+    "where": (3, np.where, "the second if the first is true, else the third"),
+    "shift": (1, _shifted, "value of the previous row"),
+    "diff": (1, _difference, "change since the previous row"),
 }
-"""What every expression may call."""
+"""Functions of every expression."""
 
 CONSTANTS: Mapping[str, float] = {"pi": np.pi}
 
@@ -88,29 +88,29 @@ def evaluate(text: str, columns: Mapping[str, FloatArray], functions: Functions 
     """Return the value of an expression in each row.
 
     Args:
-        text: The expression; a column whose name is no Python name is written in backticks.
+        text: The expression; a column name that is not a Python identifier is written in backticks.
         columns: Arrays of one length by name.
-        functions: What it may call.
+        functions: Functions by name.
 
     Returns:
-        Shape (n,); conditions are 1 where they hold and 0 elsewhere.
+        Shape (n,); conditions are 1 where they are true and 0 elsewhere.
 
     Raises:
-        LogError: what is wrong with the expression, and what there is instead.
+        LogError: the expression is invalid, or names an unknown column or function.
     """
     parsed, names = _read(text)
     length = len(next(iter(columns.values()))) if columns else 0
-    # A division by zero is a value like any other here: inf or not a number.
+    # A division by zero gives inf or NaN.
     with np.errstate(all="ignore"):
         value = _Evaluation(columns, names, text, functions).value(parsed.body)
     return np.broadcast_to(np.asarray(value, np.float64), (length,)).copy()
 
 
 def names_in(text: str) -> list[str]:
-    """Return the columns that an expression names, in the order in which they first stand there.
+    """Return the columns in an expression, in order of first appearance.
 
     Raises:
-        LogError: it cannot be read.
+        LogError: it cannot be parsed.
     """
     parsed, names = _read(text)
     called = {id(node.func) for node in ast.walk(parsed) if isinstance(node, ast.Call)}
@@ -121,7 +121,7 @@ def names_in(text: str) -> list[str]:
 
 
 def _read(text: str) -> tuple[ast.Expression, dict[str, str]]:
-    """Return an expression, and the names in backticks by what stands for them in it."""
+    """Return a parsed expression, and the names in backticks by their placeholders."""
     if len(text) > MAX_CHARS:
         raise LogError(f"the expression has {len(text)} characters", f"at most {MAX_CHARS}")
     names: dict[str, str] = {}
@@ -147,19 +147,19 @@ def _parse(source: str, text: str) -> ast.Expression:
         where = f" at character {at - len(_SINGLE_EQUAL.findall(source.strip()[:at]))}" if at else ""
         message = f"cannot read the expression {text!r}{where}: {error.msg}"
         raise LogError(message, f"allowed are {ALLOWED}") from error
-    # ValueError: a null character; the others: nested too deeply for the parser.
+    # ValueError: a null character; the others: too deeply nested for the parser.
     except (ValueError, RecursionError, MemoryError) as error:
         raise LogError(f"cannot read the expression {text[:60]!r}") from error
 
 
 class _Evaluation:
-    """One expression being carried out.
+    """The evaluation of one expression.
 
     Args:
         columns: Arrays by name.
-        names: Names in backticks by what stands for them.
+        names: Names in backticks by their placeholders.
         text: The whole expression, for messages.
-        functions: What it may call.
+        functions: Functions by name.
     """
 
     def __init__(
@@ -171,11 +171,11 @@ class _Evaluation:
         """Return the value of a node: an array or a number.
 
         Raises:
-            LogError: it is something that expressions do not have.
+            LogError: it is not allowed in expressions.
         """
         match node:
             case ast.Constant(value=bool() | int() | float() as number):
-                # A whole number may have more digits than the largest float.
+                # An integer may be larger than the largest float.
                 return float(number) if number <= sys.float_info.max else math.inf
             case ast.Name(id=name):
                 return self._named(self._names.get(name, name))

@@ -174,7 +174,7 @@ class Log:
         """Return a series. Its arrays must not be modified: they may be shared.
 
         Raises:
-            LogError: there is none of that name.
+            LogError: there is no such series.
         """
         if name in self.derived:
             return self.derived[name]

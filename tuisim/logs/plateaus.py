@@ -1,10 +1,9 @@
-"""Bands: the plateaus of a log, told apart from the samples on their edges and from stray ones.
+"""Plateaus of a log, separated from the samples on their edges and from strays.
 
-The log is cut where that explains it best: the squared distances from the means of the
-pieces, in units of the noise, plus a price for every cut, are as small as they can be
-(optimal partitioning, with the pruning of Killick et al. 2012). Pieces of a sample or
-two between two others are edges, or strays if the log goes on as before; pieces that
-drift into each other are one.
+The log is cut into pieces so that the squared distances from the means of the pieces, in
+units of the noise, plus a price for every cut, are minimal (optimal partitioning, with the
+pruning of Killick et al. 2012). A piece of one or two samples between two others is an
+edge, or strays if the log continues as before; pieces that drift into each other are joined.
 """
 
 from __future__ import annotations
@@ -26,51 +25,51 @@ from tuisim.errors import LogError
 from tuisim.runs.arrays import FloatArray
 
 MIN_SAMPLES = 2
-"""A plateau has at least so many samples, with noise one more; at the ends of the log one is enough."""
+"""Fewest samples of a plateau; one more with noise, one at the ends of the log."""
 
 EVERY_PLACE = 4000
-"""Up to so many samples a cut may be anywhere; in longer logs where neighbouring means differ."""
+"""Most samples for which every position may be a cut; in longer logs, only those where neighbouring means differ."""
 
 _STRAY_SAMPLES = 2
-"""Longest stretch that counts as stray."""
+"""Most samples in a row that count as strays."""
 
 _EDGE_SAMPLES = 3
-"""Longest stretch that may be an edge between two plateaus."""
+"""Most samples of an edge between two plateaus."""
 
 _FEW_STEPS = 0.2
-"""Up to this part of the differences of neighbours may be steps in a common log."""
+"""Largest fraction of the differences between neighbours that are steps, in a common log."""
 
 _FAR = 5.0
-"""A sample so many standard deviations off is a stray one."""
+"""A sample farther off than this number of standard deviations is a stray."""
 
 _NEAR_SAMPLES = 12
-"""How far from a cut a drift is looked at."""
+"""Samples on each side of a cut from which a drift is estimated."""
 
 _FEW_SAMPLES = 100
-"""Up to so many are sorted as a list."""
+"""Up to this number, a median is found by sorting a list."""
 
 _GIANT = 1000.0
-"""A sample so many times the range beyond it is told from others no better by being farther off."""
+"""Samples are clipped at this multiple of the range beyond it."""
 
 _STEP_OF_RANGE = 0.005
-"""A step below this part of the range is no step, whatever the noise."""
+"""Smallest step, as a fraction of the range, whatever the noise."""
 
 _DUST = 1e-9
-"""A step below this part of the values is what reckoning has left of them, if all are one."""
+"""Differences below this fraction of the values are rounding errors."""
 
 _SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
-"""A piece that drifts by more than these parts of the log's range and of its own highest value is no plateau."""
+"""A piece that drifts by more than these fractions of the log's range and of its own highest value is no plateau."""
 
 _CERTAINTY = 4.0
-"""A step is believed from so many standard deviations on."""
+"""Smallest step in standard deviations."""
 
 _BLOCK = 400_000
-"""Samples that are cut at once: a long log is worked through in such stretches."""
+"""Samples that are cut at a time in a long log."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plateau:
-    """A stretch of a log with one level. Positions count samples; `stop` is the one after the last."""
+    """A span of a log with one level. Positions count samples; `stop` is the one after the last."""
 
     start: int
     stop: int
@@ -85,7 +84,7 @@ class Plateau:
 
     @property
     def samples(self) -> int:
-        """How many there are."""
+        """Number of samples."""
         return self.stop - self.start
 
 
@@ -100,17 +99,17 @@ def noise_of(values: FloatArray) -> float:
     differences = np.abs(np.diff(values))
     differences = differences[~_steps(differences)]
     by_median = 1.4826 * float(np.median(differences)) / np.sqrt(2.0)
-    # Values that jump between two neighbours of a coarse scale have no median difference.
+    # Where values jump between two neighbours of a coarse scale, the median difference is 0.
     calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
     by_calm = float(np.sqrt(np.mean(calm**2) / 2.0))
     return max(float(by_median), by_calm)
 
 
 def _steps(differences: FloatArray) -> NDArray[np.bool_]:
-    """Return which differences of neighbours are steps of a log that has many: none if a common log may have them.
+    """Return which differences between neighbours are steps, if the log has only short levels; otherwise none.
 
-    Where more than a fifth of the differences is far larger than what is beside each of them, most levels have two or
-    three samples, without edges or strays between them. Noise has large differences beside each other.
+    If more than a fifth of the differences are far larger than the ones before and after them, most levels have two or
+    three samples, without edges or strays between them. In noise, large differences follow each other.
     """
     calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
     steps: NDArray[np.bool_] = differences > _FAR * calm
@@ -119,10 +118,10 @@ def _steps(differences: FloatArray) -> NDArray[np.bool_]:
 
 @np.errstate(over="ignore", invalid="ignore")
 def plateaus(values: FloatArray) -> list[Plateau]:
-    """Return the plateaus of a log, in order; what is between them are edges.
+    """Return the plateaus of a log, in order; the samples between them are edges.
 
     Args:
-        values: Evenly read samples, shape (n,); those that are not finite belong to no plateau.
+        values: Samples at a fixed period, shape (n,); those that are not finite belong to no plateau.
     """
     finite = np.flatnonzero(np.isfinite(values))
     clean = np.asarray(values, np.float64)[finite]
@@ -131,14 +130,14 @@ def plateaus(values: FloatArray) -> list[Plateau]:
     noise = noise_of(clean)
     low, high = _levels(clean)
     scale = high - low
-    # Without noise the price of a cut is what the smallest step that counts is worth.
+    # Without noise, the smallest step sets the price of a cut.
     least_step = max(scale * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
     sigma = max(noise, least_step / _CERTAINTY)
-    # Squares of giants would leave no digits for the others.
+    # Squares of huge values would leave no digits for the others.
     far = _GIANT * max(scale, sigma)
     pieces = _cut(np.clip(clean, low - far, high + far), sigma)
     short_levels = bool(_steps(np.abs(np.diff(clean))).any())
-    # Twice: what a drift has cut into short pieces can hide a stray between them.
+    # Twice: a stray may be hidden between short pieces of a drift.
     for _ in range(2):
         if not short_levels:
             pieces = _without_strays(clean, pieces, least_step, sigma)
@@ -152,7 +151,7 @@ def plateaus(values: FloatArray) -> list[Plateau]:
         least = MIN_SAMPLES + (noise > 0.0)
         found = [p for p in found if p.samples >= least or p.start == 0 or p.stop == len(clean)]
     found = _grown(clean, found, sigma)
-    # Grown, two may have no more than a stray between them.
+    # After growing, two may be separated by no more than a stray.
     whole = {(p.start, p.stop): p for p in found}
     spans = _joined(clean, list(whole), least_step, sigma)
     found = [whole.get(span) or _plateau(clean, *span, sigma) for span in spans]
@@ -163,7 +162,7 @@ def plateaus(values: FloatArray) -> list[Plateau]:
 
 
 def _levels(values: FloatArray) -> tuple[float, float]:
-    """Return the lowest and highest level: what stray samples, however far off, do not reach."""
+    """Return the lowest and the highest level, whatever the values of strays."""
     if len(values) > _STRAY_SAMPLES:
         parts = [values[at : len(values) - _STRAY_SAMPLES + at] for at in range(_STRAY_SAMPLES + 1)]
         low, high = float(np.maximum.reduce(parts).min()), float(np.minimum.reduce(parts).max())
@@ -180,7 +179,7 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
     pieces: Pieces = []
     for first in range(0, len(values), _BLOCK):
         block = values[first : first + _BLOCK]
-        # Around their mean, as sums of squares of large values have no digits left for small steps.
+        # Centred, since sums of squares of large values have no digits left for small steps.
         block = (block - block.mean()) / sigma
         places = _places(block)
         pieces += [(first + start, first + stop) for start, stop in _partition(block, places)]
@@ -188,7 +187,7 @@ def _cut(values: FloatArray, sigma: float) -> Pieces:
 
 
 def _places(scaled: FloatArray) -> NDArray[np.int64]:
-    """Return where cuts may be: positions from 0 to the length, both included."""
+    """Return the positions of possible cuts, from 0 to the length, both included."""
     count = len(scaled)
     if count <= EVERY_PLACE:
         return np.arange(count + 1)
@@ -199,7 +198,7 @@ def _places(scaled: FloatArray) -> NDArray[np.int64]:
         at = np.arange(width, count - width + 1)
         step = np.abs(sums[at + width] - 2.0 * sums[at] + sums[at - width]) / width
         step *= np.sqrt(width / 2.0)
-        # The highest within its own width, so that one edge does not offer many places.
+        # Only the highest within its own width, so that one edge does not give many positions.
         peak = np.ones(len(step), bool)
         for shift in range(1, width + 1):
             peak[shift:] &= step[shift:] >= step[:-shift]
@@ -211,7 +210,7 @@ def _places(scaled: FloatArray) -> NDArray[np.int64]:
 
 
 def _partition(scaled: FloatArray, places: NDArray[np.int64]) -> Pieces:
-    """Return the cheapest partition; values in units of the noise, cuts only at the places."""
+    """Return the cheapest partition of values in units of the noise, with cuts at some of the places."""
     price = 3.0 * np.log(max(len(scaled), 8)) + 2.0
     sums = np.concatenate(([0.0], np.cumsum(scaled)))[places]
     squares = np.concatenate(([0.0], np.cumsum(scaled**2)))[places]
@@ -227,7 +226,7 @@ def _partition(scaled: FloatArray, places: NDArray[np.int64]) -> Pieces:
         cheapest = int(np.argmin(cost))
         best[at] = cost[cheapest] + price
         before[at] = alive[cheapest]
-        # A start that is dearer already can never again be the best one.
+        # A start with higher costs can never become the best one again.
         alive = np.append(alive[cost <= best[at]], at)
     pieces: Pieces = []
     at = count - 1
@@ -238,7 +237,7 @@ def _partition(scaled: FloatArray, places: NDArray[np.int64]) -> Pieces:
 
 
 def _without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
-    """Join what only a few stray samples have cut apart."""
+    """Join pieces that only a few strays separate."""
     done: Pieces = []
     at = 0
     while at < len(pieces):
@@ -247,7 +246,7 @@ def _without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma
             after += 1
         if done and at < after < len(pieces):
             left, right = done[-1], pieces[after]
-            # Two on either side at least: an edge is no stray.
+            # At least two on either side: an edge is no stray.
             long_enough = min(left[1] - left[0], right[1] - right[0]) >= MIN_SAMPLES
             if long_enough and _goes_on(values, left, right, least_step, sigma):
                 done[-1] = (left[0], right[1])
@@ -259,7 +258,7 @@ def _without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma
 
 
 def _joined(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
-    """Join neighbours that drift into each other; at most a stray may be between them."""
+    """Join neighbours that drift into each other, with at most a stray between them."""
     done: Pieces = []
     for piece in pieces:
         if done:
@@ -275,7 +274,7 @@ def _joined(values: FloatArray, pieces: Pieces, least_step: float, sigma: float)
 def _goes_on(
     values: FloatArray, left: tuple[int, int], right: tuple[int, int], least_step: float, sigma: float
 ) -> bool:
-    """Whether one piece is the other's continuation: no step between them that a common drift does not explain."""
+    """Return whether one piece continues the other: a common drift explains the step between them."""
     before = values[max(left[0], left[1] - _NEAR_SAMPLES) : left[1]]
     after = values[right[0] : min(right[1], right[0] + _NEAR_SAMPLES)]
     off_before, off_after = _strays(before, sigma), _strays(after, sigma)
@@ -289,19 +288,19 @@ def _goes_on(
 
 @dataclass(frozen=True, slots=True)
 class _StepFit:
-    """How samples at certain places tell the step between two pieces."""
+    """Least-squares fit of the step between two pieces, for samples at certain positions."""
 
     model: FloatArray
-    """Shape (n, 3): level, drift and step at each place."""
+    """Shape (n, 3): level, drift and step at each position."""
     row: FloatArray
-    """Shape (3,): of the inverse of the normal equations, what gives the step."""
+    """Shape (3,): the row of the inverse of the normal equations that gives the step."""
     spread: float
     """Standard deviation of the step, in units of the noise."""
 
 
 @lru_cache(maxsize=1000)
 def _step_fit(places: bytes, apart: int) -> _StepFit:
-    """Return the fit for places counted from the end of the left piece; most cuts have the same ones around them."""
+    """Return the fit for positions from the end of the left piece; cached, since most cuts have the same ones."""
     at = np.frombuffer(places, np.int64)
     model = np.stack([np.ones(len(at)), at, at >= apart], axis=1).astype(np.float64)
     inverse = np.linalg.pinv(model.T @ model)
@@ -309,7 +308,7 @@ def _step_fit(places: bytes, apart: int) -> _StepFit:
 
 
 def _strays(part: FloatArray, sigma: float) -> NDArray[np.bool_]:
-    """Which samples of a stretch of one level lie far off it."""
+    """Return which samples of a level are strays."""
     half = len(part) // 2
     rest = part
     if half >= 4:
@@ -320,7 +319,7 @@ def _strays(part: FloatArray, sigma: float) -> NDArray[np.bool_]:
 
 
 def _median(part: FloatArray) -> float:
-    """Return the median; for the few samples of most pieces, numpy takes ten times as long."""
+    """Return the median; faster than numpy's for the few samples of most pieces."""
     if len(part) > _FEW_SAMPLES:
         return float(np.median(part))
     ordered = sorted(part.tolist())
@@ -343,7 +342,7 @@ def _plateau(values: FloatArray, start: int, stop: int, sigma: float) -> Plateau
 
 
 def _is_edge(found: list[Plateau], at: int) -> bool:
-    """Whether a short piece is but the way from one plateau to the next."""
+    """Return whether a short piece is only the edge between two plateaus."""
     piece = found[at]
     if piece.samples > _EDGE_SAMPLES or not 0 < at < len(found) - 1:
         return False
@@ -354,7 +353,7 @@ def _is_edge(found: list[Plateau], at: int) -> bool:
 
 
 def _is_ramp(values: FloatArray, plateau: Plateau, sigma: float) -> bool:
-    """Whether a short piece rises or falls from each sample to the next."""
+    """Return whether a short piece rises or falls from each sample to the next."""
     if plateau.samples > _EDGE_SAMPLES + 1:
         return False
     steps = np.diff(values[plateau.start : plateau.stop])
@@ -362,13 +361,13 @@ def _is_ramp(values: FloatArray, plateau: Plateau, sigma: float) -> bool:
 
 
 def _is_slope(values: FloatArray, plateau: Plateau, scale: float) -> bool:
-    """Whether a piece rises or falls so much that it has no level, as an angle does in a turn."""
+    """Return whether a piece rises or falls so much that it has no level, as an angle does in a turn."""
     highest = float(np.max(np.abs(values[plateau.start : plateau.stop])))
     return abs(plateau.drift) > max(_SLOPE_OF_RANGE * scale, _SLOPE_OF_VALUE * highest)
 
 
 def _with_ends(values: FloatArray, found: list[Plateau], least_step: float) -> list[Plateau]:
-    """Add the first and the last sample as levels where they lie a step away from the plateau beside them.
+    """Add the first and the last sample as levels of their own if they are a step away from the nearest plateau.
 
     A program that logs until it meets a value ends its log at the first sample of that level.
     """
@@ -385,7 +384,7 @@ def _with_ends(values: FloatArray, found: list[Plateau], least_step: float) -> l
 
 
 def _grown(values: FloatArray, found: list[Plateau], sigma: float) -> list[Plateau]:
-    """Let plateaus take in what belongs to them beyond a stray at their ends."""
+    """Extend plateaus by samples of the same level beyond a stray at their ends."""
     grown: list[Plateau] = []
     for at, plateau in enumerate(found):
         first = grown[-1].stop if grown else 0
@@ -406,15 +405,17 @@ def _grown(values: FloatArray, found: list[Plateau], sigma: float) -> list[Plate
 _PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
 _LOOK_S = 0.1
 _FIELDS = 6
-"""Numbers of a plateau, all of which a float tells exactly."""
+"""Numbers of a plateau; a float holds each of them exactly."""
 
 
 def plateaus_aside(values: FloatArray, stopped: Callable[[], bool]) -> list[Plateau]:
-    """Return the plateaus of a log, as `plateaus` does, while other threads of this process go on.
+    """Return the plateaus of a log, as `plateaus` does, from a process of its own.
+
+    A search in a thread would hold up every key for a second.
 
     Args:
         values: As for `plateaus`.
-        stopped: Asked now and then whether nobody waits for the answer any more.
+        stopped: Returns whether to give up; called repeatedly.
 
     Raises:
         LogError: the search was stopped, its process has ended without an answer, or there
@@ -426,12 +427,12 @@ def plateaus_aside(values: FloatArray, stopped: Callable[[], bool]) -> list[Plat
             given.seek(0)
             code = _ended(given, answer, stopped)
             if code:
-                raise LogError(f"the search for bands has ended without an answer (exit code {code})")
+                raise LogError(f"the search for bands failed (exit code {code})")
             answer.seek(0)
             found = np.fromfile(answer).reshape(-1, _FIELDS).tolist()
     except OSError as error:
         raise LogError(
-            f"no search for bands: {error.strerror or error}", "it needs room for temporary files"
+            f"cannot search for bands: {error.strerror or error}", "it needs room for temporary files"
         ) from error
     return [Plateau(int(row[0]), int(row[1]), row[2], row[3], row[4], int(row[5])) for row in found]
 

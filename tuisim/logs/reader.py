@@ -38,29 +38,29 @@ if TYPE_CHECKING:
 
 STDIN = "-"
 FIRST_BYTES = 1 << 18
-"""Read and shown first."""
+"""Bytes that are read and shown first."""
 _SHOW_EVERY_S = 1.0
 _SHOW_SELDOM = 5.0
-"""Times as long as showing took, reading goes on before the next time."""
+"""Minimum time between two updates, as a multiple of the duration of an update."""
 _TABLES = (".csv", ".tsv")
 
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """How far the reading has come."""
+    """Progress of the reading."""
 
     part: float
-    """Of the file that has been read, 0 to 1; not a number where the size is not known."""
+    """Fraction of the file that has been read, 0 to 1; NaN if the size is unknown."""
     log: Log | None
-    """The log so far, now and then; always with the last one."""
+    """The log so far, not each time; always at the end."""
     done: bool = False
 
 
 class BlockReader(Protocol):
-    """What turns lines into rows."""
+    """Converts lines to rows."""
 
     def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block, None if it holds none."""
+        """Return the rows of a block, None if it has none."""
 
 
 def open_log(source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = "") -> Log:
@@ -70,10 +70,10 @@ def open_log(source: str | Path, time: str | None = None, values: Sequence[str] 
         source: Path of a CSV, Parquet, JSONL, Arrow or text file; `-` is the standard input.
         time: Column with the time; empty to count the rows; None to guess.
         values: Columns with values; none to guess.
-        unit: Of times that are numbers, one of `SECONDS`; empty to guess.
+        unit: Unit of numeric times, one of `SECONDS`; empty to guess.
 
     Raises:
-        LogError: it cannot be read, holds no row, or there is no such column.
+        LogError: it cannot be read, has no row, or there is no such column.
     """
     last = None
     for loaded in read_pieces(source, time, values, unit):
@@ -97,7 +97,7 @@ def read_log(path: str | Path) -> pd.DataFrame:
     try:
         table = _exported(source, notes)
         frame = table.to_pandas() if binary else typed_frame(table)
-    # A text that is not UTF-8 or no JSON, and all errors of Arrow.
+    # Text that is not UTF-8 or not JSON, and all errors of Arrow.
     except (OSError, ValueError, KeyError) as error:
         raise LogError(f"cannot be read: {error}", file=str(source)) from error
     if notes.texts():
@@ -123,7 +123,7 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
 def read_pieces(
     source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = ""
 ) -> Iterator[Loaded]:
-    """Read a log; yield the log so far, soon after the start and then now and then.
+    """Read a log; yield the log so far, soon after the start and then repeatedly.
 
     Args:
         source, time, values, unit: As for `open_log`.
@@ -143,12 +143,14 @@ def read_pieces(
             yield Loaded(part, None)
             continue
         yield Loaded(part, _log(title, parts, notes, (time, values, unit)))
-        # Looking at what there is so far may take no more than a fraction of the whole time.
+        # Showing the log so far takes only a fraction of the whole time.
         took = monotonic() - now
         show_at = now + took + max(_SHOW_EVERY_S, _SHOW_SELDOM * took)
     if not sum(part.num_rows for part in parts):
         said = "; ".join(notes.texts())
-        raise LogError("no rows" + (f": {said}" if said else ""), "a log has a heading and a row a sample", file=title)
+        raise LogError(
+            "no rows" + (f": {said}" if said else ""), "a log has a header and one row per sample", file=title
+        )
     log = _log(title, parts, notes, (time, values, unit))
     yield Loaded(1.0, log, done=True)
 
@@ -169,7 +171,7 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
 
 
 def _metadata_beside(path: Path) -> Mapping[str, Any]:
-    """What our own export of a text file says in the file beside it; empty if there is none."""
+    """Return the metadata in the companion file of an export; empty if there is none."""
     try:
         found = json.loads(companion_of(path).read_bytes())
     except (OSError, ValueError):
@@ -178,11 +180,11 @@ def _metadata_beside(path: Path) -> Mapping[str, Any]:
 
 
 def joined(parts: Sequence[pa.Table]) -> pa.Table:
-    """Return tables one below the other; a column that one does not have is empty there."""
+    """Return the rows of several tables; columns that a table lacks are empty there."""
     try:
         table = pa.concat_tables(parts, promote_options="permissive")
     except (pa.ArrowTypeError, pa.ArrowInvalid):
-        # What was taken for numbers as long as it was empty may have turned out to be text.
+        # A column that was empty at first, and typed as numbers, may turn out to be text.
         kinds = pa.unify_schemas([_filled(part).schema for part in parts], promote_options="permissive")
         table = pa.concat_tables([_with_kinds(part, kinds) for part in parts], promote_options="permissive")
     return table.unify_dictionaries()
@@ -193,12 +195,12 @@ def _is_empty(column: pa.ChunkedArray) -> bool:
 
 
 def _filled(part: pa.Table) -> pa.Table:
-    """The columns that hold something."""
+    """Return the columns that are not empty."""
     return part.select([name for name in part.column_names if not _is_empty(part.column(name))])
 
 
 def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
-    """The same table, its empty columns of the kinds that others have."""
+    """Return a table with its empty columns cast to the types of other tables."""
     for at, name in enumerate(part.column_names):
         if _is_empty(part.column(at)) and name in kinds.names:
             part = part.set_column(at, name, pa.nulls(part.num_rows, kinds.field(name).type))
@@ -207,7 +209,7 @@ def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
 
 def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
     if str(source) == STDIN:
-        # A shell may close it, whatever its type says.
+        # None if the shell closed it.
         if cast("Any", sys.stdin) is None:
             raise LogError("is closed", "name a file instead of -", file="standard input")
         yield from text_parts(sys.stdin.buffer, 0, "", notes)
@@ -240,13 +242,13 @@ def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table |
 
 
 def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
-    """Yield the rows of a text, with the part of it that has been read.
+    """Yield the rows of a text, with the fraction of it that has been read.
 
     Args:
         handle: The bytes.
-        size: How many there are, 0 if that is not known.
-        suffix: Of the file's name, lower case, such as `.csv`.
-        notes: What was wrong.
+        size: Their number, 0 if unknown.
+        suffix: Suffix of the file name in lower case, such as `.csv`.
+        notes: Receives warnings about bad input.
     """
     cutter, reader = LineCutter(notes), None
     read = 0

@@ -1,4 +1,4 @@
-"""CSV and similar text tables: comments, header, separators and typed cells."""
+"""Tables in text: CSV with its comments, header, separators and typed cells; JSON objects; printed samples."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
     elif _is_heading(rows, decimal_comma):
         names, follow = [name.strip() for name in rows[0]], body[0][0] + 1
     else:
-        notes.say("no heading: the columns are numbered")
+        notes.say("no header: the columns are numbered")
         names, follow = [f"column {at}" for at in range(1, len(rows[0]) + 1)], body[0][0]
     return Heading(tuple(unique_names(names, notes)), separator, decimal_comma, bool(comments), follow)
 
@@ -327,7 +327,7 @@ class CsvReader:
             )
         if long:
             self._notes.add(
-                "row has too many cells: the rest is left out", "rows have too many cells: the rest is left out", long
+                "row has too many cells: the rest is skipped", "rows have too many cells: the rest is skipped", long
             )
         return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
 
@@ -381,8 +381,8 @@ class CsvReader:
         if (count := _count(wrong)) > 0:
             at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
             where = [rows[index] for index in at] if rows else _rows_at(block, at)
-            what = "neither true nor false" if truths else "no number"
-            self._notes.add(f"cell of {name!r} holds {what}", f"cells of {name!r} hold {what}", where, count)
+            one, many = ("true or false",) * 2 if truths else ("a number", "numbers")
+            self._notes.add(f"cell of {name!r} is not {one}", f"cells of {name!r} are not {many}", where, count)
         return numbers
 
 
@@ -444,10 +444,10 @@ class JsonReader:
     def __init__(self, notes: Notes, exact: bool = False) -> None:
         self._notes, self._exact = notes, exact
         self._kinds: dict[str, bool] = {}
-        """By column, whether it holds numbers; missing while it held nothing."""
+        """By column, whether it has numbers; missing while all its cells were empty."""
 
     def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block; None if there is none."""
+        """Return the rows of a block; None if it has none."""
         found: list[tuple[int, dict[str, Any]]] = []
         broken: list[int] = []
         for row, line in block.lines():
@@ -466,7 +466,7 @@ class JsonReader:
                 broken.append(row)
         if broken:
             self._notes.add(
-                "line is no JSON object and was left out", "lines are no JSON object and were left out", broken
+                "line is not a JSON object and was skipped", "lines are not JSON objects and were skipped", broken
             )
         if not found:
             return None
@@ -489,14 +489,14 @@ class JsonReader:
             return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())
         wrong = [row for (row, _), cell in zip(found, cells, strict=True) if cell is not None and not _is_number(cell)]
         if wrong:
-            self._notes.add(f"cell of {name!r} holds no number", f"cells of {name!r} hold no number", wrong)
+            self._notes.add(f"cell of {name!r} is not a number", f"cells of {name!r} are not numbers", wrong)
         return pa.array(
             [_float(cell) if cell is not None and _is_number(cell) else None for cell in cells], pa.float64()
         )
 
 
 def _is_number(cell: object) -> bool:
-    # What is true or false is 1 or 0.
+    # True and false count as 1 and 0.
     return isinstance(cell, int | float)
 
 
@@ -512,26 +512,26 @@ def _text(cell: object) -> str:
 
 
 def _valid(text: str) -> str:
-    """The same text, halves of characters told by their numbers."""
+    """Return a text with surrogates, which are halves of characters, as escape sequences."""
     return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 _TABLE_ROW = re.compile(r"[,;\t]|^[^A-Za-z]*[0-9][^A-Za-z]*$")
-"""Cells with a separator between them, or nothing but numbers."""
+"""Cells with a separator between them, or only numbers."""
 
 
 class PrintedReader:
-    """Reads blocks of one file.
+    """Reads blocks of one file of printed samples.
 
     Args:
-        notes: Where it says what was wrong.
+        notes: Receives warnings about bad input.
     """
 
     def __init__(self, notes: Notes) -> None:
         self._notes = notes
 
     def read(self, block: Block) -> pa.Table | None:
-        """Return the samples of a block; None if there is none. Without a printed time that column is empty."""
+        """Return the samples of a block; None if it has none. The time is empty where none was printed."""
         rows, names, values, times, others = [], [], [], [], []
         for row, line in block.lines():
             sample = parse_sample(line)
@@ -544,7 +544,7 @@ class PrintedReader:
             values.append(value)
             times.append(time_s)
         if others:
-            self._notes.add("line is no sample", "lines are no sample", others)
+            self._notes.add("line is not a sample", "lines are not samples", others)
         if not rows:
             return None
         return pa.table(
@@ -558,6 +558,6 @@ class PrintedReader:
 
 
 def looks_printed(lines: list[str]) -> bool:
-    """Return whether more of some lines are samples than look like rows of a table; other words count for neither."""
+    """Return whether more of the lines are samples than look like rows of a table."""
     others = [line for line in lines if parse_sample(line) is None]
     return len(lines) - len(others) > sum(_TABLE_ROW.search(line) is not None for line in others)

@@ -165,7 +165,7 @@ async def test_words_that_are_no_place_are_answered() -> None:
     table = {
         "": "where to?", "tomorrow": "not an instant", "9999": "run has reached", "tick 99999": "run has reached",
         "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "is not a number",
-        "print [": "no regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
+        "print [": "not a regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
         "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is not a number",
     }  # fmt: skip
     async with a_run() as (_, app):
