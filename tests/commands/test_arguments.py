@@ -15,7 +15,9 @@ from tests.running import until as until_so
 from tuisim.api import simulate
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.branch import Branch
+from tuisim.app.run_controller import RunController
 from tuisim.app.setup.fields import find
+from tuisim.app.setup.next_run import plan_of_run
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.worlds import load_world, save_world
@@ -186,7 +188,10 @@ def test_a_branch_has_the_arguments_and_modules_of_its_run(stored: Path) -> None
     run = RunStore().load_run("last")
     edited = Program("uses.py", "# edited\n" + USES, path=run.program.path)
     branch = Branch(Recording(run), 0, edited, None, goes_on=False)
-    with closing(branch.start(0.0)) as handle:
+    runs = RunController(None, plan_of_run(run.spec), 0.0)
+    runs.branch(branch)
+    assert runs.run is not None
+    with closing(runs.run) as handle:
         until_line(handle)
         assert [row.text for row in handle.output.all_rows()][1] == "['A'] 1 2020-01-01 3 2020"
     assert (handle.program.text[:8], handle.program.modules_from) == ("# edited", run.folder)

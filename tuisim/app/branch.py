@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.core.spec import NoiseSpec
-from tuisim.protocol import BEFORE_NEXT_TICK, UserAction
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.store import RunStore
+from tuisim.protocol import UserAction
 
 if TYPE_CHECKING:
-    from tuisim.runs.handle import RunHandle
     from tuisim.runs.recording import Recording
     from tuisim.source import Program
 
@@ -72,24 +69,10 @@ class Branch:
         """Return the user's actions until then."""
         return tuple(action for action in self.of.actions() if action.tick <= self.tick)
 
-    def start(self, speed: float) -> RunHandle:
-        """Start the run: it goes to the instant as fast as possible, and pauses there.
-
-        Args:
-            speed: From there on: 1.0 is real time, 0 as fast as possible.
-
-        Raises:
-            TuisimError: the run cannot be started.
-        """
-        options = RunOptions(
-            live=True, speed=speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True, answers=self.of.answers,
-            actions=self.script(), hold_at=(self.tick, BEFORE_NEXT_TICK),
-        )  # fmt: skip
-        # Edited or not, the program gets the same arguments and answers as then.
-        program = replace(self.of.program, name=self.program.name, text=self.program.text, prelude=self.program.prelude)
-        run = start_run(program, self.of.spec, options)
-        RunStore().tag(run.run_id, self.tags)
-        return run
+    @property
+    def runs(self) -> Program:
+        """The program with the arguments of the former run. Its answers are the same, too, edited or not."""
+        return replace(self.of.program, name=self.program.name, text=self.program.text, prelude=self.program.prelude)
 
 
 def first_difference(before: Recording, now: Recording, tick: int) -> int | None:

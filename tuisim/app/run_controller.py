@@ -278,13 +278,21 @@ class RunController(RunView):
         self._look_at(Recording(self.run))
 
     def branch(self, branch: Branch) -> None:
-        """Repeat a run up to an instant of it, and continue from there. Ends the current run.
+        """Repeat a run as fast as possible up to an instant of it, and continue from there. Ends the current run.
 
         Raises:
             TuisimError: the run cannot be started.
         """
+        from tuisim.runs.handle import RunOptions, start_run
+        from tuisim.runs.store import RunStore
+
         noise = branch.noise
-        run = branch.start(self.speed)
+        options = RunOptions(
+            live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True,
+            answers=branch.of.answers, actions=branch.script(), hold_at=(branch.tick, protocol.BEFORE_NEXT_TICK),
+        )  # fmt: skip
+        run = start_run(branch.runs, branch.of.spec, options)
+        RunStore().tag(run.run_id, branch.tags)
         self.close()
         self.run, self._end = run, None
         # The noise of the current run is that of the next one, as if chosen now.

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tuisim.runs.brick_state import BrickState, face_after
+from tuisim.runs.records import Mark
 
 if TYPE_CHECKING:
     from tuisim.runs.recording import Recording
     from tuisim.runs.views import TickRecord
-
-ACTION, BREAK = "action", "break"
-"""Markers besides those of the output: user actions and breakpoint hits."""
 
 FASTEST = 16.0
 """Playback speed, relative to real time, when the speed is as fast as possible."""
@@ -79,12 +77,12 @@ class Timeline:
             self._face = face_after(BrickState(), [self.recording.rows.row(number) for number in numbers])
         return self._face
 
-    def marks(self) -> list[tuple[int, str]]:
+    def marks(self) -> list[tuple[int, Mark]]:
         """Return the marked ticks, with the kind of each marker."""
         if self.recording is None:
             return []
-        done = [(action.tick, ACTION) for action in self.recording.actions()]
-        return [*self.recording.rows.marks, *done, *((tick, BREAK) for tick in self.breaks)]
+        done = [(action.tick, Mark.ACTION) for action in self.recording.actions()]
+        return [*self.recording.rows.marks, *done, *((tick, Mark.BREAK) for tick in self.breaks)]
 
     # Navigation
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tuisim.app.debugger import AppDebugger
-from tuisim.app.editor.document import Document
-from tuisim.app.loader import Loader
-from tuisim.app.panel_area import PanelArea
-from tuisim.app.run_controller import RunController
-from tuisim.app.services import AppServices
+if TYPE_CHECKING:
+    from tuisim.app.debugger import AppDebugger
+    from tuisim.app.editor.document import Document
+    from tuisim.app.loader import Loader
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.run_controller import RunController
+    from tuisim.app.services import AppServices
 
 
 @dataclass(frozen=True, slots=True)

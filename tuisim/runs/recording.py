@@ -16,7 +16,7 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.handle import program_again
-from tuisim.runs.records import TEXT_STREAMS, OutputRow, Stream
+from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream
 from tuisim.runs.run_folder import noise_at
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.side_files import read_actions
@@ -145,9 +145,6 @@ class _TimedMarks:
         return self._cut[1]
 
 
-SAMPLE, ERROR = "sample", "error"
-"""Kinds of marks for output: a sample that has reached another level, an error text."""
-
 _FACE_STREAMS = (Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MOTORS, Stream.SPEECH)
 _LEVEL_SHARE = 0.15
 """A change by this fraction of its variable's range puts a sample on another level."""
@@ -188,7 +185,7 @@ class RowIndex:
         self._levels: dict[str, _Level] = {}
         self._last_change = -1
         """Tick of the last changed sample that was marked."""
-        self.marks: list[tuple[int, str]] = []
+        self.marks: list[tuple[int, Mark]] = []
         """Ticks of changed samples and of errors, in order."""
 
     def __len__(self) -> int:
@@ -217,15 +214,15 @@ class RowIndex:
         if row.stream in self._faces:
             self._faces[row.stream].append(number)
         if row.stream == Stream.STDERR:
-            if not self.marks or self.marks[-1] != (row.tick, ERROR):
-                self.marks.append((row.tick, ERROR))
+            if not self.marks or self.marks[-1] != (row.tick, Mark.ERROR):
+                self.marks.append((row.tick, Mark.ERROR))
         elif row.stream == Stream.STDOUT and (sample := parse_sample(row.text)):
             level = self._levels.get(sample[0])
             if level is None:
                 self._levels[sample[0]] = _Level(sample[1])
             elif level.changes(sample[1]) and row.tick - self._last_change > row.tick // _FINEST:
                 self._last_change = row.tick
-                self.marks.append((row.tick, SAMPLE))
+                self.marks.append((row.tick, Mark.SAMPLE))
 
     def until(self, tick: int) -> int:
         """Return the number of rows when a tick was complete."""

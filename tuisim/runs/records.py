@@ -15,7 +15,7 @@ import mmap
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import IntEnum, StrEnum
 from pathlib import Path
 from struct import Struct
 
@@ -50,6 +50,19 @@ TICK_FIELDS = (
 
 OUTPUT_ROW = Struct("<IIqIB3x")
 """Number of bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
+
+
+class Mark(StrEnum):
+    """What a tick of a run is marked for."""
+
+    ERROR = "error"
+    """An error text."""
+    BREAK = "break"
+    """A breakpoint was hit."""
+    ACTION = "action"
+    """An action of the user."""
+    SAMPLE = "sample"
+    """A sample that has reached another level."""
 
 
 class Stream(IntEnum):

@@ -17,8 +17,8 @@ from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.runs.brick_state import LED_NAMES, led_row
 from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.recording import ERROR, SAMPLE, Recording, RowIndex
-from tuisim.runs.records import OutputWriter, Stream
+from tuisim.runs.recording import Recording, RowIndex
+from tuisim.runs.records import Mark, OutputWriter, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView
@@ -64,7 +64,7 @@ def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
     values = [100, 100, 99, 50, 50, 51, 100]
     rows = [(10 * at, Stream.STDOUT, f"Colour: {value}") for at, value in enumerate(values)]
     index = index_of(tmp_path, [*rows, (90, Stream.STDERR, "Traceback"), (90, Stream.STDERR, "NameError")])
-    assert index.marks == [(20, SAMPLE), (30, SAMPLE), (60, SAMPLE), (90, ERROR)]
+    assert index.marks == [(20, Mark.SAMPLE), (30, Mark.SAMPLE), (60, Mark.SAMPLE), (90, Mark.ERROR)]
 
 
 def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:

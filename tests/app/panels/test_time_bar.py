@@ -19,7 +19,7 @@ from tuisim.app.snapshot import RunPhase, snapshot_of
 from tuisim.app.timeline import Timeline
 from tuisim.errors import ConfigError
 from tuisim.protocol import End
-from tuisim.runs.recording import SAMPLE
+from tuisim.runs.records import Mark
 from tuisim.runs.views import instant_of
 
 pytestmark = pytest.mark.usefixtures("home")
@@ -234,7 +234,7 @@ def test_the_words_fit_beside_the_bar(width: int, text: str) -> None:
 
 
 def test_the_bar_has_cursor_and_marks() -> None:
-    marks = mark_cells(BAR, [(0, SAMPLE), (399, "error"), (400, SAMPLE)], 21)
+    marks = mark_cells(BAR, [(0, Mark.SAMPLE), (399, Mark.ERROR), (400, Mark.SAMPLE)], 21)
     text = "".join(run for run, _ in bar_cells(BAR, marks, 21))
     assert text == "╵" + "━" * 9 + "▮" + "─" * 9 + "✗"
     assert [BAR.tick_at(column, 21) for column in (0, 10, 20, 99)] == [0, 200, 400, 400]

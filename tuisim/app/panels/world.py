@@ -20,14 +20,13 @@ from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.render.viewport import ZOOMS, following
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
-from tuisim.app.timeline import ACTION, BREAK
 from tuisim.charts.axes import time_limits
 from tuisim.charts.text_runs import Run
 from tuisim.charts.world_image import Viewport, drawn_scale
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
-from tuisim.runs.recording import ERROR, SAMPLE
+from tuisim.runs.records import Mark
 
 TURN_STEP_DEG = 5.0
 """Turn of the robot per notch of the mouse wheel."""
@@ -391,11 +390,11 @@ _CURSOR = Style(color="#10151c", bgcolor="#ffd75f", bold=True)
 _WORDS, _STRONG = Style(color="#9fb0c3"), Style(color="#ffd75f", bold=True)
 
 # By priority: of several markers in one cell, the first in this order is shown.
-_MARKS: Mapping[str, tuple[str, Style]] = {
-    ERROR: ("✗", Style(color="#ff6e6e", bold=True)),
-    BREAK: ("●", Style(color="#ff8787")),
-    ACTION: ("◆", Style(color="#d7a0ff")),
-    SAMPLE: ("╵", Style(color="#87d7af")),
+_MARKS: Mapping[Mark, tuple[str, Style]] = {
+    Mark.ERROR: ("✗", Style(color="#ff6e6e", bold=True)),
+    Mark.BREAK: ("●", Style(color="#ff8787")),
+    Mark.ACTION: ("◆", Style(color="#d7a0ff")),
+    Mark.SAMPLE: ("╵", Style(color="#87d7af")),
 }
 
 
@@ -439,7 +438,7 @@ def words(moment: Moment, width: int) -> str:
     return next(fits, f"{at_s:.2f} s")
 
 
-def mark_cells(moment: Moment, marks: Iterable[tuple[int, str]], columns: int) -> dict[int, Run]:
+def mark_cells(moment: Moment, marks: Iterable[tuple[int, Mark]], columns: int) -> dict[int, Run]:
     """Return the markers by column."""
     order = list(_MARKS)
     found: dict[int, int] = {}
@@ -475,7 +474,7 @@ class TimeBar(LinesView):
 
     def __init__(self) -> None:
         super().__init__()
-        self.marks: Callable[[], Sequence[tuple[int, str]]] = tuple
+        self.marks: Callable[[], Sequence[tuple[int, Mark]]] = tuple
         """Returns the marked ticks, with the kind of each marker."""
         self._moment: Moment | None = None
         self._columns = 0
