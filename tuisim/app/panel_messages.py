@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from tuisim.app.actions import time_travel
 from tuisim.app.keys.action import ActionHost
@@ -49,20 +49,23 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         """Handle a key of the editor."""
-        match message.what:
-            case "save":
+        from tuisim.app.panels.code import ProgramCommand
+
+        match message.command:
+            case ProgramCommand.SAVE:
                 self.workspace.document.save()
-            case "run":
+            case ProgramCommand.RUN:
                 self.action_act("run")
                 # Make the robot visible, or the place of the error in the text.
-                if self.workspace.panel_area.alone and not (
-                    self.workspace.panel_area.code and self.workspace.panel_area.code.error_line
-                ):
-                    self.workspace.panel_area.give_all("")
-            case "new" | "open":
-                self.action_act(message.what)
-            case _:
+                area = self.workspace.panel_area
+                if area.alone and not (area.code and area.code.error_line):
+                    area.give_all("")
+            case ProgramCommand.NEW | ProgramCommand.OPEN:
+                self.action_act(message.command.value)
+            case ProgramCommand.NONE:
                 self.say("No program to edit: o opens one, ctrl+t begins a new one")
+            case _:
+                assert_never(message.command)
 
     def on_descendant_focus(self) -> None:
         """Update the footer: other keys may be available."""

@@ -28,7 +28,7 @@ class CodeApp(PanelApp[Code]):
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         """Keep what is wanted."""
-        self.wishes.append(message.what)
+        self.wishes.append(message.command)
 
 
 async def alone(pilot: Pilot[Any], text: str = TEXT) -> tuple[Code, CodeArea]:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tuisim.app.editor.area import EDITOR_KEYS
-from tuisim.app.keys.help import KeyHelp, key_groups
-
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
 
@@ -28,6 +25,9 @@ _EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("
 
 def show_help(workspace: Workspace) -> None:
     """Show every key of the app, of the editor, and those that work everywhere."""
+    from tuisim.app.editor.area import EDITOR_KEYS
+    from tuisim.app.keys.help import KeyHelp, key_groups
+
     groups = key_groups(action for action in workspace.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES
     workspace.app.push_screen(KeyHelp("Help", _START, {**groups, "In the code": EDITOR_KEYS, "": _EVERYWHERE}))

@@ -26,11 +26,11 @@ def open_program(workspace: Workspace) -> None:
     """Ask for a program and open it."""
     from tuisim.app.dialogs.chooser import program_chooser
 
-    def take(path: str | None) -> None:
+    def opened(path: str | None) -> None:
         if path:
             open_path(workspace, path)
 
-    workspace.app.push_screen(program_chooser(), take)
+    workspace.app.push_screen(program_chooser(), opened)
 
 
 def open_path(workspace: Workspace, path: str) -> None:
@@ -122,12 +122,12 @@ def compare(workspace: Workspace) -> None:
     if recording is None:
         return
 
-    def take(run_id: str | None) -> None:
+    def chosen(run_id: str | None) -> None:
         if run_id:
             work, show = partial(_diff, recording.run_id, run_id), partial(_show, workspace, recording)
             background.run(workspace.panel_area, work, show, workspace.app.complain, group="diff", exclusive=True)
 
-    workspace.app.push_screen(RunChooser(recording), take)
+    workspace.app.push_screen(RunChooser(recording), chosen)
 
 
 def _diff(run_id: str, other_id: str) -> tuple[str, RunDiff]:

@@ -81,12 +81,12 @@ def choose_mat(workspace: Workspace) -> None:
     workspace.app.push_screen(MatPicker(workspace.run_controller.spec.world.background, known, folder), lay)
 
 
-def _choose(workspace: Workspace, chooser: Chooser, take: Callable[[NextRun, str], NextRun]) -> None:
+def _choose(workspace: Workspace, chooser: Chooser, change: Callable[[NextRun, str], NextRun]) -> None:
     """Ask for a name or a file, and apply the choice to the plan."""
 
     def chosen(word: str | None) -> None:
         if word:
-            workspace.loader.attempt(lambda plan: take(plan, word))
+            workspace.loader.attempt(lambda plan: change(plan, word))
 
     workspace.app.push_screen(chooser, chosen)
 

@@ -160,12 +160,12 @@ def choose_run(workspace: Workspace) -> None:
     """Ask for a stored run and open it."""
     from tuisim.app.dialogs.runs import RunChooser
 
-    def take(run_id: str | None) -> None:
+    def chosen(run_id: str | None) -> None:
         if run_id:
             workspace.document.when_safe(lambda: workspace.loader.open_run(run_id))
 
     def ask() -> None:
-        workspace.app.push_screen(RunChooser(), take)
+        workspace.app.push_screen(RunChooser(), chosen)
 
     workspace.document.when_safe(ask)
 

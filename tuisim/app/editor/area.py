@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from enum import StrEnum
 from typing import ClassVar
 
 from rich.cells import cell_len
@@ -42,6 +43,19 @@ EDITOR_KEYS = (
 """For the help: what each key does while the cursor is in the text."""
 
 
+class EditorCommand(StrEnum):
+    """What the keys of the text ask the code panel for."""
+
+    TYPE = "type"
+    STOP_TYPING = "stop_typing"
+    FIND = "find"
+    LINE = "line"
+    NEXT = "next"
+    PREVIOUS = "previous"
+    NEW = "new"
+    OPEN = "open"
+
+
 class CodeArea(TextArea):
     """A program's text. It can be edited only while `typing`."""
 
@@ -59,11 +73,11 @@ class CodeArea(TextArea):
     ]
 
     class Wanted(Message):
-        """Posted for a key: find, line, next, previous, type, done, new, open."""
+        """Posted for a key that does more than edit the text."""
 
-        def __init__(self, what: str) -> None:
+        def __init__(self, command: EditorCommand) -> None:
             super().__init__()
-            self.what = what
+            self.command = command
 
     class GutterClicked(Message):
         """Posted when a line number was clicked."""
@@ -233,20 +247,20 @@ class CodeArea(TextArea):
         """Leave the keys of undo and redo to the app while the user does not type."""
         return self.typing if action in ("undo", "redo") else super().check_action(action, parameters)
 
-    def action_want(self, what: str) -> None:
+    def action_want(self, command: str) -> None:
         """Post a request that is more than an edit of the text."""
-        self.post_message(self.Wanted(what))
+        self.post_message(self.Wanted(EditorCommand(command)))
 
     def on_key(self, event: events.Key) -> None:
         """Handle the keys that start and end typing, indent, and comment."""
         if not self.typing:
             if event.key == "enter":
                 self._done(event)
-                self.post_message(self.Wanted("type"))
+                self.post_message(self.Wanted(EditorCommand.TYPE))
             return
         if event.key == "escape":
             self._done(event)
-            self.post_message(self.Wanted("done"))
+            self.post_message(self.Wanted(EditorCommand.STOP_TYPING))
         elif event.key == "enter":
             self._done(event)
             row, column = min(self.selection)
@@ -307,7 +321,7 @@ class CodeArea(TextArea):
                 self.post_message(self.GutterClicked(row + 1))
 
 
-_WHILE_TYPING = {"ctrl+n": "new", "ctrl+o": "open"}
+_WHILE_TYPING = {"ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
 """Usual editor keys; while the user does not type, they are keys of the robot and the obstacles."""
 
 _CHANGES: Mapping[str, text_lines.Change] = {

@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping
-from typing import ClassVar
+from enum import StrEnum
+from typing import ClassVar, assert_never
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -14,7 +15,7 @@ from textual.message import Message
 from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
-from tuisim.app.editor.area import CodeArea
+from tuisim.app.editor.area import CodeArea, EditorCommand
 from tuisim.app.editor.find_bar import FIND, LINE, FindBar
 from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.snapshot import RunPhase, Snapshot
@@ -25,6 +26,17 @@ LIT_GAP_S = 0.1
 
 NOTHING_OPEN = "No program: o opens one, ctrl+t begins a new one"
 _TYPING_KEYS = "esc done  ^s save  ^r run  ^f find"
+
+
+class ProgramCommand(StrEnum):
+    """What the code panel asks the app for."""
+
+    SAVE = "save"
+    RUN = "run"
+    NEW = "new"
+    OPEN = "open"
+    NONE = "none"
+    """To say that there is no program to edit."""
 
 
 class Code(Vertical):
@@ -45,12 +57,11 @@ class Code(Vertical):
             self.text = text
 
     class Wanted(Message):
-        """Posted to `save` the program, to `run` it, to start a `new` one, to `open` another; or as `none` if there is
-        none to edit."""
+        """Posted for a key that concerns the whole program."""
 
-        def __init__(self, what: str) -> None:
+        def __init__(self, command: ProgramCommand) -> None:
             super().__init__()
-            self.what = what
+            self.command = command
 
     class TypingChanged(Message):
         """Posted when typing in the text begins or ends."""
@@ -210,7 +221,7 @@ class Code(Vertical):
             at_error: Start on the line that is marked as an error, if there is one.
         """
         if not self._key:
-            self.post_message(self.Wanted("none"))
+            self.post_message(self.Wanted(ProgramCommand.NONE))
             return
         self._area.focus()
         if at_error and self.error_line:
@@ -239,9 +250,9 @@ class Code(Vertical):
             self._say()
             self.post_message(self.Edited(text))
 
-    def action_want(self, what: str) -> None:
+    def action_want(self, command: str) -> None:
         """Post a request to the app."""
-        self.post_message(self.Wanted(what))
+        self.post_message(self.Wanted(ProgramCommand(command)))
 
     def on_code_area_gutter_clicked(self, event: CodeArea.GutterClicked) -> None:
         """Toggle a breakpoint."""
@@ -251,21 +262,25 @@ class Code(Vertical):
     def on_code_area_wanted(self, event: CodeArea.Wanted) -> None:
         """Run the action of a key."""
         event.stop()
-        match event.what:
-            case "type":
+        match event.command:
+            case EditorCommand.TYPE:
                 self.start_typing()
-            case "done":
+            case EditorCommand.STOP_TYPING:
                 self.stop_typing()
-            case "find":
+            case EditorCommand.FIND:
                 self._bar.open(FIND)
-            case "line":
+            case EditorCommand.LINE:
                 self._bar.open(LINE)
-            case "next":
+            case EditorCommand.NEXT:
                 self._find(self._bar.wanted, 1)
-            case "previous":
+            case EditorCommand.PREVIOUS:
                 self._find(self._bar.wanted, -1)
-            case what:
-                self.post_message(self.Wanted(what))
+            case EditorCommand.NEW:
+                self.post_message(self.Wanted(ProgramCommand.NEW))
+            case EditorCommand.OPEN:
+                self.post_message(self.Wanted(ProgramCommand.OPEN))
+            case _:
+                assert_never(event.command)
 
     # Find
 

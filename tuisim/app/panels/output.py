@@ -231,8 +231,8 @@ class Log(Widget, can_focus=True):
         hidden = self._count - len(self._rows)
         if hidden:
             if at == 0:
-                told = f"… {counted(hidden, 'earlier line is', 'earlier lines are')} in the log"
-                return told[: self.size.width - 1], Stream.NOTE
+                text = f"… {counted(hidden, 'earlier line is', 'earlier lines are')} in the log"
+                return text[: self.size.width - 1], Stream.NOTE
             at -= 1
         return self._lines[at] if 0 <= at < len(self._lines) else ("", Stream.STDOUT)
 
