@@ -46,6 +46,7 @@ def write(tmp_path: Path) -> Write:
 @EXAMPLES
 @given(robot=robots())
 def test_a_robot_reads_back_to_the_last_bit(robot: RobotSpec, tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").unlink(missing_ok=True)
     save_robot(robot, tmp_path / "robot.toml")
     assert load_robot(str(tmp_path / "robot.toml")) == robot
 
@@ -53,6 +54,7 @@ def test_a_robot_reads_back_to_the_last_bit(robot: RobotSpec, tmp_path: Path) ->
 @EXAMPLES
 @given(found=st.lists(boxes, max_size=5).map(tuple))
 def test_obstacles_read_back_to_the_last_bit(found: tuple[Obstacle, ...], tmp_path: Path) -> None:
+    (tmp_path / "boxes.toml").unlink(missing_ok=True)
     save_obstacles(found, tmp_path / "boxes.toml")
     assert load_obstacles(str(tmp_path / "boxes.toml")) == found
 
@@ -85,6 +87,7 @@ def test_a_world_makes_the_same_run_again(
     if isinstance(robot, RobotSpec):
         robot = RobotChoice(robot)
     spec = build_run_spec(Settings(robot=robot, **flags, **start, **chosen))
+    (tmp_path / "lab.toml").unlink(missing_ok=True)
     save_world(spec, tmp_path / "lab.toml", program)
     world = load_world(tmp_path / "lab.toml")
     assert build_run_spec(settings_of(world.settings)) == spec

@@ -108,6 +108,8 @@ def read_file(path: Path, error: type[ConfigError]) -> Any:
     if suffix not in FILE_SUFFIXES:
         raise error("is neither a .toml nor a .json file", "the suffix selects the format", file=shown_path)
     text = _text(path, error)
+    if not text.strip():
+        raise error("is empty", file=shown_path)
     if suffix == ".json":
         return _json(text, shown_path, error)
     return parse_toml(text, shown_path, error)
@@ -135,8 +137,6 @@ def _text(path: Path, error: type[ConfigError]) -> str:
     except UnicodeDecodeError as reason:
         line = data.count(b"\n", 0, reason.start) + 1
         raise error(f"line {line} is not UTF-8 text", "save it as UTF-8", file=file) from None
-    if not text.strip():
-        raise error("is empty", file=file)
     return text
 
 
@@ -418,17 +418,93 @@ def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = Mappi
     return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
 
 
-def write_toml(path: Path, lines: Iterable[str], error: type[ConfigError], *, owner_only: bool = False) -> None:
-    """Write a TOML file atomically.
+def save_toml(
+    path: Path,
+    lines: Iterable[str],
+    at: Location,
+    read: Callable[[Any], object],
+    expected: object,
+    *,
+    check: Callable[[Any], object] | None = None,
+    kept: Collection[str] = (),
+    owner_only: bool = False,
+) -> None:
+    """Write a TOML file atomically. In an existing file the user's comments, layout and order stay.
+
+    Args:
+        path: The file.
+        lines: The contents of a new file.
+        at: The location of its data.
+        read: Returns the object in the file's data.
+        expected: The object that `read` must return.
+        check: Raises for data of another kind of file, without looking into further files; by default `read`.
+        kept: Keys of an existing file that the lines do not cover.
+        owner_only: Whether only the owner may read a new file.
 
     Raises:
-        ConfigError: of the class `error`: it cannot be written; an existing file is unchanged.
+        ConfigError: an existing file is not of this kind, or the file cannot be written, or cannot represent the
+            object; an existing file is unchanged.
     """
+    if path.suffix != ".toml":
+        raise at.wrong("must end in .toml")
+    texts = ["\n".join(lines) + "\n"]
+    if read(parse_toml(texts[0], at.file, at.error)) != expected:
+        raise at.wrong("a file cannot represent this")
+    if path.is_file() and (old := _text(path, at.error)).strip():
+        try:
+            (check or read)(parse_toml(old, at.file, at.error))
+        except ConfigError as error:
+            hint = "; ".join(filter(None, (error.hint, "correct the file, or save under another name")))
+            raise type(error)(error.message, hint) from None
+        # The order of sensors may matter, so some tables must be replaced as a whole.
+        texts = [_updated_text(old, texts[0], kept, whole) for whole in (False, True)]
+    text = next((text for text in texts if read(parse_toml(text, at.file, at.error)) == expected), "")
+    if not text:
+        raise at.wrong("cannot be updated", "save under another name")
     try:
-        if path.suffix != ".toml":
-            raise error("must end in .toml", file=str(path))
         with replacing(path, owner_only=owner_only) as stream:
-            stream.write(("\n".join(lines) + "\n").encode())
+            stream.write(text.encode())
     except (OSError, ValueError) as reason:
-        message = f"cannot be written: {getattr(reason, 'strerror', None) or reason}"
-        raise error(message, file=str(path)) from None
+        raise at.wrong(f"cannot be written: {getattr(reason, 'strerror', None) or reason}") from None
+
+
+def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str:
+    """Return a TOML text with the values of a new one, but comments, layout and order of the old one.
+
+    Args:
+        old, new: The texts.
+        kept: Keys that only the old text has.
+        whole: Whether tables are replaced as a whole.
+    """
+    import tomlkit
+
+    document = tomlkit.parse(old)
+    _update(document, tomlkit.parse(new), kept, whole)
+    return tomlkit.dumps(document)
+
+
+def _update(old: Any, new: Any, kept: Collection[str] = (), whole: bool = False) -> None:
+    from tomlkit.items import AoT, InlineTable
+
+    for key in [key for key in old if key not in new and key not in kept]:
+        del old[key]
+    for key, value in new.items():
+        before = old.get(key)
+        if not whole and isinstance(before, Mapping) and isinstance(value, Mapping):
+            _update(before, value)
+        elif not whole and isinstance(before, AoT) and isinstance(value, AoT):
+            for one, other in zip(before, value, strict=False):
+                _update(one, other)
+            del before[len(value) :]
+            for other in value[len(before) :]:
+                before.append(other)
+        elif before is None or isinstance(before, Mapping | AoT) or isinstance(value, Mapping | AoT):
+            old.pop(key, None)
+            # There is no room for the comment of a value in an inline table.
+            old[key] = _plain(value) if isinstance(old, InlineTable) else value
+        elif _plain(before) != _plain(value) or isinstance(before, bool) != isinstance(value, bool):
+            old[key] = _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    return value.unwrap() if hasattr(value, "unwrap") else value

@@ -16,10 +16,10 @@ from tuisim.config.files import (
     means_file,
     read_file,
     required,
+    save_toml,
     shown,
     table,
     toml_lines,
-    write_toml,
 )
 from tuisim.config.options import nearest
 from tuisim.core.spec import Obstacle
@@ -58,10 +58,11 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
         raise ObstacleError(f"no such obstacles {word!r}", hint, key=key)
     path = Path(word).expanduser()
     data, at = read_file(path, ObstacleError), Location(str(path), ObstacleError)
-    if path.suffix.lower() != ".json":
-        boxes = required(table(data, at, ("obstacle",)), "obstacle", at)
-        return obstacles_from_list(boxes, at.at("obstacle"))
-    return obstacles_from_sides(data, at)
+    return obstacles_from_sides(data, at) if path.suffix.lower() == ".json" else _from_table(data, at)
+
+
+def _from_table(data: object, at: Location) -> tuple[Obstacle, ...]:
+    return obstacles_from_list(required(table(data, at, ("obstacle",)), "obstacle", at), at.at("obstacle"))
 
 
 def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
@@ -88,14 +89,15 @@ def obstacles_from_list(data: object, at: Location) -> tuple[Obstacle, ...]:
 
 
 def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
-    """Write obstacles atomically to a TOML file; `load_obstacles` returns equal ones.
+    """Write obstacles atomically to a TOML file; `load_obstacles` returns equal ones. Comments in the file stay.
 
     Raises:
         ObstacleError: the file cannot be written, or there are too many.
     """
     if len(obstacles) > MAX_OBSTACLES:
         raise ObstacleError(f"cannot hold {len(obstacles)} obstacles", f"at most {MAX_OBSTACLES}", file=str(path))
-    write_toml(Path(path), obstacle_file(obstacles), ObstacleError)
+    at = Location(str(path), ObstacleError)
+    save_toml(Path(path), obstacle_file(obstacles), at, lambda data: _from_table(data, at), tuple(obstacles))
 
 
 def obstacle_file(obstacles: Sequence[Obstacle]) -> list[str]:

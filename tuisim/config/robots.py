@@ -22,16 +22,15 @@ from tuisim.config.files import (
     means_file,
     name_of,
     one_of,
-    parse_toml,
     read_file,
     required,
+    save_toml,
     shown,
     table,
     toml_key,
     toml_lines,
     updated,
     with_location,
-    write_toml,
 )
 from tuisim.config.options import RobotChoice, nearest, pen_color
 from tuisim.core.parts import MOTOR_KINDS, InfraredSpec, MotorSpec, TouchSpec
@@ -338,17 +337,14 @@ def shown_keys(keys: Sequence[str]) -> str:
 
 
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
-    """Write a robot atomically to a TOML file; `load_robot` returns an equal one.
+    """Write a robot atomically to a TOML file; `load_robot` returns an equal one. Comments in the file stay.
 
     Raises:
         RobotError: the file cannot be written, or cannot represent the robot, such as a name of two lines.
     """
     path = Path(path)
-    lines = robot_file(spec)
-    data = parse_toml("\n".join(lines), str(path), RobotError)
-    if robot_from_table(data, name_of(path), Location(str(path), RobotError)).spec != spec:
-        raise RobotError("a file cannot represent this robot", file=str(path))
-    write_toml(path, lines, RobotError)
+    at = Location(str(path), RobotError)
+    save_toml(path, robot_file(spec), at, lambda data: robot_from_table(data, name_of(path), at).spec, spec)
 
 
 def robot_file(spec: RobotSpec) -> list[str]:

@@ -22,15 +22,14 @@ from tuisim.config.files import (
     means_file,
     name_of,
     one_of,
-    parse_toml,
     read_file,
     required,
+    save_toml,
     shown,
     toml_lines,
-    write_toml,
 )
 from tuisim.config.folders import programs_folder
-from tuisim.config.mats import find_mat
+from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
 from tuisim.config.options import (
     MAX_ANGLE_DEG,
@@ -122,6 +121,8 @@ class _World(Struct):
 
 
 _SAME_IN_SETTINGS = ("seed", "walls", "solid", "pen_marks", "rays", "autorun")
+_NOT_IN_A_RUN = ("mats", "rays", "autorun", "panels", "hidden_panels")
+"""Keys that stay as they are when a run is saved into a file that has them."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 
 
@@ -317,7 +318,7 @@ _COMMENTS = {
 
 
 def save_world(spec: RunSpec, path: Path | str, program: str | None = None, arguments: Sequence[str] = ()) -> None:
-    """Write a run atomically to a world file from which an equal run is built.
+    """Write a run atomically to a world file from which an equal run is built. Comments in the file stay.
 
     Args:
         spec: The run.
@@ -329,11 +330,22 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
         ConfigError: the file cannot be written, or cannot represent the run.
     """
     path = Path(path)
+    at = Location(str(path))
+
+    def read(data: object) -> RunSpec:
+        return build_run_spec(settings_of(world_from_table(data, path).settings))
+
+    def check(data: object) -> None:
+        world = _given(convert(data, _World, at))
+        if "mats" in world:
+            # A folder with an image of the same name would replace the mat.
+            found = find_mat(settings_from(spec)["background"], str(path.parent / os.path.expanduser(world["mats"])))
+            if spec_name(found) != spec.world.background:
+                kept.remove("mats")
+
+    kept = list(_NOT_IN_A_RUN)
     lines = world_lines(spec, path.parent, program, arguments)
-    data = parse_toml("\n".join(lines), str(path), ConfigError)
-    if build_run_spec(settings_of(world_from_table(data, path).settings)) != spec:
-        raise ConfigError("a file cannot represent this world", file=str(path))
-    write_toml(path, lines, ConfigError)
+    save_toml(path, lines, at, read, spec, check=check, kept=kept)
 
 
 def world_lines(spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()) -> list[str]:

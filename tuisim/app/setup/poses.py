@@ -83,14 +83,18 @@ def load_poses() -> dict[str, Pose]:
     Raises:
         ConfigError: their file cannot be read or is invalid.
     """
-    from tuisim.config.files import Location, read_file, required, table
-    from tuisim.config.worlds import pose_from_table
+    from tuisim.config.files import read_file
 
     path = poses_file()
-    if not path.exists():
-        return {}
-    at = Location(str(path))
-    poses = required(table(read_file(path, ConfigError), at, ("poses",)), "poses", at)
+    return _poses(read_file(path, ConfigError)) if path.exists() else {}
+
+
+def _poses(data: object) -> dict[str, Pose]:
+    from tuisim.config.files import Location, required, table
+    from tuisim.config.worlds import pose_from_table
+
+    at = Location(str(poses_file()))
+    poses = required(table(data, at, ("poses",)), "poses", at)
     return {name: pose_from_table(pose, at.at(f"poses.{name}")) for name, pose in table(poses, at.at("poses")).items()}
 
 
@@ -119,7 +123,7 @@ def delete_pose(name: str) -> None:
 
 
 def _write(poses: Mapping[str, Pose]) -> None:
-    from tuisim.config.files import toml_key, toml_lines, write_toml
+    from tuisim.config.files import Location, save_toml, toml_key, toml_lines
 
     path = poses_file()
     lines = [_HEAD, "", "[poses]"]
@@ -129,4 +133,4 @@ def _write(poses: Mapping[str, Pose]) -> None:
         make_private_folder(path.parent)
     except OSError as error:
         raise ConfigError(f"cannot be made: {error.strerror or error}", file=str(path.parent)) from None
-    write_toml(path, lines, ConfigError, owner_only=True)
+    save_toml(path, lines, Location(str(path)), _poses, poses, owner_only=True)
