@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config.build import build_run_spec
-from tuisim.config.options import APP, OPTIONS, Option, nearest, settings_of
+from tuisim.config.options import APP, OPTIONS, Option, settings_of
 from tuisim.config.program_file import ProgramSource, program_of_text, read_program
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun

@@ -16,11 +16,10 @@ from pathlib import Path
 from typing import cast
 
 import click
-from click.shell_completion import shell_complete
+from click.shell_completion import get_completion_class, shell_complete
 
 from tuisim import __version__
-from tuisim.commands.completion import COMPLETE_VARIABLE
-from tuisim.config.command_line import Group, option
+from tuisim.config.command_line import Group, command
 from tuisim.errors import ConfigError, HostError, TuisimError, printable
 
 
@@ -29,30 +28,33 @@ class Entry:
     """One line of `COMMANDS`."""
 
     path: str
-    """MODULE:NAME in `commands/`; imported on use."""
+    """MODULE:NAME, imported on use."""
     does: str
 
     def load(self) -> click.Command:
         """Import the command."""
         module, _, name = self.path.partition(":")
-        return cast("click.Command", getattr(import_module(f"tuisim.commands.{module}"), name))
+        return cast("click.Command", getattr(import_module(f"tuisim.{module}"), name))
 
 
 COMMANDS: Mapping[str, Entry] = {
-    "open": Entry("app:open_app", "Open the app (the default command)"),
-    "run": Entry("run:run", "Run programs without the app"),
-    "runs": Entry("runs:runs", "List, show, export or remove stored runs"),
-    "log": Entry("log:log", "Analyse logs: statistics, bands, events, signals"),
-    "analyse": Entry("app:analyse", "Explore logs in the app: table, chart, bands, notes"),
-    "backgrounds": Entry("listings:backgrounds", "List the mats"),
-    "robots": Entry("listings:robots", "List the robots, or print one as a file"),
-    "obstacles": Entry("listings:obstacles", "List the sets of obstacles, or print one as a file"),
-    "programs": Entry("listings:programs", "List the example programs"),
-    "profiles": Entry("listings:profiles", "List the profiles and the simulated time of each call"),
-    "kernel": Entry("kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
-    "completion": Entry("completion:completion", "Print a script that completes commands in your shell"),
+    "open": Entry("commands.app:open_app", "Open the app (the default command)"),
+    "run": Entry("commands.run:run", "Run programs without the app"),
+    "runs": Entry("commands.runs:runs", "List, show, export or remove stored runs"),
+    "log": Entry("commands.log:log", "Analyse logs: statistics, bands, events, signals"),
+    "analyse": Entry("commands.app:analyse", "Explore logs in the app: table, chart, bands, notes"),
+    "backgrounds": Entry("commands.listings:backgrounds", "List the mats"),
+    "robots": Entry("commands.listings:robots", "List the robots, or print one as a file"),
+    "obstacles": Entry("commands.listings:obstacles", "List the sets of obstacles, or print one as a file"),
+    "programs": Entry("commands.listings:programs", "List the example programs"),
+    "profiles": Entry("commands.listings:profiles", "List the profiles and the simulated time of each call"),
+    "kernel": Entry("commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
+    "completion": Entry("cli:completion", "Print a script that completes commands in your shell"),
 }
 """Every command."""
+
+_COMPLETE = "_TUISIM_COMPLETE"
+"""The environment variable with which a completion script asks for words."""
 
 LEAST_OPEN_FILES = 64
 """Open files that the app, a run and their libraries need, with some margin."""
@@ -87,12 +89,6 @@ def _check_open_files() -> None:
         raise HostError(f"this shell allows no more than {allowed} open files", hint) from None
 
 
-def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
-    if asked and not ctx.resilient_parsing:
-        click.echo(f"tuisim {__version__}")
-        ctx.exit()
-
-
 class _Root(Group):
     """The command `tuisim`: a word that is no command is for `open`."""
 
@@ -110,7 +106,6 @@ _ROOT = _Root(
     {name: entry.does for name, entry in COMMANDS.items()},
     lambda name: COMMANDS[name].load(),
     default="open",
-    params=[option("--version", is_flag=True, expose_value=False, callback=_print_version, help="Print the version.")],
     subcommand_metavar="[COMMAND] …",
     help="""A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.
 
@@ -118,12 +113,31 @@ _ROOT = _Root(
     lists its options.
     """,
 )
+click.version_option(__version__, prog_name="tuisim", message="%(prog)s %(version)s", help="Print the version.")(_ROOT)
+
+
+@command(
+    click.Argument(["shell"], type=click.Choice(["bash", "zsh", "fish"]), metavar="bash|zsh|fish"),
+    help="""Print a script that completes commands, options and names in your shell.
+
+    \b
+    bash  in ~/.bashrc:  eval "$(tuisim completion bash)"
+    zsh   in ~/.zshrc:   eval "$(tuisim completion zsh)"
+    fish  tuisim completion fish > ~/.config/fish/completions/tuisim.fish
+    """,
+)
+def completion(shell: str) -> int:
+    """Print the script."""
+    scripts = get_completion_class(shell)
+    assert scripts is not None
+    print(scripts(_ROOT, {}, "tuisim", _COMPLETE).source())
+    return 0
 
 
 def _dispatch(words: Sequence[str]) -> int:
     _check_open_files()
-    if instruction := os.environ.get(COMPLETE_VARIABLE):
-        return shell_complete(_ROOT, {}, "tuisim", COMPLETE_VARIABLE, instruction)
+    if instruction := os.environ.get(_COMPLETE):
+        return shell_complete(_ROOT, {}, "tuisim", _COMPLETE, instruction)
     try:
         with _ROOT.make_context("tuisim", list(words)) as context:
             return int(_ROOT.invoke(context))

@@ -36,6 +36,16 @@ def counted(count: int, one: str, many: str = "") -> str:
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
+def nearest(name: str, allowed: Iterable[str]) -> str:
+    """Return the hint for an unknown name: the closest matches, else all names."""
+    from difflib import get_close_matches
+
+    names = list(allowed)
+    by_lower = {known.lower(): known for known in names}
+    close = [by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, 3, 0.5)]
+    return f"did you mean {' or '.join(close)}?" if close else f"one of {', '.join(names)}"
+
+
 def printable(text: str) -> str:
     """Return a text as a single line that is safe in any terminal, font and file.
 

@@ -13,22 +13,18 @@ import click
 from tuisim import __version__
 from tuisim.commands.listings import names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
-from tuisim.config.command_line import Arguments, Value, argument, command, option, shared_options
+from tuisim.config.command_line import Arguments, Value, argument, command, option
+from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError
 
-
-def print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
-    """Print the version and exit, if `--version` is given."""
-    if asked and not ctx.resilient_parsing:
-        click.echo(f"tuisim {__version__}")
-        ctx.exit()
+VERSION = "%(prog)s %(version)s"
 
 
+@click.version_option(__version__, prog_name="tuisim", message=VERSION, hidden=True)
 @command(
     argument("words", "[PROGRAM]", lambda: names_of("programs"), nargs=-1),
     option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
     option("--run", metavar="RUN", help="Open a stored run, see `tuisim runs`."),
-    option("--version", is_flag=True, expose_value=False, is_eager=True, hidden=True, callback=print_version),
     *shared_options(names=names_of),
     passes_arguments=True,
     name="open",

@@ -1,32 +1,47 @@
-"""`tuisim backgrounds`, `robots`, `obstacles`, `programs` and `profiles`: list what there is by name."""
+"""`tuisim backgrounds`, `robots`, `obstacles`, `programs` and `profiles`: list what there is by name.
+
+Each imports only what it lists: reading mats or robots takes longer than the rest of the command.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
 from tuisim.config.command_line import AS_JSON, argument, command, option
-from tuisim.config.folders import programs_folder
-from tuisim.config.mats import Background, Taken, import_originals, mats, own_folder
-from tuisim.config.obstacles import OBSTACLES, load_obstacles, obstacle_file
-from tuisim.config.profiles import SOURCES, load_profile
-from tuisim.config.program_file import programs as example_programs
-from tuisim.config.robots import ROBOTS, load_robot, robot_file
 from tuisim.core.profile import MS, PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
 from tuisim.errors import counted, listed
+
+if TYPE_CHECKING:
+    from tuisim.config.mats import Background, Taken
 
 
 def names_of(field: str) -> Iterable[str]:
     """Return the names of programs, or those that an option such as `background` accepts."""
     match field:
         case "programs":
-            return [program.name.removesuffix(".py") for program in example_programs()]
+            from tuisim.config.program_file import programs
+
+            return [program.name.removesuffix(".py") for program in programs()]
         case "background":
+            from tuisim.config.mats import mats
+
             return mats(None)
-    return {"robot": ROBOTS, "obstacles": OBSTACLES, "profile": PROFILES}.get(field, ())
+        case "robot":
+            from tuisim.config.robots import ROBOTS
+
+            return ROBOTS
+        case "obstacles":
+            from tuisim.config.obstacles import OBSTACLES
+
+            return OBSTACLES
+        case "profile":
+            return PROFILES
+    return ()
 
 
 # Mats
@@ -39,9 +54,11 @@ def names_of(field: str) -> Iterable[str]:
 )
 def backgrounds(folder: str | None, use_originals: str | None, as_json: bool) -> int:
     """List the mats with their start poses, or import images."""
+    from tuisim.config.mats import import_originals, mats, own_folder
+
     if use_originals is not None:
         taken, left = import_originals(Path(use_originals).expanduser())
-        _show_taken(taken, left, as_json=as_json)
+        _show_taken(taken, left, own_folder(), as_json=as_json)
         return 0
     found = mats(folder).values()
     if as_json:
@@ -73,13 +90,13 @@ def _plain(mat: Background) -> dict[str, object]:
     }  # fmt: skip
 
 
-def _show_taken(taken: Sequence[Taken], left: Sequence[str], *, as_json: bool) -> None:
+def _show_taken(taken: Sequence[Taken], left: Sequence[str], folder: Path, *, as_json: bool) -> None:
     if as_json:
         echo_json([{"name": one.name, "file": one.file, "size_px": list(one.size_px)} for one in taken])
     else:
         rows = [(one.name, one.file, _size(one)) for one in taken]
         echo_lines(table(("MAT", "PICTURE", "PIXELS"), rows))
-    echo_error(f"{counted(len(taken), 'image')} copied to {own_folder()}; remove one there to undo it")
+    echo_error(f"{counted(len(taken), 'image')} copied to {folder}; remove one there to undo it")
     if left:
         echo_error(f"skipped, not named like a mat: {listed(left)}")
 
@@ -93,9 +110,11 @@ def _size(one: Taken) -> str:
 # Robots and obstacles
 
 
-@command(argument("robot", "[NAME|FILE]", lambda: ROBOTS, required=False), AS_JSON)
+@command(argument("robot", "[NAME|FILE]", lambda: names_of("robot"), required=False), AS_JSON)
 def robots(robot: str | None, as_json: bool) -> int:
     """List the robots, or print one as TOML to start your own from."""
+    from tuisim.config.robots import ROBOTS, load_robot, robot_file
+
     chosen = None if robot is None else load_robot(robot)
     if as_json:
         echo_json([asdict(one) for one in ([chosen] if chosen else ROBOTS.values())])
@@ -120,9 +139,11 @@ def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
     return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors), on_ports
 
 
-@command(argument("word", "[NAME|FILE]", lambda: OBSTACLES, required=False), AS_JSON)
+@command(argument("word", "[NAME|FILE]", lambda: names_of("obstacles"), required=False), AS_JSON)
 def obstacles(word: str | None, as_json: bool) -> int:
     """List the sets of obstacles, or print one as TOML to start your own from."""
+    from tuisim.config.obstacles import OBSTACLES, load_obstacles, obstacle_file
+
     chosen = OBSTACLES if word is None else {word: load_obstacles(word)}
     if as_json:
         echo_json([{"name": name, "obstacles": [asdict(box) for box in boxes]} for name, boxes in chosen.items()])
@@ -143,6 +164,9 @@ def obstacles(word: str | None, as_json: bool) -> int:
 @command(AS_JSON)
 def programs(as_json: bool) -> int:
     """List the example programs."""
+    from tuisim.config.folders import programs_folder
+    from tuisim.config.program_file import programs as example_programs
+
     found = example_programs()
     if as_json:
         echo_json([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found])
@@ -155,6 +179,8 @@ def programs(as_json: bool) -> int:
 @command(argument("words", "[NAME|FILE]…", lambda: PROFILES, nargs=-1), AS_JSON)
 def profiles(words: Sequence[str], as_json: bool) -> int:
     """List the profiles: the simulated time of each call, and the source of each number."""
+    from tuisim.config.profiles import SOURCES, load_profile
+
     shown = [asdict(profile) for profile in [load_profile(word) for word in words] or PROFILES.values()]
     if as_json:
         echo_json(shown)

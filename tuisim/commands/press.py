@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tuisim.config.options import nearest, number
-from tuisim.errors import ConfigError
+from tuisim.config.options import number
+from tuisim.errors import ConfigError, nearest
 from tuisim.protocol import BUTTONS, SetButtons, UserAction
 
 FLAG = "--press"

@@ -14,8 +14,8 @@ from pathlib import Path
 from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, known_programs_of
 from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import Arguments
-from tuisim.config.options import ARGUMENTS_FOLLOW, RobotChoice, Settings, settings_of
+from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
+from tuisim.config.options import RobotChoice, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, read_program
 from tuisim.config.robots import choose_robot
 from tuisim.config.worlds import WorldFile, load_world, means_world

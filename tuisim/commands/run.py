@@ -16,8 +16,9 @@ from tuisim.commands.press import parse_press, press_actions
 from tuisim.commands.progress import Progress, is_watched, tell
 from tuisim.commands.relay import Follower, Interrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
-from tuisim.config.command_line import Arguments, Value, argument, choice, command, option, shared_options
+from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
 from tuisim.config.options import APP, PANEL, number
+from tuisim.config.shared_options import shared_options
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted

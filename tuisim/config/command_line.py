@@ -1,7 +1,6 @@
-"""Commands by Click whose shared options come from `OPTIONS`, and whose wrong use is a ConfigError.
+"""Commands by Click: options in groups, subcommands loaded on use, and wrong use as ConfigError.
 
-The command line, the magic line of a program and the magics of a notebook are parsed here; the child process never
-imports it.
+Shell and notebook use it; the child process does not.
 """
 
 from __future__ import annotations
@@ -19,13 +18,13 @@ import click
 from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
-from tuisim.config.options import ARGUMENTS_FOLLOW, OPTIONS, Option, nearest, one_of
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, nearest
 
+ARGUMENTS_FOLLOW = "--"
+"""Words after this one on the command line are passed to the program."""
 GENERAL = "Options"
-Names = Callable[[str], Iterable[str]]
 Arguments = SimpleNamespace
-"""The parsed arguments of a command, by name; `settings` has those of `OPTIONS` by field of `Settings`."""
+"""The parsed arguments of a command, by name; `settings` has the shared options by field of `Settings`."""
 
 _FILES = ("FILE", "[NAME|FILE]", "FOLDER", "MAT", "ROBOT", "NAME")
 """Placeholders of values that may be files."""
@@ -65,11 +64,19 @@ def _with_files(found: list[CompletionItem], incomplete: str) -> list[Completion
 
 
 class GroupedOption(click.Option):
-    """An option under a heading of the help; only its first two names are listed there."""
+    """An option under a heading of the help; only its first two names are listed there.
 
-    def __init__(self, flags: Sequence[str], group: str = GENERAL, **how: Any) -> None:
+    Args:
+        flags: As in `click.Option`.
+        group: The heading.
+        sets: The field of `Settings` that it sets, if any.
+        adds: The word that it adds to that field, instead of its value.
+        how: Further arguments of `click.Option`.
+    """
+
+    def __init__(self, flags: Sequence[str], group: str = GENERAL, sets: str = "", adds: str = "", **how: Any) -> None:
         super().__init__(flags, **how)
-        self.group = group
+        self.group, self.sets, self.adds = group, sets, adds
         self.needs_value = not self.is_flag and "flag_value" not in how
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
@@ -85,8 +92,7 @@ def option(*flags: str, **how: Any) -> GroupedOption:
 
 def choice(flag: str, allowed: Sequence[str], **how: Any) -> GroupedOption:
     """Return an option whose value is one of several words."""
-    kind = Value(lambda text: one_of(allowed)(text, flag), lambda: allowed)
-    return GroupedOption([flag], type=kind, metavar="|".join(allowed), **how)
+    return GroupedOption([flag], type=click.Choice(allowed), metavar="|".join(allowed), **how)
 
 
 AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -95,51 +101,6 @@ AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
 def argument(name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any) -> click.Argument:
     """Return an argument that completion offers names for, besides files."""
     return click.Argument([name], metavar=metavar, type=Value(names=names), **how)
-
-
-def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
-    """Return the Click option for a line of `OPTIONS`."""
-    flags = [*shared.flags, *(shared.magic_flags if magic else ())]
-    how: dict[str, Any] = {"group": shared.group, "help": shared.help, "hidden": hidden}
-    if shared.panel:
-        return GroupedOption([*flags, f"panel_{shared.panel}"], is_flag=True, **how)
-    if shared.convert is None:
-        return GroupedOption([*flags, shared.field], flag_value=shared.value, default=None, **how)
-    convert, flag = shared.convert, shared.flags[0]
-    choices = shared.metavar.split("|") if "|" in shared.metavar else ()
-    kind = Value(lambda text: convert(text, flag), lambda: choices or names(shared.field))
-    return GroupedOption([*flags, shared.field], type=kind, metavar=shared.metavar, **how)
-
-
-def shared_options(
-    *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
-) -> list[click.Parameter]:
-    """Return the Click options of `OPTIONS`.
-
-    Args:
-        magic: Whether a magic line is parsed, not the command line.
-        hidden: Groups that are accepted but not listed in the help.
-        names: Return the names that completion offers for a field of `Settings`.
-    """
-    return [_parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS]
-
-
-_PANELS = {f"panel_{one.panel}": one for one in OPTIONS if one.panel}
-_FIELDS = frozenset(one.field for one in OPTIONS if not one.panel)
-
-
-def _take_settings(ctx: click.Context) -> dict[str, Any]:
-    """Remove the shared options from the parameters; return those that were given, keyed by field of `Settings`."""
-    found: dict[str, Any] = {}
-    for name in [name for name in ctx.params if name in _FIELDS or name in _PANELS]:
-        value = ctx.params.pop(name)
-        if ctx.get_parameter_source(name) is not ParameterSource.COMMANDLINE:
-            continue
-        if panel := _PANELS.get(name):
-            found[panel.field] = (*found.get(panel.field, ()), panel.panel)
-        else:
-            found[name] = value
-    return found
 
 
 def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
@@ -168,7 +129,7 @@ class Command(click.Command):
     def __init__(self, name: str, *, passes_arguments: bool = False, **how: Any) -> None:
         super().__init__(name, context_settings={"help_option_names": ["-h", "--help"]}, **how)
         self._passes_arguments = passes_arguments
-        self._shared = any(param.name in _PANELS for param in self.params)
+        self._shared = {one.name: one for one in self.params if isinstance(one, GroupedOption) and one.sets}
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse words as Click does, but also `-x=5`; refuse the name of an option as the value of another."""
@@ -184,8 +145,17 @@ class Command(click.Command):
         except click.UsageError as error:
             raise _wrong_use(error, ctx) from None
         if self._shared:
-            ctx.params["settings"] = _take_settings(ctx) | ({} if program is None else {"arguments": program})
+            ctx.params["settings"] = self._settings(ctx) | ({} if program is None else {"arguments": program})
         return rest
+
+    def _settings(self, ctx: click.Context) -> dict[str, Any]:
+        """Move the shared options from the parameters to a dictionary of those that were given."""
+        found: dict[str, Any] = {}
+        for name in [name for name in ctx.params if name in self._shared]:
+            value, one = ctx.params.pop(name), self._shared[name]
+            if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+                found[one.sets] = (*found.get(one.sets, ()), one.adds) if one.adds else value
+        return found
 
     def _check_values(self, ctx: click.Context, words: Sequence[str]) -> None:
         known = {flag: param for param in self.get_params(ctx) for flag in param.opts if flag.startswith("-")}
@@ -310,15 +280,6 @@ class Group(click.Group):
 def short_help(one: click.Command) -> str:
     """Return the first line of a command's help without its full stop."""
     return (one.help or "").partition("\n")[0].partition(". ")[0].rstrip(".")
-
-
-def parse_words(words: Sequence[str]) -> dict[str, Any]:
-    """Parse the words of a program's magic line and return its options, keyed by field of `Settings`.
-
-    Raises:
-        ConfigError: a word is no option, or a value is wrong.
-    """
-    return dict(parse(Command("tuisim", params=shared_options(magic=True), add_help_option=False), words).settings)
 
 
 def parse(command: Command, words: Sequence[str]) -> Arguments:

@@ -20,8 +20,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.atomic import replacing
-from tuisim.config.options import nearest
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, nearest
 
 if TYPE_CHECKING:
     from msgspec import inspect as types

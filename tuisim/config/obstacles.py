@@ -21,9 +21,8 @@ from tuisim.config.files import (
     table,
     toml_lines,
 )
-from tuisim.config.options import nearest
 from tuisim.core.spec import Obstacle
-from tuisim.errors import ObstacleError
+from tuisim.errors import ObstacleError, nearest
 
 NO_OBSTACLES = "None"
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,8 +16,6 @@ from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, Obstacle, RobotSpec
 from tuisim.errors import ConfigError
 
-ARGUMENTS_FOLLOW = "--"
-"""Words after this one on the command line are passed to the program."""
 PRELOADS = ("none", "imports", "preloaded")
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
 MAX_POSITION_MM = 10_000
@@ -110,14 +108,6 @@ class Option:
     """Further names in a magic line only, because they mean something else on the command line."""
 
 
-def nearest(name: str, allowed: Iterable[str]) -> str:
-    """Return the hint for an unknown name: the closest matches, else all names."""
-    names = list(allowed)
-    by_lower = {known.lower(): known for known in names}
-    close = [by_lower[lower] for lower in difflib.get_close_matches(name.lower(), by_lower, 3, 0.5)]
-    return f"did you mean {' or '.join(close)}?" if close else f"one of {', '.join(names)}"
-
-
 def number(low: float, high: float) -> Callable[[str, str], float]:
     """Return a converter from the text after a flag to a number in a range; it raises ConfigError for other texts."""
 
@@ -148,9 +138,7 @@ def whole(low: int, high: int) -> Callable[[str, str], int]:
     return convert
 
 
-def one_of(allowed: Sequence[str]) -> Callable[[str, str], str]:
-    """Return a converter that checks the text after a flag; it raises ConfigError for other texts."""
-
+def _one_of(allowed: Sequence[str]) -> Callable[[str, str], str]:
     def convert(text: str, flag: str) -> str:
         if text not in allowed:
             raise ConfigError(f"no such value {text!r}", f"one of {', '.join(allowed)}", key=flag)
@@ -166,7 +154,7 @@ def _name(text: str, flag: str) -> str:
 
 
 def _on_off(text: str, flag: str) -> bool:
-    return one_of(("on", "off"))(text, flag) == "on"
+    return _one_of(("on", "off"))(text, flag) == "on"
 
 
 def pen_color(text: str, flag: str) -> str:
@@ -210,7 +198,7 @@ OPTIONS: tuple[Option, ...] = (
         "background_fit",
         "How an image is placed on the field.",
         "|".join(BACKGROUND_FITS),
-        one_of(BACKGROUND_FITS),
+        _one_of(BACKGROUND_FITS),
     ),
     Option(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "A robot of `tuisim robots`, or a file.", "ROBOT", _name),
     Option(WORLD, ("-o", "--obstacles"), "obstacles", "A set of `tuisim obstacles`, or a file.", "NAME", _name),
@@ -229,13 +217,13 @@ OPTIONS: tuple[Option, ...] = (
     Option(RUN, ("--profile",), "profile", "A profile of `tuisim profiles`, or a file.", "NAME", _name),
     Option(RUN, ("--seed",), "seed", "Seed for noise and `random`.", "N", whole(0, MAX_SEED)),
     Option(RUN, ("--speed",), "speed", "A multiple of real time, or max.", "N", _speed),
-    Option(RUN, ("--preload",), "preload", "Names predefined for the program.", "|".join(PRELOADS), one_of(PRELOADS)),
+    Option(RUN, ("--preload",), "preload", "Names predefined for the program.", "|".join(PRELOADS), _one_of(PRELOADS)),
     Option(APP, ("-R", "--autorun"), "autorun", "Run at once."),
     Option(APP, ("-C", "--clear"), "clear_trace", "Start with a clear trace."),
     Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays."),
     Option(APP, ("-q", "--quiet"), "quiet", "Make no sound."),
     Option(APP, ("--fps",), "fps", "Maximum frames per second, 1 … 60.", "N", whole(1, 60)),
-    Option(APP, ("--colors",), "colors", "Colours: auto, truecolor, 256, 16 or none.", "DEPTH", one_of(COLOR_DEPTHS)),
+    Option(APP, ("--colors",), "colors", "Colours: auto, truecolor, 256, 16 or none.", "DEPTH", _one_of(COLOR_DEPTHS)),
     Option(PANEL, ("-O", "--output"), "panels_on", "Show the output.", panel="output"),
     Option(PANEL, ("-A", "--array"), "panels_on", "Show the sensor arrays.", panel="arrays"),
     Option(PANEL, ("-c", "--chart"), "panels_on", "Show the chart.", panel="chart"),

@@ -11,9 +11,8 @@ from typing import Annotated, Any, get_type_hints
 from msgspec import Meta
 
 from tuisim.config.files import Location, Scalar, convert, means_file, name_of, one_of, read_file, table, toml_lines
-from tuisim.config.options import nearest
 from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, ProfileSpec, law_of_earlier
-from tuisim.errors import ProfileError
+from tuisim.errors import ProfileError, nearest
 
 DEFAULT_PROFILE = "robolab"
 MAX_COST_MS = 60_000

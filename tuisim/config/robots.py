@@ -32,7 +32,7 @@ from tuisim.config.files import (
     updated,
     with_location,
 )
-from tuisim.config.options import RobotChoice, nearest, pen_color
+from tuisim.config.options import RobotChoice, pen_color
 from tuisim.core.parts import MOTOR_KINDS, InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.spec import (
     MAX_LIGHT_NOISE,
@@ -46,7 +46,7 @@ from tuisim.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
-from tuisim.errors import ConfigError, RobotError
+from tuisim.errors import ConfigError, RobotError, nearest
 
 
 def _sensor_pair(
