@@ -8,7 +8,7 @@ import pytest
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
-from tuisim.app.dialogs.prompt import completed
+from tuisim.app.dialogs.question import completed
 from tuisim.errors import LogError
 from tuisim.logs.derived import definition_of, derived
 

@@ -25,8 +25,7 @@ from tests.app.app_help import ready, settings
 from tests.running import PATIENCE_S
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.poses import SavedPoses
-from tuisim.app.terminal.driver import ResilientOutput
-from tuisim.app.terminal.terminal_app import TerminalApp
+from tuisim.app.terminal.terminal_app import ResilientOutput, TerminalApp
 from tuisim.core.geometry import Pose
 
 ENTER = "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.executable, sys.argv[1:])"

@@ -126,7 +126,7 @@ def beat(workspace: Workspace) -> None:
 
 def ask_where(workspace: Workspace) -> None:
     """Ask for an instant and go there."""
-    from tuisim.app.dialogs.prompt import LinePrompt
+    from tuisim.app.dialogs.question import LinePrompt
     from tuisim.app.goto import FORMS, find
 
     timeline = workspace.run_controller.timeline

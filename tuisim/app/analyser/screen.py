@@ -22,7 +22,7 @@ from tuisim.app.analyser.columns import Columns, ColumnsDialog, candidates
 from tuisim.app.analyser.panes import PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
-from tuisim.app.dialogs.prompt import Form, LinePrompt
+from tuisim.app.dialogs.question import Form, LinePrompt
 from tuisim.app.keys.action import ActionHost
 from tuisim.app.keys.footer import KeyFooter
 from tuisim.app.terminal.cell_view import LinesView

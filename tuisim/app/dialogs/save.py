@@ -14,7 +14,7 @@ from textual.widgets import Input, Static
 
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.dialogs.prompt import Form, form_list
+from tuisim.app.dialogs.question import Form, form_list
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.logs.export import LISTED
 

@@ -1,4 +1,4 @@
-"""The text of the code panel: a `TextArea` with marks beside the line numbers, and a highlighted line."""
+"""The text of the code panel: a `TextArea` with marks beside the line numbers, a highlighted line, and a find bar."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
 from textual import events
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
 from textual.geometry import Region
 from textual.message import Message
 from textual.strip import Strip
-from textual.widgets import TextArea
+from textual.widgets import Input, Static, TextArea
 from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
@@ -339,3 +341,89 @@ def _on(strip: Strip, base: Style, lit: Style) -> Strip:
     pieces = ((piece.text, piece.style or base) for piece in strip)
     shown = [Segment(text, style + background if style.bgcolor == base.bgcolor else style) for text, style in pieces]
     return Strip(shown, strip.cell_length)
+
+
+FIND, LINE = "find", "line"
+
+
+class FindBar(Horizontal):
+    """The find bar, shown during a search."""
+
+    DEFAULT_CSS = """
+    FindBar { height: 1; }
+    FindBar > Static { width: auto; }
+    FindBar > Input { width: 1fr; height: 1; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "close", "Close", show=False),
+        Binding("down,f3,ctrl+f", "go(1)", "Next", show=False),
+        Binding("up,shift+f3", "go(-1)", "Before", show=False),
+    ]
+
+    class Asked(Message):
+        """Posted to find the text, or to go to the line."""
+
+        def __init__(self, mode: str, text: str, by: int) -> None:
+            super().__init__()
+            self.mode, self.text, self.by = mode, text, by
+            """`by`: 1 the next match, -1 the previous one, 0 the one at or after the cursor."""
+
+    class Closed(Message):
+        """Posted when the focus returns to the text."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.mode = FIND
+        self.wanted = ""
+        """The last search text."""
+        self.display = False
+
+    def compose(self) -> ComposeResult:
+        """Create the child widgets."""
+        yield Static(id="label", markup=False)
+        yield Input(compact=True)
+        yield Static(id="found", markup=False)
+
+    def open(self, mode: str) -> None:
+        """Open the bar to find a text or go to a line."""
+        self.mode = mode
+        self.display = True
+        self.query_one("#label", Static).update("Find " if mode == FIND else "Line ")
+        self.say("")
+        field = self.query_one(Input)
+        with field.prevent(Input.Changed):
+            field.value = self.wanted if mode == FIND else ""
+        field.select_all()
+        field.focus()
+
+    def say(self, text: str) -> None:
+        """Show the result of the search."""
+        self.query_one("#found", Static).update(text)
+
+    def action_close(self) -> None:
+        """Hide the bar."""
+        self.display = False
+        self.post_message(self.Closed())
+
+    def action_go(self, by: int) -> None:
+        """Go to the next match, or the previous one."""
+        self._ask(by)
+
+    def _ask(self, by: int) -> None:
+        text = self.query_one(Input).value
+        if self.mode == FIND:
+            self.wanted = text
+        self.post_message(self.Asked(self.mode, text, by))
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Search while the user types."""
+        event.stop()
+        if self.mode == FIND:
+            self._ask(0)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Go to the next match, or to the line."""
+        event.stop()
+        self._ask(1)
+        if self.mode == LINE:
+            self.action_close()

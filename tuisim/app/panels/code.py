@@ -15,8 +15,7 @@ from textual.message import Message
 from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
-from tuisim.app.editor.area import CodeArea, EditorCommand
-from tuisim.app.editor.find_bar import FIND, LINE, FindBar
+from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
 from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.source import source_lines

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import re
 import signal
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import partial
+from io import TextIOWrapper
+from pathlib import Path
 from textwrap import wrap
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, TextIO, cast
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleRenderable, RichCast
@@ -22,6 +26,7 @@ from textual.color import Color
 from textual.command import Provider
 from textual.css.query import NoMatches
 from textual.driver import Driver
+from textual.drivers.linux_driver import LinuxDriver
 from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
@@ -29,7 +34,6 @@ from textual.screen import Screen
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.keys.palette import ActionProvider, Palette
-from tuisim.app.terminal.driver import TerminalDriver
 from tuisim.app.terminal.frame_buffer import FrameBuffer
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
@@ -252,3 +256,87 @@ class _Codes(CompositorUpdate):
     def render_segments(self, console: Console) -> str:
         """Return the codes."""
         return self._codes
+
+
+class ResilientOutput:
+    """Terminal output that accepts writes even after the terminal is gone, for example after a lost connection.
+
+    Textual writes from a thread of its own. That thread would end at the first failed write, and the app, which has to
+    write a little more before it can shut down, would wait for it for ever.
+
+    Args:
+        file: The output.
+    """
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+        self.gone = False
+        """Whether a write has failed; later output is dropped."""
+
+    def write(self, text: str) -> int:
+        """Write a text, or drop it. Return its length."""
+        if not self.gone:
+            try:
+                self._file.write(text)
+            except OSError:
+                self._lose()
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush the output."""
+        if not self.gone:
+            try:
+                self._file.flush()
+            except OSError:
+                self._lose()
+
+    def _lose(self) -> None:
+        # Data left in the file's buffer would fail again when Python ends, and change the exit code.
+        with suppress(OSError), Path(os.devnull).open("wb") as nothing:
+            os.dup2(nothing.fileno(), self._file.fileno())
+            self._file.flush()
+        self.gone = True
+
+    def fileno(self) -> int:
+        """Return the file descriptor."""
+        return self._file.fileno()
+
+
+class TerminalDriver(LinuxDriver):
+    """Textual's driver with an output that survives the loss of its terminal."""
+
+    def __init__(
+        self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
+    ) -> None:
+        super().__init__(app, debug=debug, mouse=mouse, size=size)
+        self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
+
+    def stop_as_job(self) -> bool:
+        """Restore the terminal and stop the whole process group; resume when the shell says so.
+
+        Textual stops with a signal that cannot be ignored, even without a shell that could resume the app. The signal
+        for job control is dropped in that case.
+
+        Returns:
+            Whether the app was stopped, and has resumed.
+        """
+        self.suspend_application_mode()
+        self._must_signal_resume = True
+        handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        os.kill(0, signal.SIGTSTP)
+        signal.signal(signal.SIGTSTP, handler)
+        # Whoever resumes the app has restored the terminal by then.
+        stopped = not self._must_signal_resume
+        if not stopped:
+            self.resume_application_mode()
+        return stopped
+
+    def _sigcont_application(self, *_: object) -> None:
+        # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
+        # preparation, where the former reader and writer must end before they are started again.
+        if not self._auto_restart or not os.isatty(self.fileno):
+            return
+        if self._writer_thread is not None and self._writer_thread.is_alive():
+            self.suspend_application_mode()
+            self._must_signal_resume = True
+        self.resume_application_mode()

@@ -8,7 +8,7 @@ from functools import partial
 from tuisim.analysis.model import RECKONING, Model, derive, take, with_definition
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.dialogs.prompt import Form
+from tuisim.app.dialogs.question import Form
 from tuisim.errors import LogError
 from tuisim.logs.derived import NEEDED
 from tuisim.logs.expressions import FUNCTIONS
