@@ -20,12 +20,12 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from tuisim.core.comparison import COMPARE, comparison_form, comparison_in, finite_number
 from tuisim.core.sensors import mounted
-from tuisim.core.sensors.color import COLOR_NAMES
+from tuisim.core.sensors.color import COLOR_NAMES, ColorReading
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, UltrasonicSpec
 from tuisim.errors import ConfigError
 
@@ -34,8 +34,15 @@ CHANGES, SEEN = "changes", "is seen"
 
 POSE_NAMES = ("x_mm", "y_mm", "heading_deg")
 WHEEL_NAMES = ("left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps")
-COLOR_PARTS = ("red", "green", "blue", "red%", "mean%", "color")
-"""Quantities of a colour sensor, after its name and a dot."""
+COLOR_PARTS: Mapping[str, Callable[[ColorReading], float]] = {
+    "red": lambda seen: seen.red,
+    "green": lambda seen: seen.green,
+    "blue": lambda seen: seen.blue,
+    "red%": lambda seen: seen.red_percent,
+    "mean%": lambda seen: seen.mean_percent,
+    "color": lambda seen: seen.code,
+}
+"""Quantities of a colour sensor, by their name after the sensor's name and a dot."""
 ALLOWED = (
     f"{comparison_form()}, such as left.red% < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
     "left.color changes · print matches REGEX · time 3.5 · stall"

@@ -8,7 +8,7 @@ import numpy as np
 
 from tuisim.analysis.model import Model
 from tuisim.analysis.traces import DISTANCE, LogTrace, held
-from tuisim.charts.axes import Limits, value_limits
+from tuisim.charts.axes import Limits, column_of, value_limits
 from tuisim.charts.canvas import seen_points
 from tuisim.charts.layout import Chart, Line, with_unit
 from tuisim.charts.traces import LARGEST, min_max
@@ -16,7 +16,7 @@ from tuisim.errors import LogError, printable
 from tuisim.runs.arrays import FloatArray
 
 _DOTS_X, _DOTS_Y = 2, 4
-"""Parts of a character cell that `seen_points` tells apart."""
+"""Parts of a character cell that `seen_points` distinguishes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,3 +96,16 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
     xs, ys = seen_points(xs[good], ys[good], limits, *cells)
     title, x_label = printable(model.log.title), with_unit(names[0])
     return Chart(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)
+
+
+def event_marks(model: Model, limits: Limits, columns: int) -> str:
+    """Return a line of text with a mark in each column of the chart that has events."""
+    line = [" "] * columns
+    for event in model.events.found(model.log):
+        trace = model.traces.named(event.variable)
+        place = event.time_s + float(trace.places[event.sample] - trace.series.time_s[event.sample])
+        if limits[0] <= place <= limits[1]:
+            column = min(max(column_of(place, limits, columns), 0), columns - 1)
+            mark = "▲" if event.rising else "▼"
+            line[column] = mark if line[column] in (" ", mark) else "◆"
+    return "".join(line)

@@ -15,7 +15,6 @@ from tuisim.logs.signals import known_in_order
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
     from tuisim.logs.log import Log, Series
 
 
@@ -190,23 +189,3 @@ class Events:
         if self._of[0] is not log or self._of[1] != self.thresholds:
             self.take(log, self.thresholds, events_of(log, self.thresholds))
         return self._found
-
-
-def place_of_event(model: Model, event: Event) -> float:
-    """Return the x position of an event in the chart."""
-    trace = model.traces.named(event.variable)
-    return event.time_s + float(trace.places[event.sample] - trace.series.time_s[event.sample])
-
-
-def marks(model: Model, limits: tuple[float, float], columns: int) -> str:
-    """Return a line with a mark at each column of the chart in which there are events."""
-    from tuisim.charts import axes
-
-    line = [" "] * columns
-    events = model.events.found(model.log)
-    places = np.array([place_of_event(model, event) for event in events])
-    for at in np.flatnonzero((places >= limits[0]) & (places <= limits[1])).tolist():
-        column = min(max(axes.column_of(float(places[at]), limits, columns), 0), columns - 1)
-        mark = "▲" if events[at].rising else "▼"
-        line[column] = mark if line[column] in (" ", mark) else "◆"
-    return "".join(line)

@@ -41,14 +41,7 @@ _UNIT = re.compile(
 """The unit at the end of a name: `time (ms)`, `Time [s]`, `t/s`, `timestamp_ms`, `time in ms`."""
 _SINCE_1970_S = (6.3e8, 4.2e9)
 """Seconds since 1970 of the years 1990 to 2103: times of this size are dates."""
-UNIT_NAMES = {
-    1.0: "seconds",
-    1e-3: "milliseconds",
-    1e-6: "microseconds",
-    1e-9: "nanoseconds",
-    60.0: "minutes",
-    3600.0: "hours",
-}
+UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
 """Names of units of time by their seconds."""
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import pyarrow as pa
 
@@ -54,13 +54,6 @@ class Loaded:
     log: Log | None
     """The log so far, not each time; always at the end."""
     done: bool = False
-
-
-class BlockReader(Protocol):
-    """Converts lines to rows."""
-
-    def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block, None if it has none."""
 
 
 def open_log(source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = "") -> Log:
@@ -267,7 +260,7 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
             return
 
 
-def _reader_for(block: Block, suffix: str, notes: Notes) -> BlockReader:
+def _reader_for(block: Block, suffix: str, notes: Notes) -> CsvReader | JsonReader | PrintedReader:
     lines = [line for _, (_, line) in zip(range(30), block.lines(), strict=False)]
     if suffix in (".jsonl", ".ndjson", ".json") or (suffix not in _TABLES and lines and lines[0].startswith("{")):
         return JsonReader(notes)

@@ -9,7 +9,8 @@ import pytest
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tests.app.analyser.test_screen import opened, text_of, typed
 from tests.app.app_help import LOGS, program, until
-from tuisim.analysis.events import events_of, marks, thresholds_of
+from tuisim.analysis.chart import event_marks
+from tuisim.analysis.events import events_of, thresholds_of
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.analyser.panes import PANES, pane_lines
@@ -50,9 +51,9 @@ def test_events_stand_where_they_are_in_the_chart_and_in_the_pane() -> None:
     model.events.thresholds = thresholds_of("Colour < 45", model.log)
     assert [event.variable for event in model.events.found(model.log)] == ["Colour #1", "Colour #2"]
     # The second run takes twice the time, until both are laid over each other at the event.
-    assert marks(model, (0.0, 18.0), 19) == "    ▼    ▼         "
+    assert event_marks(model, (0.0, 18.0), 19) == "    ▼    ▼         "
     model.align("Colour < 45")
-    assert marks(model, (-9.0, 9.0), 19).strip() == "▼"
+    assert event_marks(model, (-9.0, 9.0), 19).strip() == "▼"
     pane = PANES["events"]
     assert list(pane.rows(model)[0]) == ["Colour #1", "below", "4.500", "–", "40", "11", "45"]
     grown = model_of(long_log(runs=3))

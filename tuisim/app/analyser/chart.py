@@ -11,7 +11,7 @@ from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.analysis.events import marks
+from tuisim.analysis.chart import event_marks
 from tuisim.analysis.traces import DISTANCE
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.charts.canvas import BRAILLE, xy_lines
@@ -130,7 +130,7 @@ class LogChart(Widget):
         _, picture = self._pictures[-1]
         if not picture.columns:
             return [[]]
-        return [[(" " * picture.left + marks(model, picture.x_limits, picture.columns), _EVENTS)]]
+        return [[(" " * picture.left + event_marks(model, picture.x_limits, picture.columns), _EVENTS)]]
 
     def _against(self, model: Model, names: tuple[str, str], width: int, height: int) -> list[list[Run]]:
         trace = model.trace

@@ -11,7 +11,10 @@ from typing import Any
 
 from tuisim.breakpoints import (
     CHANGES,
+    COLOR_PARTS,
+    POSE_NAMES,
     SEEN,
+    WHEEL_NAMES,
     Breakpoint,
     PrintBreak,
     SampleBreak,
@@ -22,7 +25,7 @@ from tuisim.breakpoints import (
 from tuisim.core.comparison import COMPARE
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import SensorKind, gyro, mounted, ultrasonic
-from tuisim.core.sensors.color import COLOR_NAMES, ColorReading, reading
+from tuisim.core.sensors.color import COLOR_NAMES, reading
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
 from tuisim.runs.records import Stream
 from tuisim.runs.samples import parse_sample
@@ -88,15 +91,6 @@ class Condition:
 
 
 Value = Callable[[], float]
-
-_COLOR_PARTS: dict[str, Callable[[ColorReading], float]] = {
-    "red": lambda seen: seen.red,
-    "green": lambda seen: seen.green,
-    "blue": lambda seen: seen.blue,
-    "red%": lambda seen: seen.red_percent,
-    "mean%": lambda seen: seen.mean_percent,
-    "color": lambda seen: seen.code,
-}
 
 
 class Relation:
@@ -223,7 +217,7 @@ class Watcher:
                 continue
             match sensor:
                 case ColorSensorSpec():
-                    of = _COLOR_PARTS.get(part)
+                    of = COLOR_PARTS.get(part)
                     if of is None:
                         return None
                     seen = of
@@ -244,9 +238,9 @@ class Watcher:
 
     def _motion(self, quantity: str) -> Value | None:
         sim = self._session.sim
-        if quantity in ("x_mm", "y_mm", "heading_deg"):
+        if quantity in POSE_NAMES:
             return lambda: float(getattr(sim.pose, quantity))
-        if quantity.endswith(("_position_deg", "_speed_dps")):
+        if quantity in WHEEL_NAMES:
             return lambda: float(getattr(sim.instant(), quantity))
         return None
 
