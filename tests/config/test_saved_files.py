@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -220,3 +222,13 @@ def test_unknown_keys_of_a_json_robot_are_noted_and_its_file_stays(tmp_path: Pat
     (tmp_path / "mine.json").write_text(old)
     save_robot(load_robot(str(tmp_path / "mine.json")), tmp_path / "mine.toml")
     assert (tmp_path / "mine.json").read_text() == old
+
+
+def test_only_saving_into_an_existing_file_imports_its_library(tmp_path: Path) -> None:
+    code = (
+        "import sys; from tuisim.config.robots import ROBOTS, load_robot, save_robot\n"
+        "for imported in (False, True):\n"
+        "    save_robot(ROBOTS['Explorer'], 'mine.toml'); load_robot('mine.toml')\n"
+        "    assert ('tomlkit' in sys.modules) == imported"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)

@@ -8,19 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from tuisim.config.files import (
-    Location,
-    convert,
-    entries,
-    keys_of,
-    means_file,
-    read_file,
-    required,
-    save_toml,
-    shown,
-    table,
-    toml_lines,
-)
+from tuisim.config import files
+from tuisim.config.files import Location
 from tuisim.core.spec import Obstacle
 from tuisim.errors import ObstacleError, nearest
 
@@ -36,7 +25,7 @@ OBSTACLES: Mapping[str, tuple[Obstacle, ...]] = {
 
 MAX_OBSTACLES = 1000
 
-_KEYS = keys_of(Obstacle)
+_KEYS = files.keys_of(Obstacle)
 _HEAD = "# Obstacles for tuisim: lower left corner and size in mm; x from the field's left edge, y from its bottom."
 
 
@@ -52,16 +41,16 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
     """
     if word in OBSTACLES:
         return OBSTACLES[word]
-    if not means_file(word):
+    if not files.means_file(word):
         hint = f"{nearest(word, OBSTACLES)}; or a .toml or .json file"
         raise ObstacleError(f"no such obstacles {word!r}", hint, key=key)
     path = Path(word).expanduser()
-    data, at = read_file(path, ObstacleError), Location(str(path), ObstacleError)
+    data, at = files.read_file(path, ObstacleError), Location(str(path), ObstacleError)
     return obstacles_from_sides(data, at) if path.suffix.lower() == ".json" else _from_table(data, at)
 
 
 def _from_table(data: object, at: Location) -> tuple[Obstacle, ...]:
-    return obstacles_from_list(required(table(data, at, ("obstacle",)), "obstacle", at), at.at("obstacle"))
+    return obstacles_from_list(files.required(files.table(data, at, ("obstacle",)), "obstacle", at), at.at("obstacle"))
 
 
 def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
@@ -71,10 +60,10 @@ def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
         ConfigError: as `obstacles_from_list`.
     """
     if not isinstance(data, list):
-        raise at.wrong(f"must be a list of [x, y, width, height], got {shown(data)}")
+        raise at.wrong(f"must be a list of [x, y, width, height], got {files.shown(data)}")
     for number, sides in enumerate(data, start=1):
         if not isinstance(sides, list) or len(sides) != len(_KEYS):
-            raise at.at(f"[{number}]").wrong(f"must be [x, y, width, height], got {shown(sides)}")
+            raise at.at(f"[{number}]").wrong(f"must be [x, y, width, height], got {files.shown(sides)}")
     return obstacles_from_list([dict(zip(_KEYS, sides, strict=True)) for sides in data], at)
 
 
@@ -84,7 +73,9 @@ def obstacles_from_list(data: object, at: Location) -> tuple[Obstacle, ...]:
     Raises:
         ObstacleError: a key or a value is wrong, or there are too many.
     """
-    return tuple(convert(box, Obstacle, place) for box, place in entries(data, at, MAX_OBSTACLES, "obstacles"))
+    return tuple(
+        files.convert(box, Obstacle, place) for box, place in files.entries(data, at, MAX_OBSTACLES, "obstacles")
+    )
 
 
 def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
@@ -96,7 +87,7 @@ def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
     if len(obstacles) > MAX_OBSTACLES:
         raise ObstacleError(f"cannot hold {len(obstacles)} obstacles", f"at most {MAX_OBSTACLES}", file=str(path))
     at = Location(str(path), ObstacleError)
-    save_toml(Path(path), obstacle_file(obstacles), at, lambda data: _from_table(data, at), tuple(obstacles))
+    files.save_toml(Path(path), obstacle_file(obstacles), at, lambda data: _from_table(data, at), tuple(obstacles))
 
 
 def obstacle_file(obstacles: Sequence[Obstacle]) -> list[str]:
@@ -108,5 +99,5 @@ def obstacle_lines(obstacles: Sequence[Obstacle]) -> list[str]:
     """Return obstacles as TOML lines."""
     if not obstacles:
         return ["obstacle = []"]
-    boxes = [["[[obstacle]]", *toml_lines({key: getattr(box, key) for key in _KEYS}), ""] for box in obstacles]
+    boxes = [["[[obstacle]]", *files.toml_lines({key: getattr(box, key) for key in _KEYS}), ""] for box in obstacles]
     return [line for box in boxes for line in box][:-1]

@@ -11,27 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from tuisim.config.files import (
-    MAX_NAME,
-    Location,
-    Scalar,
-    by_switch,
-    changed,
-    convert,
-    keys_of,
-    means_file,
-    name_of,
-    one_of,
-    read_file,
-    required,
-    save_toml,
-    shown,
-    table,
-    toml_key,
-    toml_lines,
-    updated,
-    with_location,
-)
+from tuisim.config import files
+from tuisim.config.files import Location, Scalar
 from tuisim.config.options import RobotChoice, pen_color
 from tuisim.core.parts import MOTOR_KINDS, InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.spec import (
@@ -145,13 +126,13 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
     """
     if word in ROBOTS:
         return RobotChoice(ROBOTS[word], own_places=False)
-    if not means_file(word):
+    if not files.means_file(word):
         hint = f"{nearest(word, ROBOTS)}; or a .toml or .json file"
         raise RobotError(f"no such robot {word!r}", hint, key=key)
     path = Path(word).expanduser()
-    data, at = read_file(path, RobotError), Location(str(path), RobotError)
+    data, at = files.read_file(path, RobotError), Location(str(path), RobotError)
     read = robot_from_json if path.suffix.lower() == ".json" else robot_from_table
-    return read(data, name_of(path), at)
+    return read(data, files.name_of(path), at)
 
 
 def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
@@ -165,18 +146,18 @@ def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
     Raises:
         RobotError: a key or a value is wrong.
     """
-    found = table(data, at, _TOP_KEYS)
-    base = ROBOTS[one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
+    found = files.table(data, at, _TOP_KEYS)
+    base = ROBOTS[files.one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
     changes = {"name": name, **{key: found[key] for key in _BODY_KEYS if key in found}}
     if "name" in found:
         _check_name(found["name"], at.at("name"))
     if "weight" in found:
         changes["weight"] = _weight(found["weight"], at.at("weight"))
     if "pen" in found:
-        pen = dict(table(found["pen"], at.at("pen")))
+        pen = dict(files.table(found["pen"], at.at("pen")))
         if "color" in pen:
-            pen["color"] = by_switch(pen["color"], at.at("pen.color"), pen_color)
-        changes["pen"] = updated(base.pen, pen, at.at("pen"))
+            pen["color"] = files.by_switch(pen["color"], at.at("pen.color"), pen_color)
+        changes["pen"] = files.updated(base.pen, pen, at.at("pen"))
     if "motors" in found:
         changes |= _motors(found, base, at)
     for mount in MOUNTS:
@@ -185,58 +166,62 @@ def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
             changes[mount.field] = read(found[mount.key], mount, base, at.at(mount.key))
     sensors = found.get("color_sensors", {}).values()
     own_places = any(isinstance(sensor, dict) and "x_mm" in sensor for sensor in sensors)
-    return RobotChoice(changed(base, changes, at), own_places=own_places)
+    return RobotChoice(files.changed(base, changes, at), own_places=own_places)
 
 
 def _check_name(data: object, at: Location) -> None:
-    if len(name := convert(data, str, at)) > MAX_NAME:
-        raise at.wrong(f"must be at most {MAX_NAME} characters, got {len(name)}")
+    if len(name := files.convert(data, str, at)) > files.MAX_NAME:
+        raise at.wrong(f"must be at most {files.MAX_NAME} characters, got {len(name)}")
 
 
 def _weight(data: object, at: Location) -> float:
-    return ROBOT_WEIGHTS[one_of(data, at, ROBOT_WEIGHTS)] if isinstance(data, str) else convert(data, float, at)
+    return (
+        ROBOT_WEIGHTS[files.one_of(data, at, ROBOT_WEIGHTS)]
+        if isinstance(data, str)
+        else files.convert(data, float, at)
+    )
 
 
 def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str, Any]:
     """Return motor kinds by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
-    wheels = {convert(robot.get(key, getattr(base, key)), str, at.at(key)): key for key in PORT_KEYS}
+    wheels = {files.convert(robot.get(key, getattr(base, key)), str, at.at(key)): key for key in PORT_KEYS}
     kinds = {motor.port: motor.kind for motor in base.extra_motors}
     found: dict[str, Any] = {}
     at = at.at("motors")
-    for port, kind in table(robot["motors"], at, OUTPUT_PORTS).items():
+    for port, kind in files.table(robot["motors"], at, OUTPUT_PORTS).items():
         if port in wheels and kind is False:
             raise at.at(port).wrong("drives a wheel", f"it cannot be removed; {wheels[port]} sets its port")
         if port in wheels:
-            found[wheels[port].replace("port", "motor")] = one_of(kind, at.at(port), MOTOR_KINDS)
+            found[wheels[port].replace("port", "motor")] = files.one_of(kind, at.at(port), MOTOR_KINDS)
         elif kind is False:
             kinds.pop(port, None)
         else:
-            kinds[port] = one_of(kind, at.at(port), MOTOR_KINDS)
+            kinds[port] = files.one_of(kind, at.at(port), MOTOR_KINDS)
     return {**found, "extra_motors": tuple(MotorSpec(port, kind) for port, kind in kinds.items())}
 
 
 def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> SensorSpec | None:
     """Return the only sensor of its kind; None for `false`, which removes it."""
-    return None if data is False else updated(getattr(base, mount.field) or mount.spec(), data, at)
+    return None if data is False else files.updated(getattr(base, mount.field) or mount.spec(), data, at)
 
 
 def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[SensorSpec, ...]:
     """Return the base's sensors with the table's changes, and those that the table adds; `false` removes one."""
     found = {sensor.name: sensor for sensor in base.sensors_in(mount)}
-    names = table(data, at)
+    names = files.table(data, at)
     for name, sensor in names.items():
         place = at.at(name)
         if sensor is False:
             found.pop(name, None)
         elif not _SENSOR_NAME.fullmatch(name):
-            wrong = at.at(shown(name)[1:-1]).wrong
+            wrong = at.at(files.shown(name)[1:-1]).wrong
             raise wrong("is not a valid sensor name", "letters, digits and _, a letter first, at most 31")
         elif name in found:
-            found[name] = updated(found[name], sensor, place)
+            found[name] = files.updated(found[name], sensor, place)
         else:
             # No port is free by itself.
-            required(table(sensor, place, keys_of(mount.spec)), "port", place)
-            found[name] = convert({"name": name, **sensor}, mount.spec, place)
+            files.required(files.table(sensor, place, files.keys_of(mount.spec)), "port", place)
+            found[name] = files.convert({"name": name, **sensor}, mount.spec, place)
     # A file that names all of them also sets their order.
     order = [name for name in names if name in found]
     return tuple(found[name] for name in (order if len(order) == len(found) else found))
@@ -283,7 +268,7 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     Raises:
         RobotError: a key or a value is wrong.
     """
-    found = table(data, at)
+    found = files.table(data, at)
     ours: dict[str, Any] = {"color_sensors": {}}
     theirs: dict[str, str] = {}
     unknown: list[str] = []
@@ -298,7 +283,7 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
             place, keys = _PARTS[key]
             theirs |= {place: key, f"{place}.port": key} | {f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()}
             outer, _, inner = place.rpartition(".")
-            part = table(value, at.at(key))
+            part = files.table(value, at.at(key))
             (ours[outer] if outer else ours)[inner] = _part(part, keys, at.at(key))
             unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
         elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
@@ -307,7 +292,7 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     try:
         choice = robot_from_table(ours, name, at)
     except ConfigError as error:
-        raise with_location(error, at.file, theirs.get(error.key, error.key)) from None
+        raise files.with_location(error, at.file, theirs.get(error.key, error.key)) from None
     notes = (f"{at.file}: ignored unknown keys: {shown_keys(unknown)}",) if unknown else ()
     return replace(choice, motor_noise=_DEFAULT_NOISE if motor is None else motor, light_noise=light, notes=notes)
 
@@ -317,12 +302,12 @@ def _noise(robot: Mapping[str, object], key: str, most: int, at: Location) -> in
 
     value = robot.get(key)
     kind: Any = Annotated[int, Meta(ge=0, le=most)]
-    return None if value is None else convert(value, kind, at.at(key))
+    return None if value is None else files.convert(value, kind, at.at(key))
 
 
 def _part(part: Mapping[str, object], keys: Mapping[str, str], at: Location) -> dict[str, object] | bool:
     """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
-    if at.key != "pen" and not convert(part.get("enabled", True), bool, at.at("enabled")):
+    if at.key != "pen" and not files.convert(part.get("enabled", True), bool, at.at("enabled")):
         return False
     found = {keys[key]: value for key, value in part.items() if key in keys}
     if "noise" in keys and found.get("noise_mm") is None:
@@ -332,7 +317,7 @@ def _part(part: Mapping[str, object], keys: Mapping[str, str], at: Location) -> 
 
 def shown_keys(keys: Sequence[str]) -> str:
     """Return a short list of keys for a message, whatever their number and length."""
-    names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
+    names = [files.shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
     return ", ".join(names) + (f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else "")
 
 
@@ -344,7 +329,7 @@ def save_robot(spec: RobotSpec, path: Path | str) -> None:
     """
     path = Path(path)
     at = Location(str(path), RobotError)
-    save_toml(path, robot_file(spec), at, lambda data: robot_from_table(data, name_of(path), at).spec, spec)
+    files.save_toml(path, robot_file(spec), at, lambda data: robot_from_table(data, files.name_of(path), at).spec, spec)
 
 
 def robot_file(spec: RobotSpec) -> list[str]:
@@ -364,24 +349,24 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
     lines = [f"[{parent}]"] if parent else []
     values = _values(spec, ("name", *LENGTH_KEYS, "weight", *PORT_KEYS))
     values["weight"] = next((name for name, weight in ROBOT_WEIGHTS.items() if weight == spec.weight), spec.weight)
-    lines += toml_lines(values, COMMENTS)
+    lines += files.toml_lines(values, COMMENTS)
     names = [sensor.name for sensor in spec.color_sensors]
     if gone := [sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names]:
-        lines += ["", f"[{under}color_sensors]", *(f"{toml_key(name)} = false" for name in gone)]
+        lines += ["", f"[{under}color_sensors]", *(f"{files.toml_key(name)} = false" for name in gone)]
     for mount in MOUNTS:
         if mount.usual and not mount.many and not spec.sensors_in(mount):
             # Keys of the robot itself must precede its first table.
             lines.insert(1 if parent else 0, f"{mount.key} = false")
     for mount in MOUNTS:
         for sensor in spec.sensors_in(mount):
-            place = f"{mount.key}.{toml_key(sensor.name)}" if mount.many else mount.key
+            place = f"{mount.key}.{files.toml_key(sensor.name)}" if mount.many else mount.key
             comments = {**COMMENTS, **_FURTHER_COMMENTS.get(mount.spec, {})}
-            lines += ["", f"[{under}{place}]", *toml_lines(_values(sensor, keys_of(mount.spec)), comments)]
+            lines += ["", f"[{under}{place}]", *files.toml_lines(_values(sensor, files.keys_of(mount.spec)), comments)]
     wheels = [motor for motor in spec.wheel_motors if motor.kind != "large"]
     if wheels or spec.extra_motors:
         motors: dict[str, Scalar] = {motor.port: motor.kind for motor in (*wheels, *spec.extra_motors)}
-        lines += ["", f"[{under}motors]", *toml_lines(motors)]
-    return [*lines, "", f"[{under}pen]", *toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
+        lines += ["", f"[{under}motors]", *files.toml_lines(motors)]
+    return [*lines, "", f"[{under}pen]", *files.toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
 
 
 def _values(spec: object, keys: Iterable[str]) -> dict[str, Scalar]:

@@ -11,23 +11,9 @@ from typing import Annotated, Any, TypeAlias, TypeVar
 
 from msgspec import UNSET, Meta, Struct, UnsetType, structs
 
+from tuisim.config import files
 from tuisim.config.build import build_run_spec, settings_from
-from tuisim.config.files import (
-    Location,
-    Scalar,
-    by_switch,
-    convert,
-    entries,
-    errors_at,
-    means_file,
-    name_of,
-    one_of,
-    read_file,
-    required,
-    save_toml,
-    shown,
-    toml_lines,
-)
+from tuisim.config.files import Location, Scalar
 from tuisim.config.folders import programs_folder
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
@@ -161,7 +147,7 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
     path = Path(path).expanduser()
     if not means_world(path.name):
         raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
-    return world_from_table(read_file(path, ConfigError), path, mats)
+    return world_from_table(files.read_file(path, ConfigError), path, mats)
 
 
 def world_from_table(data: object, path: Path, mats: str | None = None) -> WorldFile:
@@ -176,7 +162,7 @@ def world_from_table(data: object, path: Path, mats: str | None = None) -> World
         ConfigError: a key or a value is wrong.
     """
     at = Location(str(path))
-    world = _given(convert(data, _World, at))
+    world = _given(files.convert(data, _World, at))
     referred: list[Path] = []
     resolve = partial(_resolved, path.parent, referred)
     found = {key: world[key] for key in _SAME_IN_SETTINGS if key in world} | _mat(world, at, resolve, mats)
@@ -189,7 +175,7 @@ def world_from_table(data: object, path: Path, mats: str | None = None) -> World
             case str(word):
                 found[key] = _named(word, at.at(key), resolve, load)
             case dict(inside) if read:
-                found[key] = read(inside, name_of(path), at.at(key, error))
+                found[key] = read(inside, files.name_of(path), at.at(key, error))
     if "obstacle" in world:
         if "obstacles" in world:
             raise at.at("obstacle").wrong("is given together with obstacles", "give only one of them")
@@ -198,8 +184,8 @@ def world_from_table(data: object, path: Path, mats: str | None = None) -> World
     found |= _pen(world.get("pen", {}), at.at("pen")) | _infrared(world, at)
     for key, field in _PANEL_FIELDS.items():
         if key in world:
-            listed = entries(world[key], at.at(key), len(PANELS), "panels")
-            found[field] = tuple(one_of(panel, place, PANELS) for panel, place in listed)
+            listed = files.entries(world[key], at.at(key), len(PANELS), "panels")
+            found[field] = tuple(files.one_of(panel, place, PANELS) for panel, place in listed)
     if "arguments" in world:
         words = enumerate(world["arguments"], start=1)
         found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
@@ -219,15 +205,15 @@ def pose_from_table(data: object, at: Location) -> Pose:
     Raises:
         ConfigError: a key is missing or unknown, or a value is wrong.
     """
-    found = _given(convert(data, _Start, at))
+    found = _given(files.convert(data, _Start, at))
     for key in _Start.__struct_fields__:
-        required(found, key, at)
+        files.required(found, key, at)
     return Pose(**found)
 
 
 def _argument(word: object, at: Location) -> str:
     if not isinstance(word, str):
-        raise at.wrong(f"must be text, got {shown(word)}", 'in quotes, such as "5"')
+        raise at.wrong(f"must be text, got {files.shown(word)}", 'in quotes, such as "5"')
     if "\0" in word:
         raise at.wrong("must be text without null characters")
     return word
@@ -252,14 +238,14 @@ def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | 
     """Return mat, fit and start pose. A mat has its own start pose, so it also discards the magic line's."""
     found: dict[str, Any] = {}
     if "background_fit" in world:
-        found["background_fit"] = one_of(world["background_fit"], at.at("background_fit"), BACKGROUND_FITS)
+        found["background_fit"] = files.one_of(world["background_fit"], at.at("background_fit"), BACKGROUND_FITS)
     if "mats" in world:
         found["mats"] = resolve(world["mats"])
     if "background" in world:
         word = world["background"]
         found |= dict.fromkeys(_Start.__struct_fields__)
         found["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
-        with errors_at(at.file, "background"):
+        with files.errors_at(at.file, "background"):
             find_mat(found["background"], found.get("mats", mats))
     found |= world.get("start", {})
     return found
@@ -267,9 +253,9 @@ def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | 
 
 def _named(word: str, at: Location, resolve: Resolver, load: Callable[[str], object]) -> str:
     """Return a name or the path of a file; it is loaded once, so that errors name this file and key."""
-    if means_file(word):
+    if files.means_file(word):
         word = resolve(word)
-    with errors_at(at.file, at.key):
+    with files.errors_at(at.file, at.key):
         load(word)
     return word
 
@@ -277,7 +263,7 @@ def _named(word: str, at: Location, resolve: Resolver, load: Callable[[str], obj
 def _pen(pen: Mapping[str, Any], at: Location) -> dict[str, Any]:
     found = {f"pen_{key}": value for key, value in pen.items()}
     if "color" in pen:
-        found["pen_color"] = by_switch(pen["color"], at.at("color"), pen_color)
+        found["pen_color"] = files.by_switch(pen["color"], at.at("color"), pen_color)
     return found
 
 
@@ -285,18 +271,18 @@ def _infrared(world: Mapping[str, Any], at: Location) -> dict[str, Any]:
     """Return beacon and remote control, keyed by field of `Settings`."""
     found: dict[str, Any] = {}
     if "beacon" in world:
-        found["beacon"] = BeaconSpec(**_given(convert(world["beacon"], _Beacon, at.at("beacon", ObstacleError))))
+        found["beacon"] = BeaconSpec(**_given(files.convert(world["beacon"], _Beacon, at.at("beacon", ObstacleError))))
     if "remote" in world:
-        presses = entries(world["remote"], at.at("remote", ObstacleError), MAX_PRESSES, "presses")
+        presses = files.entries(world["remote"], at.at("remote", ObstacleError), MAX_PRESSES, "presses")
         found["remote"] = tuple(_press(press, place) for press, place in presses)
     return found
 
 
 def _press(data: object, at: Location) -> RemotePress:
-    press = convert(data, _Press, at)
+    press = files.convert(data, _Press, at)
     for number, button in enumerate(press.buttons, start=1):
-        one_of(button, at.at(f"buttons[{number}]"), REMOTE_BUTTONS)
-    return convert(structs.asdict(press), RemotePress, at)
+        files.one_of(button, at.at(f"buttons[{number}]"), REMOTE_BUTTONS)
+    return files.convert(structs.asdict(press), RemotePress, at)
 
 
 _HEAD = "# A world for tuisim. Lengths in mm, angles in degrees counter-clockwise from +x; y up from the bottom edge."
@@ -336,7 +322,7 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
         return build_run_spec(settings_of(world_from_table(data, path).settings))
 
     def check(data: object) -> None:
-        world = _given(convert(data, _World, at))
+        world = _given(files.convert(data, _World, at))
         if "mats" in world:
             # A folder with an image of the same name would replace the mat.
             found = find_mat(settings_from(spec)["background"], str(path.parent / os.path.expanduser(world["mats"])))
@@ -345,7 +331,7 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
 
     kept = list(_NOT_IN_A_RUN)
     lines = world_lines(spec, path.parent, program, arguments)
-    save_toml(path, lines, at, read, spec, check=check, kept=kept)
+    files.save_toml(path, lines, at, read, spec, check=check, kept=kept)
 
 
 def world_lines(spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()) -> list[str]:
@@ -368,7 +354,7 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     for key in ("background_fit", "walls", "solid", "pen_marks", "robot", "obstacles", "profile", "seed"):
         if isinstance(settings[key], str | int):
             top[key] = settings[key]
-    lines = [_HEAD, "", *toml_lines(top, _COMMENTS)]
+    lines = [_HEAD, "", *files.toml_lines(top, _COMMENTS)]
     lines += _table("start", {key: settings[key] for key in ("x_mm", "y_mm", "heading_deg")})
     lines += _table("noise", {key: settings[f"{key}_noise"] for key in ("light", "motor")})
     pen = {"down": "pen_down", "color": "pen_color", "width_mm": "pen_width_mm"}
@@ -383,17 +369,17 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
 
 
 def _table(name: str, values: Mapping[str, Scalar]) -> list[str]:
-    return ["", f"[{name}]", *toml_lines(values, _COMMENTS)]
+    return ["", f"[{name}]", *files.toml_lines(values, _COMMENTS)]
 
 
 def _infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
     """Return beacon and button presses as lines of a world file."""
     lines: list[str] = []
     if beacon is not None:
-        lines += ["", "[beacon]", *toml_lines(asdict(beacon), _COMMENTS)]
+        lines += ["", "[beacon]", *files.toml_lines(asdict(beacon), _COMMENTS)]
     for press in remote:
         values: dict[str, Scalar] = {**asdict(press), "buttons": list(press.buttons)}
-        lines += ["", "[[remote]]", *toml_lines(values, _COMMENTS)]
+        lines += ["", "[[remote]]", *files.toml_lines(values, _COMMENTS)]
     return lines
 
 
