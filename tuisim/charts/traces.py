@@ -85,6 +85,8 @@ class Traces:
 
     def __init__(self) -> None:
         self._by_name: dict[str, Trace] = {}
+        self._cleared: dict[str, Trace] = {}
+        """Traces without points since `clear`: each gets its tick and its colour again with its next points."""
 
     def __iter__(self) -> Iterator[Trace]:
         return iter(sorted(self._by_name.values(), key=lambda trace: not trace.logged))
@@ -94,17 +96,20 @@ class Traces:
 
     def append(self, name: str, times_s: Sequence[float], values: Sequence[float]) -> None:
         """Add points to a trace, which is made if it is new."""
-        trace = self._by_name.get(name)
+        trace = self._by_name.get(name) or self._cleared.pop(name, None)
         if trace is None:
             # Logged traces use colours from the front of the list, telemetry from the back.
-            alike = sum((" " in known) == (" " in name) for known in self._by_name)
-            trace = self._by_name[name] = Trace(name, -1 - alike if " " in name else alike)
+            alike = sum((" " in known) == (" " in name) for known in (*self._by_name, *self._cleared))
+            trace = Trace(name, -1 - alike if " " in name else alike)
+        self._by_name[name] = trace
         trace.add(times_s, values)
 
     def clear(self) -> None:
-        """Remove all points."""
+        """Remove all traces."""
         for trace in self._by_name.values():
             trace.clear()
+        self._cleared.update(self._by_name)
+        self._by_name.clear()
 
     def drawn(self) -> list[Trace]:
         """Return the ticked traces that have points."""

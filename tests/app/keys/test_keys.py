@@ -67,6 +67,7 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
         await pilot.press("x")
         await until(pilot, lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app))
         recording = app.run_controller.timeline.recording
+        assert "[x] Colour" not in screen_text(app)
         assert recording is not None
         assert any("Colour" in row.text for row in recording.rows.rows(0))
 

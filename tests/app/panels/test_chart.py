@@ -156,8 +156,11 @@ async def test_clearing_keeps_the_ticks() -> None:
         await pilot.press("2", "delete")
         empty = rows(app)
         app.panel.append("gyro °", [0.0, 1.0], [1.0, 2.0])
+        gyro = rows(app)[0]
+        app.panel.append("Colour", [0.0, 1.0], [1.0, 2.0])
 
         assert any("print('Colour: ' + str(value))" in row for row in empty)
+        assert gyro.startswith("[x] gyro °")
         assert rows(app)[0].startswith("[x] Colour  [x] gyro °")
 
 

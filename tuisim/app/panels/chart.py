@@ -80,7 +80,7 @@ class Chart(Widget, can_focus=True):
         self._changed()
 
     def clear(self) -> None:
-        """Drop all points; the selection of traces stays."""
+        """Remove all traces; one that gets points again is ticked as before."""
         self._traces.clear()
         self._state = replace(self._state, x_limits=None)
         self._read(None)
@@ -165,7 +165,7 @@ class Chart(Widget, can_focus=True):
         self._draw_now()
 
     def action_clear(self) -> None:
-        """Drop all points."""
+        """Remove all traces."""
         self.clear()
 
     def action_move_cursor(self, columns: int) -> None:
