@@ -108,13 +108,13 @@ def _debugs() -> list[LabAction]:
     return [
         Action("next-line", "n", "Next line", DEBUG, debug.next_line, can, "next"),
         Action("step-into", "s", "Next line, into calls", DEBUG, debug.step_into, can, "into"),
-        Action("step-out", "u", "On until this function is left", DEBUG, debug.step_out, can, "out"),
+        Action("step-out", "u", "Continue until this function returns", DEBUG, debug.step_out, can, "out"),
         Action("line-back", "N", "One line back", DEBUG, debug.line_back, _can_look_back, "line back"),
-        Action("break", "t", "Breakpoint at the cursor's line, or none", DEBUG, debug.toggle_break, can, "break"),
-        Action("breaks", "T", "Breakpoints: add, edit, switch, delete", DEBUG, debug.list_breaks, can),
-        Action("watches", "w", "Watches: expressions to look at", DEBUG, debug.list_watches, can),
+        Action("break", "t", "Breakpoint on the cursor's line on or off", DEBUG, debug.toggle_break, can, "break"),
+        Action("breaks", "T", "Breakpoints: add, edit, switch on or off, delete", DEBUG, debug.list_breaks, can),
+        Action("watches", "w", "Watches: expressions to evaluate", DEBUG, debug.list_watches, can),
         Action("to-cursor", "L", "Run to the cursor's line", DEBUG, debug.to_cursor, can),
-        Action("ten-ticks", "colon", "Ten ticks on, while paused", TIME, debug.ten_ticks, _can_step),
+        Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, debug.ten_ticks, _can_step),
     ]
 
 
@@ -125,11 +125,11 @@ def _travels() -> list[LabAction]:
     return [
         Action("now", "end", "Back to now (also escape)", TIME, go.to_now, _can_come_back, "now"),
         Action("second-back", "less_than_sign", "One second back", TIME, go.second_back, back, "1 s", "", keys),
-        Action("second-on", "greater_than_sign", "One second on", TIME, go.second_on, on),
-        Action("sample-before", "left_parenthesis", "The sample before", TIME, go.sample_before, back),
-        Action("next-sample", "right_parenthesis", "The next sample", TIME, go.next_sample, on),
+        Action("second-on", "greater_than_sign", "One second forward", TIME, go.second_on, on),
+        Action("sample-before", "left_parenthesis", "Previous sample", TIME, go.sample_before, back),
+        Action("next-sample", "right_parenthesis", "Next sample", TIME, go.next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
-        Action("branch", "y", "Branch: go on from this instant", TIME, time_travel.branch_here, _can_branch, "branch"),
+        Action("branch", "y", "Branch from this instant", TIME, time_travel.branch_here, _can_branch, "branch"),
         Action("start-of-run", "home", "Start of the run", TIME, go.to_start, back),
     ]
 
@@ -140,8 +140,8 @@ ACTIONS: Mapping[str, LabAction] = {
     for action in (
         Action("run", "R", "Run the program", PROGRAM, program.run, _can_run, "run"),
         Action("stop", "S", "Stop the program", PROGRAM, program.stop, _can_stop, "stop"),
-        Action("pause", "space", "Pause or go on; play the past", PROGRAM, time_travel.pause, _can_pause, "pause"),
-        Action("tick", "full_stop", "One tick on, while paused", TIME, time_travel.tick_on, _can_step, "tick"),
+        Action("pause", "space", "Pause or resume; play the past", PROGRAM, time_travel.pause, _can_pause, "pause"),
+        Action("tick", "full_stop", "One tick forward, while paused", TIME, time_travel.tick_on, _can_step, "tick"),
         Action("back", "comma", "One tick back", TIME, time_travel.tick_back, _can_look_back, "back"),
         *_debugs(),
         *_travels(),
@@ -149,8 +149,8 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
         Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
-        Action("home", "m", "Robot back to its start", ROBOT, robot.home, footer="start"),
-        Action("random", "j", "Robot to a random place", ROBOT, robot.random_place),
+        Action("home", "m", "Robot back to its start pose", ROBOT, robot.home, footer="start"),
+        Action("random", "j", "Robot to a random pose", ROBOT, robot.random_place),
         Action("poses", "P", "Saved poses: go there, save, delete", ROBOT, robot.saved_poses),
         Action("robot", "r", "Choose a robot", ROBOT, robot.choose_robot, _can_change_world, "robot"),
         Action("reset-robot", "ctrl+n", "Undo the robot's edits", ROBOT, robot.reset_robot, _can_change_world),
@@ -170,11 +170,11 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
-        Action("enlarge", "plus", "The panel with the focus alone, and back", PANEL, panel.enlarge),
+        Action("enlarge", "plus", "Enlarge the panel with the focus, or restore", PANEL, panel.enlarge),
         Action("rays", "U", "Ultrasonic rays on or off", PANEL, panel.rays, footer="rays"),
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
-        Action("redraw", "ctrl+l", "Redraw, after something else has written on the screen", APP, app.redraw),
+        Action("redraw", "ctrl+l", "Redraw, after something else has written over the screen", APP, app.redraw),
         Action("suspend", "ctrl+z", "Suspend: fg in the shell comes back", APP, app.suspend),
         Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
     )
