@@ -54,20 +54,20 @@ def heard(voice: Voice, folder: Path, name: str) -> bytes:
 
 def test_texts_are_spoken(players: Path) -> None:
     voice = Voice(environment={})
-    voice.make_heard(Spoke("I see -v red", 0))
+    voice.play(Spoke("I see -v red", 0))
     assert heard(voice, players, "espeak-ng") == b"I see -v red"
 
 
 def test_tones_are_played(players: Path) -> None:
     voice = Voice(environment={})
-    voice.make_heard(Spoke("[tone 440 Hz]", 0, json.dumps([[440, 50, 0]])))
+    voice.play(Spoke("[tone 440 Hz]", 0, json.dumps([[440, 50, 0]])))
     assert len(samples(heard(voice, players, "paplay"))) == RATE_HZ // 20
 
 
 def test_files_are_played(players: Path, tmp_path: Path) -> None:
     (tmp_path / "own.wav").write_bytes(b"RIFF and so on")
     voice = Voice(environment={})
-    voice.make_heard(Spoke("[plays own.wav]", 0, "[[0, 10, 0]]", str(tmp_path / "own.wav")))
+    voice.play(Spoke("[plays own.wav]", 0, "[[0, 10, 0]]", str(tmp_path / "own.wav")))
     assert heard(voice, players, "paplay") == b"RIFF and so on"
 
 
@@ -77,20 +77,20 @@ def test_files_are_played(players: Path, tmp_path: Path) -> None:
 def test_nothing_is_heard(players: Path, quiet: bool, environment: dict[str, str]) -> None:
     voice = Voice(quiet, environment)
     for sound in (Spoke("hello", 0), Spoke("[beep]", 0, "[[440, 50, 0]]"), Spoke("[x]", 0, "", "/dev/null")):
-        voice.make_heard(sound)
+        voice.play(sound)
     assert voice._sounding is None
-    voice.hush()
+    voice.stop()
 
 
 def test_nothing_to_play_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     voice = Voice(environment={})
-    voice.make_heard(Spoke("hello", 0))
-    voice.make_heard(Spoke("[beep]", 0, "[[440, 50, 0]]"))
+    voice.play(Spoke("hello", 0))
+    voice.play(Spoke("[beep]", 0, "[[440, 50, 0]]"))
     assert voice._sounding is None
 
 
 def test_file_that_is_gone(players: Path) -> None:
     voice = Voice(environment={})
-    voice.make_heard(Spoke("[plays x.wav]", 0, "[[0, 10, 0]]", "/nowhere/x.wav"))
+    voice.play(Spoke("[plays x.wav]", 0, "[[0, 10, 0]]", "/nowhere/x.wav"))
     assert voice._sounding is None

@@ -189,7 +189,7 @@ class LabApp(PanelMessages):
         self.document.save_draft()
         self.debugger.close()
         self.run_controller.close()
-        self.voice.hush()
+        self.voice.stop()
 
     # The world
 
@@ -250,7 +250,7 @@ class LabApp(PanelMessages):
         """Process what the run has written, and draw a frame if the terminal has shown the last one."""
         try:
             news = self.run_controller.poll()
-            self._take(news)
+            self._process(news)
             time_travel.beat(self.workspace)
             self.debugger.beat()
             # A frame that has to wait counts as drawn.
@@ -287,16 +287,16 @@ class LabApp(PanelMessages):
             self._wake()
         await super().on_event(event)
 
-    def _take(self, news: RunUpdate) -> None:
+    def _process(self, news: RunUpdate) -> None:
         for sound in news.spoken:
-            self.voice.make_heard(sound)
+            self.voice.play(sound)
         for event in news.pauses:
             self.debugger.handle(event)
         if news.rows:
-            self._take_rows(news)
+            self._process_rows(news)
         if output := self.panel_area.output:
             if news.prompt is not None and not output.asking:
-                self._ask(news.prompt)
+                self._ask_user(news.prompt)
             elif news.prompt is None and output.asking:
                 output.stop_asking()
         if news.branched and (recording := self.run_controller.timeline.recording):
@@ -308,7 +308,7 @@ class LabApp(PanelMessages):
             self.panel_area.output.note(self._last_words)
             self._last_words = ""
 
-    def _take_rows(self, news: RunUpdate) -> None:
+    def _process_rows(self, news: RunUpdate) -> None:
         self.brick_hint.shown(news.rows)
         if self.panel_area.output:
             self.panel_area.output.add(news.rows, news.skipped)
@@ -319,7 +319,7 @@ class LabApp(PanelMessages):
             for name, (times, values) in series.items():
                 chart.append(name, times, values)
 
-    def _ask(self, prompt: str) -> None:
+    def _ask_user(self, prompt: str) -> None:
         if not self.panel_area.shown("output"):
             self.panel_area.toggle("output")
         if self.panel_area.output:

@@ -291,7 +291,7 @@ class AppDebugger:
         return DebugState(self.view, self.looks_back, self.busy)
 
     @property
-    def look(self) -> protocol.Inspect:
+    def inspect_request(self) -> protocol.Inspect:
         """Return the request that asks a paused program for its frames and variables."""
         return protocol.Inspect(self.watches, self._thread, self._frame)
 
@@ -311,9 +311,9 @@ class AppDebugger:
 
     def _inspect_again(self) -> None:
         if self.looks_back:
-            self._replay_debugger.look(self.look)
+            self._replay_debugger.look(self.inspect_request)
         elif self._paused is not None:
-            self._run_controller.debug(self.look)
+            self._run_controller.debug(self.inspect_request)
 
     def beat(self) -> None:
         """Follow the instant in view and process what has been computed."""
@@ -347,7 +347,7 @@ class AppDebugger:
         if timeline.recording is None or timeline.playing or self._replay_debugger.busy or position == self._wanted:
             return
         self._wanted = position
-        self._replay_debugger.go(timeline.recording, position, self.look)
+        self._replay_debugger.go(timeline.recording, position, self.inspect_request)
         self.show()
 
     def _arrived(self, paused: Paused, inspected: Inspected) -> None:
@@ -442,7 +442,7 @@ class AppDebugger:
         here = self._here()
         assert here is not None
         self._position, self._wanted = None, None
-        self._replay_debugger.go_on(timeline.recording, here, command, self.look)
+        self._replay_debugger.go_on(timeline.recording, here, command, self.inspect_request)
         self.show()
 
     def lines_back(self, count: int) -> None:
@@ -458,7 +458,7 @@ class AppDebugger:
             self._open_panels()
             self._position, self._wanted = None, None
             count, self._more_back = count + self._more_back, 0
-            self._replay_debugger.lines_back(recording, here, count, self.look)
+            self._replay_debugger.lines_back(recording, here, count, self.inspect_request)
             self.show()
 
     def close(self) -> None:

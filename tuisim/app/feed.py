@@ -192,6 +192,6 @@ class PastView:
             if count != self._printed:
                 self._printed = count
                 if tick is None or recording is None:
-                    output.look_back(None)
+                    output.show_past(None)
                 else:
-                    output.look_back(*recording.rows.texts_until(tick, PAST_ROWS))
+                    output.show_past(*recording.rows.texts_until(tick, PAST_ROWS))

@@ -363,7 +363,7 @@ class Loader:
     def _apply_app_settings(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
         """Apply the changes in a magic line that concern the app: panels, rays and speed."""
         panels = _panels_in(now)
-        self._panel_area.ask({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
+        self._panel_area.request({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
         if now.get("rays") and not before.get("rays") and self._panel_area.world:
             self._panel_area.world.show_rays = True
         if now.get("speed") is not None and now["speed"] != before.get("speed"):

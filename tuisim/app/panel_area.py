@@ -120,9 +120,9 @@ class PanelArea(Container):
         """Show or hide a panel."""
         show = not self.shown(panel) or bool(self.alone)
         self.alone, self._roomy = "", None
-        self.ask({panel: show})
+        self.request({panel: show})
 
-    def ask(self, wanted: Mapping[str, bool | None]) -> None:
+    def request(self, wanted: Mapping[str, bool | None]) -> None:
         """Show and hide panels. Later requests get room first; None leaves a panel to the size of the terminal."""
         for panel, show in wanted.items():
             self._asked.pop(panel, None)
@@ -140,7 +140,7 @@ class PanelArea(Container):
             names = ", ".join(f"{info.title} ({info.key})" for info in gone)
             self.app.notify(f"{came} takes the room of {names}")
 
-    def give_all(self, panel: str) -> None:
+    def maximize(self, panel: str) -> None:
         """Maximize one panel; an empty id restores the others."""
         if panel != self.alone or self._roomy:
             self.alone, self._roomy = panel, None
@@ -242,7 +242,7 @@ class PanelArea(Container):
     def _mark(self, focused: Widget | None) -> None:
         around = focused.ancestors_with_self if focused else []
         for panel in self.panels.values():
-            panel.set_class(panel in around, "-hears-keys")
+            panel.set_class(panel in around, "-focused")
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment in every panel on the screen."""

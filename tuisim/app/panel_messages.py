@@ -38,7 +38,7 @@ class PanelMessages(ActionHost, TerminalApp):
         """While the user types, give the code panel room and show the editor's keys in the footer."""
         self.situation_changed()
         if not message.typing:
-            self.workspace.panel_area.give_all("")
+            self.workspace.panel_area.maximize("")
         else:
             self.workspace.panel_area.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
 
@@ -59,7 +59,7 @@ class PanelMessages(ActionHost, TerminalApp):
                 # Make the robot visible, or the place of the error in the text.
                 area = self.workspace.panel_area
                 if area.alone and not (area.code and area.code.error_line):
-                    area.give_all("")
+                    area.maximize("")
             case ProgramCommand.NEW | ProgramCommand.OPEN:
                 self.action_act(message.command.value)
             case ProgramCommand.NONE:

@@ -275,7 +275,7 @@ class RunController(RunView):
         run = start_run(program, self.next_run.spec, options)
         self.close()
         self.run, self._end = run, None
-        self._look_at(Recording(self.run))
+        self._show_recording(Recording(self.run))
 
     def branch(self, branch: Branch) -> None:
         """Repeat a run as fast as possible up to an instant of it, and continue from there. Ends the current run.
@@ -297,7 +297,7 @@ class RunController(RunView):
         self.run, self._end = run, None
         # The noise of the current run is that of the next one, as if chosen now.
         self.next_run = plans.with_noise(self.next_run, noise)
-        self._look_at(Recording(run, branch.of.answers))
+        self._show_recording(Recording(run, branch.of.answers))
         self._branch = branch
 
     def _branch_arrived(self, paused: protocol.Paused | None = None) -> Branch | None:
@@ -322,9 +322,9 @@ class RunController(RunView):
         """Show a stored run, as one that has ended. Not during a run."""
         self.close()
         self._end = run.state
-        self._look_at(Recording(run))
+        self._show_recording(Recording(run))
 
-    def _look_at(self, recording: Recording) -> None:
+    def _show_recording(self, recording: Recording) -> None:
         self.timeline.switch_to(recording)
         self._pending.forget()
         self.pressed = frozenset()

@@ -74,7 +74,7 @@ class Voice:
         self._plays = None if mute else next(([path, *arguments] for path, arguments in found if path), None)
         self._sounding: subprocess.Popen[bytes] | None = None
 
-    def make_heard(self, sound: Spoke) -> None:
+    def play(self, sound: Spoke) -> None:
         """Speak a text or play a sound, unless one is still playing. Does not block."""
         if self._sounding and self._sounding.poll() is None:
             return
@@ -97,7 +97,7 @@ class Voice:
                 # The program has played it: the file may be deleted by now.
                 return
 
-    def hush(self) -> None:
+    def stop(self) -> None:
         """Stop the sound that is playing."""
         if self._sounding and self._sounding.poll() is None:
             self._sounding.kill()

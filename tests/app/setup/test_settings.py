@@ -53,7 +53,7 @@ async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
         assert "‹ Default_Robot ›" in screen_text(app)
         assert row(app, "wheel_spacing_mm").entry.value == "180"
         assert row(app, "left.port").entry.value == "in2"
-        assert [panel for panel in app.panel_area.panels if app.panel_area.panels[panel].has_class("-hears-keys")] == [
+        assert [panel for panel in app.panel_area.panels if app.panel_area.panels[panel].has_class("-focused")] == [
             "settings"
         ]
         # Letters are still keys of the app.

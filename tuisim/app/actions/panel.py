@@ -30,7 +30,7 @@ def enlarge(workspace: Workspace) -> None:
         "",
     )
     if panel or workspace.panel_area.alone:
-        workspace.panel_area.give_all("" if workspace.panel_area.alone else panel)
+        workspace.panel_area.maximize("" if workspace.panel_area.alone else panel)
     else:
         workspace.app.say("No panel has the focus: tab or a click gives it to one")
 

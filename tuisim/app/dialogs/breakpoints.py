@@ -96,7 +96,7 @@ class _Listed(Dialog[None], Generic[Entry]):
         at = self.query_one(OptionList).highlighted
         return at if self._entries else None
 
-    def _tell(self, at: int | None = None) -> None:
+    def _report(self, at: int | None = None) -> None:
         self._list(at)
         self._changed(tuple(self._entries))
 
@@ -104,7 +104,7 @@ class _Listed(Dialog[None], Generic[Entry]):
         """Delete the selected entry."""
         if isinstance(self.focused, OptionList) and (at := self._at) is not None:
             del self._entries[at]
-            self._tell(at)
+            self._report(at)
 
     @on(OptionList.OptionSelected)
     def action_edit(self) -> None:
@@ -133,7 +133,7 @@ class _Listed(Dialog[None], Generic[Entry]):
             self._entries[self._editing] = entry
         at, self._editing = self._editing, None
         event.input.clear()
-        self._tell(len(self._entries) - 1 if at is None else at)
+        self._report(len(self._entries) - 1 if at is None else at)
 
 
 class BreaksDialog(_Listed[Breakpoint]):
@@ -182,7 +182,7 @@ class BreaksDialog(_Listed[Breakpoint]):
         """Enable or disable the selected breakpoint."""
         if isinstance(self.focused, OptionList) and (at := self._at) is not None:
             self._entries[at] = replace(self._entries[at], disabled=not self._entries[at].disabled)
-            self._tell(at)
+            self._report(at)
 
 
 class WatchesDialog(_Listed[str]):

@@ -86,11 +86,11 @@ class Document:
         if program is not self._program:
             same = program is not None and self._program is not None and program.path == self._path
             if not (same and program is not None and program.text == self._runnable()):
-                self._take(program, offers=not same)
+                self._load_program(program, offers=not same)
             self._program, self._applied = program, self._text
         self.show()
 
-    def _take(self, program: Program | None, offers: bool) -> None:
+    def _load_program(self, program: Program | None, offers: bool) -> None:
         self._name, self._path = (program.name, program.path) if program else ("", "")
         self._text = self._saved = program.text if program else ""
         self._form, self._is_file, self._error_line = Form(), False, 0
@@ -237,7 +237,7 @@ class Document:
         if mistake := self._mistake():
             self._app.complain(TuisimError(f"{self._name} cannot run: {mistake.message}"))
             return False
-        return self._take_text()
+        return self._apply_text()
 
     @property
     def _is_applied(self) -> bool:
@@ -252,7 +252,7 @@ class Document:
             code.mark_error(mistake.line if mistake else 0)
         return mistake
 
-    def _take_text(self) -> bool:
+    def _apply_text(self) -> bool:
         try:
             self._loader.apply_text(self._text, self._path, self._name)
         except TuisimError as error:
@@ -273,7 +273,7 @@ class Document:
         self.when_safe(begin)
 
     def _open_new(self) -> None:
-        self._take(None, offers=False)
+        self._load_program(None, offers=False)
         self._program = None
         self._name, self._text, self._saved = NEW_NAME, TEMPLATE, TEMPLATE
         self._loader.open_new(TEMPLATE, NEW_NAME)
@@ -322,7 +322,7 @@ class Document:
         self.show()
         mistake = self._mistake()
         if not self._run_controller.in_run and not self._is_applied and (moved or not mistake):
-            self._take_text()
+            self._apply_text()
         self._loader.saved(path)
         if mistake:
             self._app.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))

@@ -100,14 +100,14 @@ class Noise(Vertical):
     @on(Input.Submitted)
     def _typed(self, event: Input.Submitted) -> None:
         event.stop()
-        self._take(event.input)
+        self._apply(event.input)
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
         """Apply a typed value when its field loses the focus."""
         if isinstance(event.widget, Input):
-            self._take(event.widget)
+            self._apply(event.widget)
 
-    def _take(self, entry: Input) -> None:
+    def _apply(self, entry: Input) -> None:
         kind = (entry.id or "").removesuffix("-number")
         name, maximum = _KINDS.get(kind, ("Seed", MAX_SEED))
         try:

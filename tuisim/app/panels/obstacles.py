@@ -134,14 +134,14 @@ class Obstacles(Vertical):
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:
         event.stop()
-        self._take(event.input)
+        self._apply(event.input)
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
         """Apply a typed value when its field loses the focus."""
         if isinstance(event.widget, Input) and not event.widget.disabled:
-            self._take(event.widget)
+            self._apply(event.widget)
 
-    def _take(self, entry: Input) -> None:
+    def _apply(self, entry: Input) -> None:
         if self.at is None or entry.value == f"{getattr(self._boxes[self.at], entry.id or ''):g}":
             entry.remove_class("wrong")
             return

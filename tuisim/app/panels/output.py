@@ -69,7 +69,7 @@ class Output(Vertical):
         """Remove every line."""
         self._log.clear()
 
-    def look_back(self, rows: Sequence[OutputRow] | None, before: int = 0) -> None:
+    def show_past(self, rows: Sequence[OutputRow] | None, before: int = 0) -> None:
         """Show the output up to a past instant: its last rows, after `before` others.
 
         None shows the whole output again.
