@@ -16,6 +16,7 @@ from tests.bench.frames import chart, frames
 from tests.bench.listing import listing
 from tests.bench.logs import logs
 from tests.bench.recording import recording
+from tests.bench.references import forget
 from tests.bench.running import EMPTY, begin
 from tests.bench.speed import LOADS, speeds
 from tests.bench.starts import first_line, first_paint, help_text, imports
@@ -66,8 +67,11 @@ def main(words: Sequence[str]) -> int:
         os.environ["TUISIM_HOME"] = home
         warm_up()
         for name in arguments.names or BENCHES:
+            # Close to the figures that are compared with them.
+            forget()
             for figure in BENCHES[name](QUICK if arguments.quick else THOROUGH):
-                print(f"{name}: {figure.name} {figure.value:.3f} {figure.unit}", file=sys.stderr, flush=True)
+                ratio = f" = {figure.ratio.value:.3g} {figure.ratio.reference}" if figure.ratio else ""
+                print(f"{name}: {figure.name} {figure.value:.3f} {figure.unit}{ratio}", file=sys.stderr, flush=True)
                 found.append(figure)
     print(as_json(found) if arguments.json else as_table(found))
     return 0

@@ -8,7 +8,7 @@ from statistics import median
 
 from tests.bench.figures import Effort, Figure
 from tests.bench.processes import children_cpu_s
-from tests.bench.running import EMPTY
+from tests.bench.running import EMPTY, unpacked_store
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, WorldSpec
@@ -62,6 +62,7 @@ def _cpu_s(text: str, obstacles: tuple[Obstacle, ...]) -> float:
         Program("bench.py", text, "preloaded"),
         RunSpec(RobotSpec(), world, ROBOLAB),
         RunOptions(time_limit_s=SIMULATED_S),
+        unpacked_store(),
     )
     ended = run.wait()
     assert ended is not None and ended.end in ("time_limit", "finished"), ended

@@ -8,6 +8,7 @@ from statistics import median
 
 from tests.bench.figures import Effort, Figure
 from tests.bench.processes import children_cpu_s
+from tests.bench.references import loop_speed, starts_elapsed
 from tests.bench.running import EMPTY, LINE, begin
 from tuisim.protocol import Inspect, Inspected, Message, Pause, Paused, Resume, StepLine
 from tuisim.runs.handle import RunHandle, RunOptions
@@ -23,16 +24,18 @@ BUSY_BREAKS: Mapping[str, str] = {"plain condition": "3 if n < 0", "condition wi
 def debugging(effort: Effort) -> Iterator[Figure]:
     """Yield speeds with tracing off and on, and how soon commands are heard."""
     start_up = median(_cpu_s(EMPTY, ()) for _ in range(effort.repeats))
-    for name, breaks, goal in (("off", (), 3_000), ("on", (str(NEVER),), 400)):
+    for name, breaks, goal in (("off", (), 0.073), ("on", (str(NEVER),), 0.01)):
         used = median(_cpu_s(LINE, breaks) for _ in range(effort.repeats))
         speed = SIMULATED_S / max(used - start_up, 1e-6)
-        yield Figure(f"line follower, tracing {name}", speed, "sim s / CPU s", least=goal)
+        yield Figure(f"line follower, tracing {name}", speed, "sim s / CPU s", goal, ratio=loop_speed(speed))
     for name, text in BUSY_BREAKS.items():
         taken = [_pause_s(text) for _ in range(effort.stops)]
-        yield Figure(f"pause, busy loop, {name}", median(taken) * 1e3, "ms", most=100)
+        yield Figure(
+            f"pause, busy loop, {name}", median(taken) * 1e3, "ms", most=2, ratio=starts_elapsed(median(taken))
+        )
     steps, looks = _steps_s(10 * effort.stops)
-    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=2)
-    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=20)
+    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=0.06, ratio=starts_elapsed(median(steps)))
+    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=2, ratio=starts_elapsed(median(looks)))
 
 
 def _cpu_s(text: str, breaks: tuple[str, ...]) -> float:

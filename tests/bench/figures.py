@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from math import isnan, nan
 
+from tests.bench.references import Ratio
+
 
 @dataclass(frozen=True, slots=True)
 class Effort:
@@ -36,34 +38,43 @@ class Figure:
     value: float
     unit: str
     least: float | None = None
-    """The goal, where more is better."""
+    """The goal, where more is better: of the ratio if there is one, else of the value."""
     most: float | None = None
     """The goal, where less is better."""
+    ratio: Ratio | None = None
+    """The value compared with a reference of the same run, for what depends on the machine."""
 
     @property
     def goal(self) -> str:
-        """The goal in words, empty for a figure that is only told."""
+        """The goal in words, empty if there is none."""
+        unit = " x" if self.ratio else ""
         if self.least is not None:
-            return f">= {self.least:,g}"
-        return "" if self.most is None else f"<= {self.most:,g}"
+            return f">= {self.least:,g}{unit}"
+        return "" if self.most is None else f"<= {self.most:,g}{unit}"
 
     @property
     def verdict(self) -> str:
         """`met`, `missed`, or empty where there is no goal."""
+        value = self.ratio.value if self.ratio else self.value
         if self.least is not None:
-            return "met" if self.value >= self.least else "missed"
+            return "met" if value >= self.least else "missed"
         if self.most is not None:
-            return "met" if self.value <= self.most else "missed"
+            return "met" if value <= self.most else "missed"
         return ""
 
 
 def as_table(figures: Sequence[Figure]) -> str:
     """Return the figures as lines of aligned columns."""
-    rows = [("name", "figure", "", "goal", "")]
-    rows += [(figure.name, _rounded(figure.value), figure.unit, figure.goal, figure.verdict) for figure in figures]
-    name, value, unit, goal = (max(len(row[column]) for row in rows) for column in range(4))
-    lines = [f"{r[0]:<{name}}  {r[1]:>{value}} {r[2]:<{unit}}  {r[3]:<{goal}}  {r[4]}".rstrip() for r in rows]
-    return "\n".join(lines)
+    rows = [("name", "figure", "", "ratio", "", "goal", "")]
+    for one in figures:
+        ratio = (_rounded(one.ratio.value), one.ratio.reference) if one.ratio else ("", "")
+        rows.append((one.name, _rounded(one.value), one.unit, *ratio, one.goal, one.verdict))
+    wide = [max(len(row[column]) for row in rows) for column in range(6)]
+    return "\n".join(
+        f"{name:<{wide[0]}}  {value:>{wide[1]}} {unit:<{wide[2]}}  {ratio:>{wide[3]}} {reference:<{wide[4]}}  "
+        f"{goal:<{wide[5]}}  {verdict}".rstrip()
+        for name, value, unit, ratio, reference, goal, verdict in rows
+    )
 
 
 def as_json(figures: Iterable[Figure]) -> str:
@@ -78,4 +89,4 @@ def _rounded(value: float) -> str:
         return "–"
     if abs(value) >= 100:
         return f"{value:,.0f}"
-    return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}"
+    return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}" if abs(value) >= 1 or not value else f"{value:.2g}"

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tests.bench.figures import Effort, Figure
 from tests.bench.processes import cpu_s
+from tests.bench.references import paints
 from tests.bench.terminal import Terminal
 
 CIRCLE = """\
@@ -53,7 +54,8 @@ def chart(effort: Effort) -> Iterator[Figure]:
     seen = _watch(WITH_CHART, effort.watch_s)
     yield Figure("a second, with the chart", seen.bytes_sent / seen.wall_s / 1e3, "kB", most=60)
     yield Figure("frames a second, with the chart", seen.frames / seen.wall_s, "")
-    yield Figure("app's share of a core, with the chart", 100 * seen.app_cpu_s / seen.wall_s, "%", most=20)
+    share = seen.app_cpu_s / seen.wall_s
+    yield Figure("app's share of a core, with the chart", 100 * share, "%", most=1.1, ratio=paints(share))
     seen = _watch(WITH_CHART, effort.watch_s, COLORTERM="truecolor")
     yield Figure("a second, with the chart, in full colour", seen.bytes_sent / seen.wall_s / 1e3, "kB")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 EMPTY = "pass\n"
@@ -40,9 +41,14 @@ while True:
 """Straight on, on the spot, and back for a time."""
 
 
+def unpacked_store() -> RunStore:
+    """Return the store, without packing runs when they end: that is a child process, too, and would be counted."""
+    return RunStore(RunStore().home)
+
+
 def begin(
     text: str, mat: str = "Grey_bands", profile: str = "robolab", prelude: str = "preloaded", *, options: RunOptions
 ) -> RunHandle:
     """Start a program, as the headless command or the app does."""
     spec = build_run_spec(Settings(background=mat, profile=profile))
-    return start_run(Program("bench.py", text, prelude), spec, options)
+    return start_run(Program("bench.py", text, prelude), spec, options, unpacked_store())

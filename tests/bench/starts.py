@@ -7,6 +7,7 @@ from statistics import median
 
 from tests.bench.figures import Effort, Figure
 from tests.bench.processes import command_cpu_s, cpu_s, wait_until_stopped
+from tests.bench.references import bare_start, paints, starts
 from tests.bench.running import begin
 from tests.bench.terminal import Terminal
 from tuisim.protocol import Started
@@ -19,11 +20,10 @@ HALF_BLOCK = "▀".encode()
 
 def first_line(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of a program's process until the program's own first line, prelude included."""
-    for prelude, goal in (("preloaded", 0.060), ("none", None)):
+    for prelude, goal in (("preloaded", 7.0), ("none", None)):
         value = median(_first_line_cpu_s(prelude) for _ in range(effort.repeats))
-        yield Figure(f"to the first line, prelude {prelude}", value * 1e3, "ms CPU", most=goal and goal * 1e3)
-    bare = median(command_cpu_s("-c", "pass") for _ in range(effort.repeats))
-    yield Figure("bare Python, for comparison", bare * 1e3, "ms CPU")
+        yield Figure(f"to the first line, prelude {prelude}", value * 1e3, "ms CPU", most=goal, ratio=starts(value))
+    yield Figure("bare Python, for comparison", bare_start().cpu_s * 1e3, "ms CPU")
 
 
 def _first_line_cpu_s(prelude: str) -> float:
@@ -43,14 +43,15 @@ def _first_line_cpu_s(prelude: str) -> float:
 def help_text(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of `tuisim --help`."""
     value = median(command_cpu_s("-m", "tuisim", "--help") for _ in range(effort.repeats))
-    yield Figure("tuisim --help", value * 1e3, "ms CPU", most=150)
+    yield Figure("tuisim --help", value * 1e3, "ms CPU", most=12, ratio=starts(value))
 
 
 def first_paint(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of the app until its panels, and until the mat in the world, are on the screen."""
     both = [_first_paint_cpu_s() for _ in range(effort.repeats)]
-    yield Figure("first paint, panels", median(panels for panels, _ in both) * 1e3, "ms CPU")
-    yield Figure("first paint, world", median(world for _, world in both) * 1e3, "ms CPU", most=600)
+    panels, world = (median(values) for values in zip(*both, strict=True))
+    yield Figure("first paint, panels", panels * 1e3, "ms CPU", ratio=paints(panels))
+    yield Figure("first paint, world", world * 1e3, "ms CPU", most=3.3, ratio=paints(world))
 
 
 def _first_paint_cpu_s() -> tuple[float, float]:
@@ -65,9 +66,9 @@ def imports(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of `import tuisim`, and of `%load_ext tuisim` beyond pandas and IPython."""
     shell = "from IPython.core.interactiveshell import InteractiveShell as S; import pandas; s = S.instance()"
     for name, before, added, goal in (
-        ("import tuisim", "pass", "import tuisim", 30),
-        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 150),
+        ("import tuisim", "pass", "import tuisim", 2.5),
+        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 7),
     ):
         bare = median(command_cpu_s("-c", before) for _ in range(effort.repeats))
         whole = median(command_cpu_s("-c", f"{before}; {added}") for _ in range(effort.repeats))
-        yield Figure(name, (whole - bare) * 1e3, "ms CPU", most=goal)
+        yield Figure(name, (whole - bare) * 1e3, "ms CPU", most=goal, ratio=starts(whole - bare))
