@@ -129,9 +129,9 @@ class ColumnsDialog(Dialog[Columns]):
     def action_value(self) -> None:
         """Use the selected column as values, or not."""
         name, chosen = self._names[self._at], self._chosen
-        wanted = {*chosen.values} ^ {name}
+        values = {*chosen.values} ^ {name}
         time = ROW if name == chosen.time else chosen.time
-        self._choose(replace(chosen, time=time, values=tuple(n for n in self._names if n in wanted)))
+        self._choose(replace(chosen, time=time, values=tuple(n for n in self._names if n in values)))
 
     def action_unit(self) -> None:
         """Go to the next unit of the time."""

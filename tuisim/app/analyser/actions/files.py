@@ -24,10 +24,7 @@ MOST_COPIED = 10_000
 """Most rows to copy: terminals drop longer texts."""
 _MANY_ROWS = 20_000
 """With more rows than this, searching for bands would block the keys."""
-_ROWS = (("rows.csv", "text"), (".parquet .arrow .jsonl", "the same with all types and what the log says of its runs"))
-_CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it is shown here"))
-_REPORT = ((".html", "program, world, chart, bands, statistics and notes on one page"),)
-_ROWS = (("rows.csv", "text"), (".parquet .arrow .jsonl", "the same with all types and what the log says of its runs"))
+_ROWS = ((".csv", "text"), (".parquet .arrow .jsonl", "with all types, and the metadata of the runs"))
 _CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it is shown here"))
 _REPORT = ((".html", "program, world, chart, bands, statistics and notes on one page"),)
 

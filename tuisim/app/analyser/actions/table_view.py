@@ -12,8 +12,8 @@ from tuisim.errors import LogError
 
 _FILTERS = (
     ("value > 50", f"the rows for which that is true; {spelled()}"),
-    ("variable ~ col", "those with that in their text"),
-    ("value > 50 and time < 3", "those for which both are true"),
+    ("variable ~ col", "the rows whose text contains col"),
+    ("value > 50 and time < 3", "the rows for which both are true"),
     ("(nothing)", "all rows"),
 )
 
