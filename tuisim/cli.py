@@ -106,7 +106,6 @@ _ROOT = _Root(
     {name: entry.does for name, entry in COMMANDS.items()},
     lambda name: COMMANDS[name].load(),
     default="open",
-    subcommand_metavar="[COMMAND] …",
     help="""A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.
 
     Without a command, `tuisim [WORLD.toml] [PROGRAM] [OPTIONS] [-- ARGUMENTS]` opens the app; `tuisim open --help`

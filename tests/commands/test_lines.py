@@ -14,6 +14,7 @@ import pytest
 
 from tuisim import __version__
 from tuisim.cli import run_command
+from tuisim.commands.runs import compact, export, list_runs, rerun_runs, rm, show
 from tuisim.config.options import Settings
 from tuisim.errors import ConfigError
 from tuisim.notebook.magic_line import MagicWords, parse_line
@@ -107,6 +108,22 @@ def _told(action: str, *names: str) -> Any:
     return work
 
 
+def _run_action(action: str, work: Any) -> Any:
+    def record(words: Any = (), older_than: Any = None, every: bool = False, **named: Any) -> int:
+        if not words and action not in ("list", "compact") and older_than is None:
+            return int(work(words=words, **({"older_than": None} if action == "rm" else {}), **named))
+        match action:
+            case "list":
+                raise Stop(action=action, **named)
+            case "show" | "rerun":
+                raise Stop(action=action, run=words[0], **named)
+            case "rm":
+                raise Stop(action=action, words=plain(words), age=older_than)
+        raise Stop(action=action, words=plain(words), **named)
+
+    return record
+
+
 def watch(patch: pytest.MonkeyPatch) -> None:
     """Have every command stop where its work would begin."""
     from tuisim.commands.log import SUBCOMMANDS
@@ -119,13 +136,8 @@ def watch(patch: pytest.MonkeyPatch) -> None:
     for name, entry in SUBCOMMANDS.items():
         module, _, function = entry.path.partition(":")
         patch.setattr(importlib.import_module(f"tuisim.commands.logs.{module}"), function, _log(name))
-    patch.setattr("tuisim.commands.runs._load", lambda _, words: list(words))
-    patch.setattr("tuisim.commands.runs._list", _told("list", "_store"))
-    patch.setattr("tuisim.commands.runs._show", _told("show", "run"))
-    patch.setattr("tuisim.commands.runs._remove", _told("rm", "_store", "words", "age"))
-    patch.setattr("tuisim.commands.runs._rerun", _told("rerun", "run"))
-    patch.setattr("tuisim.commands.runs._compact", _told("compact", "_store", "words"))
-    patch.setattr("tuisim.commands.runs._export", _told("export", "_store", "words", "telemetry"))
+    for command in (list_runs, show, rm, rerun_runs, compact, export):
+        patch.setattr(command, "callback", _run_action(command.name or "", command.callback))
     patch.setattr("tuisim.commands.kernel._list", _told("list", "_kernels"))
     patch.setattr("tuisim.commands.kernel._install", _told("install", "_manager", "place", "name"))
     patch.setattr("tuisim.commands.kernel._remove", _told("remove", "folders", "name"))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.atomic import replacing
 from tuisim.commands.echo import echo, echo_json, echo_lines, table
-from tuisim.config.command_line import AS_JSON, Group, command, option, short_help
+from tuisim.config.command_line import AS_JSON, Group, command, option
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -39,12 +39,11 @@ class InstalledKernel:
     folder: str
 
 
-_NAME = option("--name", metavar="N", help=f"Name of the kernel in Jupyter ({KERNEL_NAME}).")
 _WHERE = (
     option("--user", is_flag=True, help="For this user (the default)."),
     option("--sys-prefix", is_flag=True, help="In the Python environment of tuisim."),
     option("--prefix", metavar="P", help="In P/share/jupyter/kernels."),
-    _NAME,
+    option("--name", metavar="N", help=f"Name of the kernel in Jupyter ({KERNEL_NAME})."),
 )
 
 
@@ -73,13 +72,10 @@ def remove(**where: Any) -> int:
     return 0
 
 
-_ACTIONS = {action.name or "": action for action in (list_kernels, install, remove)}
-kernel = Group(
+kernel = Group.of(
     "kernel",
-    {name: short_help(action) for name, action in _ACTIONS.items()},
-    _ACTIONS.__getitem__,
+    (list_kernels, install, remove),
     default="list",
-    subcommand_metavar="[COMMAND] …",
     help=f"""Install the kernel {DISPLAY_NAME!r} in Jupyter.
 
     It has every magic and the modules that a course's cells import, so notebooks run unchanged.

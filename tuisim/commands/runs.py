@@ -15,7 +15,7 @@ from tuisim.commands.echo import echo, echo_error, echo_json, echo_json_head, ec
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.logs.diff import diff_text
 from tuisim.commands.progress import Progress, tell
-from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option, short_help
+from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
 from tuisim.errors import ConfigError, LogError, counted
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Unended
@@ -40,98 +40,20 @@ MAX_SUMMARY = 40
 _runs = argument("words", "RUN…", lambda: ("last",), nargs=-1)
 
 
-def _need(words: Sequence[str], action: str) -> None:
+def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
+    return [store.load_run(Path(word) if "/" in word else word) for word in words]
+
+
+def _needed(words: Sequence[str], action: str) -> Sequence[str]:
     if not words:
         raise ConfigError("which run?", f"see `tuisim runs {action} --help`", key=action)
+    return words
 
 
 @command(AS_JSON, name="list")
 def list_runs(as_json: bool) -> int:
     """List the stored runs and their sizes."""
-    _list(RunStore(), as_json=as_json)
-    return 0
-
-
-@command(_runs, AS_JSON)
-def show(words: Sequence[str], as_json: bool) -> int:
-    """Show how a run ended, what it printed and when."""
-    _need(words, "show")
-    for run in _load(RunStore(), words):
-        _show(run, as_json=as_json)
-    return 0
-
-
-@command(
-    _runs,
-    option("--older-than", metavar="AGE", help="Remove finished runs older than this: 12h, 30d, 8w."),
-)
-def rm(words: Sequence[str], older_than: str | None) -> int:
-    """Remove runs."""
-    if older_than is None:
-        _need(words, "rm")
-    with Progress("rm"):
-        _remove(RunStore(), words, older_than)
-    return 0
-
-
-@command(_runs, AS_JSON, name="rerun")
-def rerun_runs(words: Sequence[str], as_json: bool) -> int:
-    """Run again, and compare with what is stored.
-
-    Exit code: 0 if all are bit-identical, else 1.
-    """
-    _need(words, "rerun")
-    with Progress("rerun"):
-        return max(_rerun(run, as_json=as_json) for run in _load(RunStore(), words))
-
-
-@command(
-    argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
-    option("--telemetry", metavar="FILE", type=Value(), help="Export the telemetry of a single run, one row per tick."),
-    help=f"Export samples, or the telemetry of one run.\n\nA FILE ends in {', '.join(EXPORTERS)}.",
-)
-def export(words: Sequence[str], telemetry: str | None) -> int:
-    """Export samples or telemetry of runs."""
-    with Progress("export"):
-        _export(RunStore(), words, telemetry)
-    return 0
-
-
-@command(
-    _runs,
-    option("--all", "every", is_flag=True, help="Compact every finished run."),
-    AS_JSON,
-    help="Compress recordings to a few bytes per tick, losslessly. "
-    f"Runs of {COMPACT_TICKS} ticks or more are compressed when they end.",
-)
-def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
-    """Compact the named runs, or all finished ones."""
-    if not every:
-        _need(words, "compact")
-    with Progress("compact"):
-        return _compact(RunStore(), words, as_json=as_json)
-
-
-_ACTIONS = {action.name or "": action for action in (list_runs, show, export, rerun_runs, compact, rm)}
-runs = Group(
-    "runs",
-    {name: short_help(action) for name, action in _ACTIONS.items()},
-    _ACTIONS.__getitem__,
-    default="list",
-    subcommand_metavar="[COMMAND] …",
-    help="""List, show, export or remove stored runs.
-
-    A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.
-    """,
-)
-"""`tuisim runs`."""
-
-
-def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
-    return [store.load_run(Path(word) if "/" in word else word) for word in words]
-
-
-def _list(store: RunStore, *, as_json: bool) -> None:
+    store = RunStore()
     runs = store.runs()
     if as_json:
         echo_json([{**asdict(run), "bytes": bytes_in(store.folder(run.id))} for run in runs])
@@ -148,6 +70,7 @@ def _list(store: RunStore, *, as_json: bool) -> None:
         ]
         heads = ("RUN", "UTC", "PROGRAM", "MAT", "PROFILE", "SEED", "END", "SECONDS", "SAMPLES", "    SIZE", "", "")
         echo_lines(table(heads, rows))
+    return 0
 
 
 def size(count: int) -> str:
@@ -162,6 +85,14 @@ def size(count: int) -> str:
 
 def _cut(text: str) -> str:
     return text if len(text) <= MAX_SUMMARY else text[: MAX_SUMMARY - 1] + "…"
+
+
+@command(_runs, AS_JSON)
+def show(words: Sequence[str], as_json: bool) -> int:
+    """Show how a run ended, what it printed and when."""
+    for run in _load(RunStore(), _needed(words, "show")):
+        _show(run, as_json=as_json)
+    return 0
 
 
 def _plain(row: OutputRow) -> dict[str, object]:
@@ -189,6 +120,29 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         echo_lines(facts["error"].rstrip("\n"))
 
 
+@command(_runs, option("--older-than", metavar="AGE", help="Remove finished runs older than this: 12h, 30d, 8w."))
+def rm(words: Sequence[str], older_than: str | None) -> int:
+    """Remove runs."""
+    store, freed = RunStore(), 0
+    with Progress("rm"):
+        # All are looked up before the first is removed; one may be named twice.
+        if older_than is None:
+            found = [store.find(word).id for word in _needed(words, "rm")]
+        else:
+            found = _older(store, words, older_than)
+        for number, run_id in enumerate(dict.fromkeys(found)):
+            tell("removing runs", number, len(found))
+            folder = store.folder(run_id)
+            target = os.path.realpath(folder) if folder.is_symlink() else ""
+            freed += 0 if target else bytes_in(folder)
+            store.remove(run_id)
+            if target:
+                echo_error(f"note: run {run_id} was a link; its target was kept: {target}")
+    if older_than is not None:
+        echo(f"{counted(len(found), 'run')} removed, {size(freed)}")
+    return 0
+
+
 def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
     """Return the ids of finished runs older than an age such as `30d`."""
     if words:
@@ -210,20 +164,14 @@ def _created_before(created: str, moment: datetime) -> bool:
         return False
 
 
-def _remove(store: RunStore, words: Sequence[str], age: str | None) -> None:
-    # All are looked up before the first is removed; one may be named twice.
-    found = [store.find(word).id for word in words] if age is None else _older(store, words, age)
-    freed = 0
-    for number, run_id in enumerate(dict.fromkeys(found)):
-        tell("removing runs", number, len(found))
-        folder = store.folder(run_id)
-        target = os.path.realpath(folder) if folder.is_symlink() else ""
-        freed += 0 if target else bytes_in(folder)
-        store.remove(run_id)
-        if target:
-            echo_error(f"note: run {run_id} was a link; its target was kept: {target}")
-    if age is not None:
-        echo(f"{counted(len(found), 'run')} removed, {size(freed)}")
+@command(_runs, AS_JSON, name="rerun")
+def rerun_runs(words: Sequence[str], as_json: bool) -> int:
+    """Run again, and compare with what is stored.
+
+    Exit code: 0 if all are bit-identical, else 1.
+    """
+    with Progress("rerun"):
+        return max(_rerun(run, as_json=as_json) for run in _load(RunStore(), _needed(words, "rerun")))
 
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
@@ -246,21 +194,30 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
     return 0 if found.same else 1
 
 
-def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
-    """Compact the named runs, or all finished ones; return the exit code."""
-    names = words or [info.id for info in store.runs() if info.end is not Unended.RUNNING]
-    code, before, after, ticks = 0, 0, 0, 0
-    for number, name in enumerate(names):
-        tell(f"compacting run {name}", number, len(names))
-        try:
-            (run,) = _load(store, [name])
-            sizes = compact_run(run)
-        except LogError as error:
-            # The other runs are not affected.
-            echo_error(f"tuisim: {error}")
-            code = error.exit_code
-            continue
-        before, after, ticks = before + sizes[0], after + sizes[1], ticks + run.telemetry.count
+@command(
+    _runs,
+    option("--all", "every", is_flag=True, help="Compact every finished run."),
+    AS_JSON,
+    help="Compress recordings to a few bytes per tick, losslessly. "
+    f"Runs of {COMPACT_TICKS} ticks or more are compressed when they end.",
+)
+def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
+    """Compact the named runs, or all finished ones."""
+    store, code, before, after, ticks = RunStore(), 0, 0, 0, 0
+    names = words if every else _needed(words, "compact")
+    names = names or [info.id for info in store.runs() if info.end is not Unended.RUNNING]
+    with Progress("compact"):
+        for number, name in enumerate(names):
+            tell(f"compacting run {name}", number, len(names))
+            try:
+                (run,) = _load(store, [name])
+                sizes = compact_run(run)
+            except LogError as error:
+                # The other runs are not affected.
+                echo_error(f"tuisim: {error}")
+                code = error.exit_code
+                continue
+            before, after, ticks = before + sizes[0], after + sizes[1], ticks + run.telemetry.count
     if as_json:
         echo_json({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after})
     else:
@@ -269,7 +226,13 @@ def _compact(store: RunStore, words: Sequence[str], *, as_json: bool) -> int:
     return code
 
 
-def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> None:
+@command(
+    argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
+    option("--telemetry", metavar="FILE", type=Value(), help="Export the telemetry of a single run, one row per tick."),
+    help=f"Export samples, or the telemetry of one run.\n\nA FILE ends in {', '.join(EXPORTERS)}.",
+)
+def export(words: Sequence[str], telemetry: str | None) -> int:
+    """Export samples or telemetry of runs."""
     files = [Path(word) for word in words if Path(word).suffix.lower() in EXPORTERS]
     names = [word for word in words if Path(word).suffix.lower() not in EXPORTERS]
     if not names or not (files or telemetry is not None):
@@ -278,14 +241,28 @@ def _export(store: RunStore, words: Sequence[str], telemetry: str | None) -> Non
     if telemetry is not None and len(names) > 1:
         raise ConfigError("takes one run", f"got {len(names)}", key="--telemetry")
     check_targets(target for target in (*files, telemetry) if target is not None)
-    runs = _load(store, names)
-    for note in (note for run in runs for note in run.notes):
-        echo_error(f"note: {note}")
-    for file in files:
-        tell(f"writing {file}")
-        export_samples(runs, file)
-    if telemetry is not None:
-        tell(f"writing {telemetry}")
-        if note := damage_note(runs[0]):
+    with Progress("export"):
+        runs = _load(RunStore(), names)
+        for note in (note for run in runs for note in run.notes):
             echo_error(f"note: {note}")
-        export_telemetry(runs[0], telemetry)
+        for file in files:
+            tell(f"writing {file}")
+            export_samples(runs, file)
+        if telemetry is not None:
+            tell(f"writing {telemetry}")
+            if note := damage_note(runs[0]):
+                echo_error(f"note: {note}")
+            export_telemetry(runs[0], telemetry)
+    return 0
+
+
+runs = Group.of(
+    "runs",
+    (list_runs, show, export, rerun_runs, compact, rm),
+    default="list",
+    help="""List, show, export or remove stored runs.
+
+    A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.
+    """,
+)
+"""`tuisim runs`."""

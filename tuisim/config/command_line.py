@@ -12,7 +12,7 @@ from difflib import get_close_matches
 from glob import escape, glob
 from itertools import pairwise
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Self
 
 import click
 from click.core import ParameterSource
@@ -202,8 +202,17 @@ class Group(click.Group):
         self, name: str, listing: Mapping[str, str], load: Callable[[str], click.Command], default: str = "", **how: Any
     ) -> None:
         settings = {"help_option_names": ["-h", "--help"]}
+        how.setdefault("subcommand_metavar", "[COMMAND] …" if default else "COMMAND …")
         super().__init__(name, context_settings=settings, no_args_is_help=False, options_metavar="", **how)
         self.listing, self.load, self.default = listing, load, default
+
+    @classmethod
+    def of(cls, name: str, commands: Sequence[click.Command], **how: Any) -> Self:
+        """Return a group of commands that are already loaded."""
+        by_name = {one.name or "": one for one in commands}
+        firsts = {called: (one.help or "").partition("\n")[0] for called, one in by_name.items()}
+        listing = {called: first.partition(". ")[0].rstrip(".") for called, first in firsts.items()}
+        return cls(name, listing, by_name.__getitem__, **how)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of the subcommands."""
@@ -275,11 +284,6 @@ class Group(click.Group):
                 for item in param.shell_complete(ctx, incomplete)]  # fmt: skip
         plain = [item for item in more if item.type == "plain"]
         return found + plain if plain else _with_files(found, incomplete) if more else found
-
-
-def short_help(one: click.Command) -> str:
-    """Return the first line of a command's help without its full stop."""
-    return (one.help or "").partition("\n")[0].partition(". ")[0].rstrip(".")
 
 
 def parse(command: Command, words: Sequence[str]) -> Arguments:
