@@ -39,7 +39,7 @@ def test_example_introduces_itself(name: str) -> None:
     assert title.endswith(".")
     assert len(title) < 80
     # The magic line tells the world, so that the example runs as it is.
-    assert read_program(path).switches["background"]
+    assert read_program(path).options["background"]
     assert path.read_text(encoding="utf-8").isascii()
 
 

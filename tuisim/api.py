@@ -145,7 +145,7 @@ def simulate(
     if not timeout_s > 0:
         raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
     source = _source(program)
-    settings = settings_of(source.switches, choices_of(choices))
+    settings = settings_of(source.options, choices_of(choices))
     prelude = settings.preload or source.program.prelude
     started = replace(source.program, prelude=prelude, arguments=tuple(arguments))
     store = RunStore()

@@ -78,13 +78,13 @@ class TuisimError(Exception):
 
 
 class ConfigError(TuisimError):
-    """A file, switch or value that describes a run is wrong.
+    """A file, option or value that describes a run is wrong.
 
     Args:
         message: What was wrong.
         hint: What is allowed.
         file: The file that contains it, if any.
-        key: The key or switch, such as `ultrasonic.max_range_mm` or `-x`.
+        key: The key or option, such as `ultrasonic.max_range_mm` or `-x`.
     """
 
     def __init__(self, message: str, hint: str = "", *, file: str = "", key: str = "") -> None:

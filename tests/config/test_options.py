@@ -1,4 +1,4 @@
-"""Switches on the command line and in a magic line."""
+"""Options on the command line and in a magic line."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from tuisim.errors import ConfigError
     ],
     ids=lambda value: value or "nothing" if isinstance(value, str) else "",
 )
-def test_switches(words: str, fields: dict[str, Any]) -> None:
+def test_options(words: str, fields: dict[str, Any]) -> None:
     assert parse_words(words.split()) == fields
 
 
@@ -70,14 +70,14 @@ def test_switches(words: str, fields: dict[str, Any]) -> None:
     ],
     ids=lambda value: value if value.startswith("-") else "",
 )
-def test_wrong_switches_say_what_is_allowed(words: str, said: str) -> None:
+def test_wrong_options_say_what_is_allowed(words: str, said: str) -> None:
     with pytest.raises(ConfigError, match=said):
         parse_words(words.split())
 
 
-def test_every_switch_sets_a_field_and_no_flag_is_used_twice() -> None:
+def test_every_option_sets_a_field_and_no_flag_is_used_twice() -> None:
     names = {field.name for field in fields(Settings)}
-    # What an infrared sensor meets is too much for a switch: a world file says it. Arguments stand after `--`.
+    # What an infrared sensor meets is too much for an option: a world file says it. Arguments stand after `--`.
     assert {option.field for option in OPTIONS} == names - {"beacon", "remote", "arguments"}
     flags = [flag for option in OPTIONS for flag in (*option.flags, *option.magic_flags)]
     assert len(flags) == len(set(flags))
@@ -124,7 +124,7 @@ def test_no_magic_line(text: str) -> None:
 def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_their_numbers(end: str) -> None:
     program = parse_program(f"\n%%sim_magic_preloaded -b Grey_bands -OHR{end}", "a.py")
     assert program.program.text == f"\n# %%sim_magic_preloaded -b Grey_bands -OHR{end}"
-    assert program.switches["background"] == "Grey_bands"
+    assert program.options["background"] == "Grey_bands"
 
 
 @pytest.mark.parametrize(

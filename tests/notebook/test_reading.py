@@ -112,14 +112,14 @@ def test_what_only_the_notebook_knows_is_left_out(
     words: str, unknown: str, settings: dict[str, object], tmp_path: Path
 ) -> None:
     (found,) = notebook_programs(write(tmp_path / "one.ipynb", [("code", f"%%sim_magic {words}\npass\n")]))
-    assert (found.unknown, dict(found.source.switches)) == (unknown, settings)
+    assert (found.unknown, dict(found.source.options)) == (unknown, settings)
 
 
 def test_files_in_magics_are_looked_for_beside_the_notebook(tmp_path: Path) -> None:
     cells = [("code", "%sim_magic -b ./maze.png"), ("code", "%%sim_magic -r bot.toml\npass\n")]
     (found,) = notebook_programs(Path(write(tmp_path / "lesson.ipynb", cells)))
     wanted = {"background": str(tmp_path / "maze.png"), "robot": str(tmp_path / "bot.toml")}
-    assert found.source.switches == wanted
+    assert found.source.options == wanted
 
 
 def test_json_stands_alone_on_stdout_also_for_all_cells(here: Command, tmp_path: Path) -> None:
@@ -152,7 +152,7 @@ def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
         pytest.param(LESSON, "#4", "a number from 1 to 3", id="no such cell"),
         pytest.param(LESSON, "#x", "a number from 1 to 3", id="no number"),
         pytest.param(VARIABLES, "#1", "only the notebook knows $_x (run the cell there", id="variable"),
-        pytest.param([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such switch", id="wrong switch"),
+        pytest.param([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such option", id="wrong switch"),
         pytest.param([("code", "%%sim_magic -b Nope\npass")], "", "bad.ipynb#1: -b: no such mat", id="wrong mat"),
         pytest.param([("code", "%%sim_magic_preload\npass")], "", "cell 1: no such magic %%sim", id="wrong magic"),
         pytest.param('{"cells": ' + "[" * 100_000, "", "is no notebook that can be read", id="deep"),

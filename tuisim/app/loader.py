@@ -339,14 +339,14 @@ class Loader:
         from tuisim.config.program_file import program_of_text
 
         file = program_of_text(text, Path(path) if path else None, name)
-        self._apply_program(file.program, file.switches)
+        self._apply_program(file.program, file.options)
 
     def open_new(self, text: str, name: str) -> None:
         """Open a new program without a file and without a magic line. Not during a run."""
         from tuisim.config.program_file import program_of_text
 
         file = program_of_text(text, None, name)
-        self._note_program(file.program, file.switches)
+        self._note_program(file.program, file.options)
         self._run_controller.program = file.program
         self._loaded()
 
@@ -384,7 +384,7 @@ def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
     from tuisim.config.program_file import read_program
 
     file = read_program(Path(path).expanduser())
-    return file.program, file.switches
+    return file.program, file.options
 
 
 def _settings_in(program: Program | None) -> Mapping[str, Any]:
@@ -395,7 +395,7 @@ def _settings_in(program: Program | None) -> Mapping[str, Any]:
         return {}
     try:
         path = Path(program.path) if program.path else None
-        return program_of_text(program.text, path, program.name).switches
+        return program_of_text(program.text, path, program.name).options
     except TuisimError:
         return {}
 

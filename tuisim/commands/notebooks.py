@@ -25,7 +25,7 @@ def to_list(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProg
 
 def print_list(word: str, programs: Sequence[NotebookProgram]) -> None:
     """Print the programs of a notebook, and how to run one."""
-    rows = [(p.number, _titled(p), p.source.switches.get("background", ""), p.source.program.prelude) for p in programs]
+    rows = [(p.number, _titled(p), p.source.options.get("background", ""), p.source.program.prelude) for p in programs]
     echo_lines(table(("cell", "title", "mat", "names"), rows))
     echo()
     echo(f"tuisim '{word}#1' opens the first; tuisim run '{word}#1' runs it, tuisim run {word} --all runs all")

@@ -90,8 +90,8 @@ def find_program(word: str) -> Path:
 
 def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     """Load the world that is named as a word or with `--world`, if any."""
-    switch = arguments.world
-    named = [word for word in words if means_world(word)] + ([] if switch is None else [switch])
+    named = [word for word in words if means_world(word)]
+    named += [] if arguments.world is None else [arguments.world]
     if len(named) > 1:
         raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
     return load_world(named[0], arguments.settings.get("mats")) if named else None
@@ -109,7 +109,7 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments) -
 
 
 def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Arguments) -> Prepared:
-    settings = settings_of(file.switches, world.settings if world else {}, arguments.settings)
+    settings = settings_of(file.options, world.settings if world else {}, arguments.settings)
     prelude = settings.preload or file.program.prelude
     program = replace(file.program, prelude=prelude, arguments=settings.arguments)
     return Prepared(program, settings, _spec(settings), world)
@@ -139,7 +139,7 @@ def prepare_app(words: Sequence[str], arguments: Arguments) -> Prepared:
         arguments: The parsed command line.
 
     Raises:
-        ConfigError: program, magic line, world or switches are wrong, or there are two programs.
+        ConfigError: program, magic line, world or options are wrong, or there are two programs.
     """
     world = _world(words, arguments)
     programs = [word for word in words if not means_world(word)]
@@ -160,7 +160,7 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tupl
         arguments: The parsed command line.
 
     Raises:
-        ConfigError: a program, a world or a switch of a run is given too.
+        ConfigError: a program, a world or an option of a run is given too.
         LogError: there is no such run, or it is damaged.
     """
     chosen = arguments.settings
@@ -182,7 +182,7 @@ def prepare_runs(words: Sequence[str], arguments: Arguments) -> list[Prepared | 
         arguments: The parsed command line.
 
     Raises:
-        ConfigError: a program, magic line, world or switch is wrong, or there is no program.
+        ConfigError: a program, magic line, world or option is wrong, or there is no program.
     """
     world = _world(words, arguments)
     programs = [word for word in words if not means_world(word)]

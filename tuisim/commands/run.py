@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints, parse_watch
@@ -65,7 +64,6 @@ _OPTIONS = (
 @command(
     *_OPTIONS,
     *shared_options(hidden=(APP, PANEL), names=names_of),
-    options_metavar="[OPTIONS]",
     passes_arguments=True,
     help="""Run programs without the app.
 
@@ -107,16 +105,6 @@ def run(**given: Any) -> int:
     return max(code, interrupts.exit_code)
 
 
-@dataclass(frozen=True, slots=True)
-class BreakOptions:
-    """The values of `--break`, `--watch` and `--break-then`."""
-
-    breaks: tuple[str, ...]
-    watches: tuple[str, ...]
-    stops: bool
-    """Whether the first breakpoint ends the run."""
-
-
 def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]) -> None:
     """Check breakpoints and watches before anything is run.
 
@@ -132,58 +120,59 @@ def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterabl
         raise ConfigError("needs a breakpoint", "add one with --break, such as --break 'time 1'", key="watch")
 
 
-class BreakTeller:
+class BreakpointReporter:
     """Reports the breakpoints of one run on stderr.
 
     Args:
         handle: The run.
-        options: Breakpoints, watches, and whether to stop.
+        watches: Expressions to evaluate at each breakpoint.
+        stops: Whether the first breakpoint ends the run.
     """
 
-    def __init__(self, handle: RunHandle, options: BreakOptions) -> None:
-        self._handle, self._options = handle, options
-        self._held: Paused | None = None
+    def __init__(self, handle: RunHandle, watches: tuple[str, ...], *, stops: bool) -> None:
+        self._handle, self._watches, self._stops = handle, watches, stops
+        self._paused: Paused | None = None
         self._source = source_lines(handle.program.text)
         self.stopped = False
         """Whether a breakpoint has ended the run."""
 
-    def take(self, event: Message) -> None:
+    def handle(self, event: Message) -> None:
         """Handle an event of the run: inspect it when it pauses, then report and resume or stop it."""
         match event:
             case Paused():
-                self._held = event
-                self._handle.send(Inspect(self._options.watches))
-            case Inspected() if self._held is not None:
-                for line in self._told(self._held, event):
+                self._paused = event
+                self._handle.send(Inspect(self._watches))
+            case Inspected() if self._paused is not None:
+                for line in self._report(self._paused, event):
                     echo_error(line)
-                self._held = None
-                self._go_on()
+                self._paused = None
+                self._resume()
 
-    def _go_on(self) -> None:
-        if self._options.stops:
+    def _resume(self) -> None:
+        if self._stops:
             self.stopped = True
             self._handle.stop()
         else:
             self._handle.send(Resume())
 
-    def _told(self, held: Paused, looked: Inspected) -> list[str]:
+    def _report(self, paused: Paused, inspected: Inspected) -> list[str]:
         """Return the lines of the report: position, variables, watches, what the program waits for."""
-        name = held.file or self._handle.program.path or self._handle.program.name
-        value = f" ({held.value})" if held.value else ""
-        thread = f", thread {held.thread}" if len(looked.threads) > 1 else ""
+        name = paused.file or self._handle.program.path or self._handle.program.name
+        value = f" ({paused.value})" if paused.value else ""
+        thread = f", thread {paused.thread}" if len(inspected.threads) > 1 else ""
         last = self._handle.telemetry.last()
         pose = (
             f", x {last.x_mm:.2f} mm, y {last.y_mm:.2f} mm, heading {shown_heading_deg(last.heading_deg):.2f}°"
             if last
             else ""
         )
-        where = f"{name}:{held.line}, {held.time_ns / NS_PER_S:.3f} s, tick {held.tick}{pose}{thread}"
-        lines = [f"break {held.detail}{value}: {where}"]
-        if not held.file and 0 < held.line <= len(self._source):
-            lines.append(f"    {held.line} | {self._source[held.line - 1].strip()}")
-        lines += [f"    {variable.name} = {variable.value}" for variable in looked.variables]
-        lines += [f"    {watch.text} → {watch.value or watch.error}" for watch in looked.watches]
-        lines += [f"    {note}" for note in (looked.waiting, looked.note) if note]
+        where = f"{name}:{paused.line}, {paused.time_ns / NS_PER_S:.3f} s, tick {paused.tick}{pose}{thread}"
+        lines = [f"break {paused.detail}{value}: {where}"]
+        if not paused.file and 0 < paused.line <= len(self._source):
+            lines.append(f"    {paused.line} | {self._source[paused.line - 1].strip()}")
+        lines += [f"    {variable.name} = {variable.value}" for variable in inspected.variables]
+        lines += [f"    {watch.text} → {watch.value or watch.error}" for watch in inspected.watches]
+        lines += [f"    {note}" for note in (inspected.waiting, inspected.note) if note]
         return [line if len(line) <= MOST_CHARACTERS or at == 0 else line[:MOST_CHARACTERS] + "…"
                 for at, line in enumerate(lines)]  # fmt: skip
 
@@ -268,22 +257,21 @@ def _run_one(
         live=speed > 0,
         speed=speed,
         time_limit_s=arguments.timeout,
-        answers=tuple(arguments.input),
+        answers=arguments.input,
         actions=press_actions(arguments.press, one.spec.profile.tick_hz),
-        breaks=tuple(arguments.breaks),
+        breaks=arguments.breaks,
     )
     handle = start_run(one.program, one.spec, options, store)
     interrupts.watch(handle)
-    stops = arguments.break_then == STOP
-    teller = BreakTeller(handle, BreakOptions(options.breaks, tuple(arguments.watches), stops))
+    reporter = BreakpointReporter(handle, arguments.watches, stops=arguments.break_then == STOP)
     try:
         out = sys.stderr if arguments.json else sys.stdout
-        follower = Follower(handle, out, teller.take if options.breaks else None, how_far)
+        follower = Follower(handle, out, reporter.handle if options.breaks else None, how_far)
         ended = follower.to_the_end()
     finally:
         handle.close()
     if follower.lost:
         echo_error(f"tuisim: {follower.lost} (run {handle.number} contains every line)")
-    ended_code = exit_status.EXIT_LIMIT if teller.stopped else exit_status.exit_code_of(ended)
+    ended_code = exit_status.EXIT_LIMIT if reporter.stopped else exit_status.exit_code_of(ended)
     code = interrupts.exit_code or follower.cut or ended_code
     return max(code, exit_status.EXIT_BAD_OUTPUT) if follower.lost or handle.unstored else code, handle

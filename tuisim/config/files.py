@@ -245,8 +245,8 @@ def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
     return word
 
 
-def by_switch(data: object, at: Location, converter: Callable[[str, str], Value]) -> Value:
-    """Return a text converted by the converter of a command-line switch.
+def by_option(data: object, at: Location, converter: Callable[[str, str], Value]) -> Value:
+    """Return a text converted by the converter of a command-line option.
 
     Raises:
         ConfigError: the converter refuses it, or it is no text.

@@ -34,7 +34,7 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
 
     Args:
         word: The name or the path.
-        key: The switch to name in errors about an unknown name, such as `-o`.
+        key: The option to name in errors about an unknown name, such as `-o`.
 
     Raises:
         ObstacleError: the name is unknown, or the file is wrong.

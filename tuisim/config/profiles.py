@@ -58,7 +58,7 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
 
     Args:
         word: The name or the path.
-        key: The switch to name in errors about an unknown name, such as `--profile`.
+        key: The option to name in errors about an unknown name, such as `--profile`.
 
     Raises:
         ProfileError: the name is unknown, or the file is wrong.

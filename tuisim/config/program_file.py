@@ -37,7 +37,7 @@ class Magic:
     line: int
     """From 1."""
     prelude: str
-    switches: Mapping[str, Any]
+    options: Mapping[str, Any]
     """By field of `Settings`."""
     comment: bool
     """Whether it is a comment; if not, it is not Python and must be commented out."""
@@ -48,8 +48,8 @@ class ProgramSource:
     """A program as read from its file."""
 
     program: Program
-    switches: Mapping[str, Any] = field(default_factory=dict)
-    """Switches of the magic line, by field of `Settings`; file names are resolved from the program's folder."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Options of the magic line, by field of `Settings`; file names are resolved from the program's folder."""
 
 
 class ProgramFile(NamedTuple):
@@ -98,14 +98,14 @@ def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
             return
 
 
-def beside(folder: Path, switches: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the switches of a magic line, with file names resolved from a folder.
+def beside(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of a magic line, with file names resolved from a folder.
 
     Args:
         folder: The folder of the program or its notebook.
-        switches: By field of `Settings`.
+        options: By field of `Settings`.
     """
-    found = dict(switches)
+    found = dict(options)
     if "mats" in found:
         found["mats"] = str(folder / os.path.expanduser(found["mats"]))
     for field_name in _FILE_FIELDS & found.keys():
@@ -123,7 +123,7 @@ def find_magic(text: str, name: str) -> Magic | None:
         name: Its file name, for errors.
 
     Raises:
-        ConfigError: the magic is not one of `PRELUDES`, or a switch in it is wrong.
+        ConfigError: the magic is not one of `PRELUDES`, or an option in it is wrong.
     """
     for number, line in _head(source_lines(text)):
         match = _MAGIC.fullmatch(line)
@@ -133,12 +133,12 @@ def find_magic(text: str, name: str) -> Magic | None:
         if match["name"] not in PRELUDES:
             raise ConfigError(f"no such magic %%{match['name']}", nearest(match["name"], PRELUDES), file=where)
         try:
-            switches = parse_words(shlex.split(match["words"]))
+            options = parse_words(shlex.split(match["words"]))
         except ConfigError as error:
             raise ConfigError(error.message, error.hint, file=where) from None
         except ValueError as error:
             raise ConfigError(f"the magic line cannot be split into words: {error}", file=where) from None
-        return Magic(number, PRELUDES[match["name"]], switches, match["comment"] is not None)
+        return Magic(number, PRELUDES[match["name"]], options, match["comment"] is not None)
     return None
 
 
@@ -199,8 +199,8 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
         lines = source_lines(text)
         lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"
         text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
-    prelude = str(magic.switches.get("preload", magic.prelude))
-    return ProgramSource(Program(name, text, prelude, path), magic.switches)
+    prelude = str(magic.options.get("preload", magic.prelude))
+    return ProgramSource(Program(name, text, prelude, path), magic.options)
 
 
 def read_program(path: Path) -> ProgramSource:
@@ -242,7 +242,7 @@ def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
         ConfigError: its magic line is wrong.
     """
     source = parse_program(text, name, str(path) if path else "")
-    return replace(source, switches=beside(path.parent if path else Path.cwd(), source.switches))
+    return replace(source, options=beside(path.parent if path else Path.cwd(), source.options))
 
 
 def _decode(data: bytes, shown: str) -> str:

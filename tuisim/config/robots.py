@@ -110,7 +110,7 @@ def load_robot(word: str, key: str = "") -> RobotSpec:
 
     Args:
         word: The name or the path.
-        key: The switch to name in errors about an unknown name, such as `-r`.
+        key: The option to name in errors about an unknown name, such as `-r`.
 
     Raises:
         RobotError: the name is unknown, or the file is wrong.
@@ -156,7 +156,7 @@ def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
     if "pen" in found:
         pen = dict(files.table(found["pen"], at.at("pen")))
         if "color" in pen:
-            pen["color"] = files.by_switch(pen["color"], at.at("pen.color"), pen_color)
+            pen["color"] = files.by_option(pen["color"], at.at("pen.color"), pen_color)
         changes["pen"] = files.updated(base.pen, pen, at.at("pen"))
     if "motors" in found:
         changes |= _motors(found, base, at)

@@ -263,7 +263,7 @@ def _named(word: str, at: Location, resolve: Resolver, load: Callable[[str], obj
 def _pen(pen: Mapping[str, Any], at: Location) -> dict[str, Any]:
     found = {f"pen_{key}": value for key, value in pen.items()}
     if "color" in pen:
-        found["pen_color"] = files.by_switch(pen["color"], at.at("color"), pen_color)
+        found["pen_color"] = files.by_option(pen["color"], at.at("color"), pen_color)
     return found
 
 

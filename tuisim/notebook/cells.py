@@ -120,8 +120,8 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
                 at = text.index("%%")
                 body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
                 prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
-                switches = {**lasting, **said}
-                source = ProgramSource(Program(f"{path.name}#{number}", body, prelude, module_folder=folder), switches)
+                options = {**lasting, **said}
+                source = ProgramSource(Program(f"{path.name}#{number}", body, prelude, module_folder=folder), options)
                 found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()
             elif words.unknown:
@@ -150,7 +150,7 @@ def _magics(text: str, where: str) -> Iterator[_Words]:
 
 
 def _without_variables(words: str) -> tuple[str, str]:
-    """Return a magic line without the words that contain variables and their switches, and those variables."""
+    """Return a magic line without the words that contain variables and their options, and those variables."""
     unknown = ", ".join(_VARIABLE.findall(words))
     kept: list[str] = []
     # A word may contain a variable with blanks in its braces.

@@ -1,4 +1,4 @@
-"""Parses a magic line: the shared switches, and those of notebooks only."""
+"""Parses a magic line: the shared options, and those of notebooks only."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def parse_line(line: str, magic: str) -> MagicWords:
     """Parse the words after a magic.
 
     Raises:
-        ConfigError: a word is no switch, or a value is wrong.
+        ConfigError: a word is no option, or a value is wrong.
     """
     command = _command(magic)
     try:
