@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 from collections.abc import Callable
@@ -89,6 +88,9 @@ ROBOT_FILES = {
     "motor": "weight = 'heavy'\n[motors]\noutA = 'medium'\n",
     "further sensor": "gyro = false\n[infrareds.a]\nport = 'in4'\n[pen]\nx_mm = 1\n[color_sensors.left]\nx_mm = 9\n",
     "other order": "[color_sensors.right]\nx_mm = 3 # r\n[pen]\n[color_sensors.left]\nx_mm = 4 # l\n",
+    "quoted keys": "'name' = 'x'\n\"pen\".\"color\" = 'red'",
+    "empty tables": "[pen]\n[color_sensors]\n[color_sensors.left]\n[ultrasonic]\n[color_sensors.right]\n[motors]\n",
+    "inline in dotted keys": "color_sensors.left = {x_mm = 1}\ncolor_sensors.right.y_mm = 3",
     "list": "[ultrasonic]\nray_angles_deg = [\n  0, # ahead\n  1,\n]\n",
 }
 
@@ -154,6 +156,8 @@ def test_a_world_keeps_what_is_not_in_a_run(changes: dict[str, Any], expected: s
 
 WORLDS = {
     "preset": WORLD,
+    "parted tables": "[robot.pen]\nx_mm = 1\n[start]\n[robot.gyro]\n[[remote]]\nbuttons = ['beacon']\n",
+    "inline": "start = {x_mm = 1}\nrobot = {back_mm = -3}\nobstacle = []\n",
     "inside": "[robot]\nback_mm = -70\n[[remote]]\nbuttons = ['beacon']\n[beacon]\nx_mm = 1\ny_mm = 1",
     "files that are gone": "robot = 'gone.toml'\nprofile = 'gone.toml'\nobstacles = 'gone.json'\nprogram = 'gone.py'",
 }
@@ -215,13 +219,6 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
     with pytest.raises(ConfigError, match=r"mine\.toml: cannot be written: No space left on device"):
         save_robot(RobotSpec(), tmp_path / "mine.toml")
     assert (tmp_path / "mine.toml").read_text() == ROBOT_FILE
-
-
-def test_unknown_keys_of_a_json_robot_are_noted_and_its_file_stays(tmp_path: Path) -> None:
-    old = json.dumps({"back": -70, "owner": "Ann"})
-    (tmp_path / "mine.json").write_text(old)
-    save_robot(load_robot(str(tmp_path / "mine.json")), tmp_path / "mine.toml")
-    assert (tmp_path / "mine.json").read_text() == old
 
 
 def test_only_saving_into_an_existing_file_imports_its_library(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import re
 import reprlib
 import stat
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from pathlib import Path
@@ -306,7 +306,7 @@ def convert(data: object, kind: type[Value], at: Location) -> Value:
         raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
     except msgspec.ValidationError as error:
         message, _, path = str(error).partition(" - at `$")
-        path = re.sub(r"\d+", lambda index: str(int(index[0]) + 1), path.rstrip("`").lstrip("."))
+        path = re.sub(r"(?<=\[)\d+", lambda index: str(int(index[0]) + 1), path.rstrip("`").lstrip("."))
         where = at.at(path) if path else at
         if missing := re.fullmatch(r"Object missing required field `(\w+)`", message):
             raise where.at(missing[1]).wrong("is missing") from None
@@ -352,11 +352,8 @@ def _walk(data: object, info: types.Type, at: Location) -> Iterator[tuple[str, t
 def _mismatch(value: object, info: types.Type, at: Location) -> ConfigError:
     from msgspec import inspect as types
 
-    match info:
-        case types.EnumType(cls=kind):
-            return at.wrong(f"no such value {shown(value)}", f"one of {', '.join(each.value for each in kind)}")
-        case types.LiteralType(values=values):
-            return at.wrong(f"no such value {shown(value)}", f"one of {', '.join(map(str, values))}")
+    if isinstance(info, types.EnumType):
+        return at.wrong(f"no such value {shown(value)}", f"one of {', '.join(each.value for each in info.cls)}")
     return at.wrong(f"must be {_expected(info)}, got {shown(value)}")
 
 
@@ -378,7 +375,7 @@ def _expected(info: types.Type) -> str:
             return "text"
         case types.BoolType():
             return "true or false"
-        case types.ListType() | types.VarTupleType() | types.TupleType():
+        case types.ListType() | types.VarTupleType():
             return "a list"
         case types.UnionType(types=members):
             return " or ".join(map(_expected, members))
@@ -446,8 +443,8 @@ def save_toml(
     """
     if path.suffix != ".toml":
         raise at.wrong("must end in .toml")
-    texts = ["\n".join(lines) + "\n"]
-    if read(parse_toml(texts[0], at.file, at.error)) != expected:
+    new = text = "\n".join(lines) + "\n"
+    if read(parse_toml(text, at.file, at.error)) != expected:
         raise at.wrong("a file cannot represent this")
     if path.is_file() and (old := _text(path, at.error)).strip():
         try:
@@ -455,11 +452,14 @@ def save_toml(
         except ConfigError as error:
             hint = "; ".join(filter(None, (error.hint, "correct the file, or save under another name")))
             raise type(error)(error.message, hint) from None
-        # The order of sensors may matter, so some tables must be replaced as a whole.
-        texts = [_updated_text(old, texts[0], kept, whole) for whole in (False, True)]
-    text = next((text for text in texts if read(parse_toml(text, at.file, at.error)) == expected), "")
-    if not text:
-        raise at.wrong("cannot be updated", "save under another name")
+        for whole in (False, True):
+            # The order of sensors may matter, so tables may have to be replaced as a whole.
+            with suppress(ConfigError):
+                text = _updated_text(old, new, kept, whole)
+                if read(parse_toml(text, at.file, at.error)) == expected:
+                    break
+        else:
+            raise at.wrong("cannot be updated", "save under another name")
     try:
         with replacing(path, owner_only=owner_only) as stream:
             stream.write(text.encode())
@@ -474,12 +474,19 @@ def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str
         old, new: The texts.
         kept: Keys that only the old text has.
         whole: Whether tables are replaced as a whole.
+
+    Raises:
+        ConfigError: the library cannot do it.
     """
     import tomlkit
+    from tomlkit.exceptions import TOMLKitError
 
-    document = tomlkit.parse(old)
-    _update(document, tomlkit.parse(new), kept, whole)
-    return tomlkit.dumps(document)
+    try:
+        document = tomlkit.parse(old)
+        _update(document, tomlkit.parse(new), kept, whole)
+        return tomlkit.dumps(document)
+    except (TOMLKitError, RecursionError) as error:
+        raise ConfigError(f"cannot be updated: {error}") from None
 
 
 def _update(old: Any, new: Any, kept: Collection[str] = (), whole: bool = False) -> None:

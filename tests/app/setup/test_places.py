@@ -78,6 +78,16 @@ def test_poses_are_kept_replaced_and_deleted() -> None:
     assert list(load_poses()) == ['"odd" [name] = ü']
 
 
+def test_saving_a_pose_keeps_the_users_comments(home: Path) -> None:
+    home.mkdir()
+    poses_file().write_text("# My poses\n[poses.a]  # the door\nx_mm = 1\ny_mm = 2\nheading_deg = 0\n")
+    save_pose("b", Pose(1, 2, 3))
+    assert poses_file().read_text().startswith("# My poses\n[poses.a]  # the door\nx_mm = 1\n")
+    delete_pose("a")
+    delete_pose("b")
+    assert (load_poses(), poses_file().read_text()[:10]) == ({}, "# My poses")
+
+
 @pytest.mark.parametrize("name", ["", "  ", "x" * 41, "two\nlines"], ids=["empty", "blank", "long", "lines"])
 @pytest.mark.usefixtures("home")
 def test_a_pose_needs_a_name(name: str) -> None:
