@@ -228,7 +228,7 @@ def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[S
 
 
 _COLOR_SENSOR = {"x": "x_mm", "y": "y_mm", "diameter": "diameter_mm"}
-_PARTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
+_JSON_PARTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "pen": ("pen", {"x": "x_mm", "y": "y_mm", "color": "color", "width": "width_mm"}),
     "sensor1": ("color_sensors.left", _COLOR_SENSOR),
     "sensor2": ("color_sensors.right", _COLOR_SENSOR),
@@ -237,7 +237,7 @@ _PARTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
 }
 """The key of each part in a robot's TOML table, and the names of its keys there."""
 
-_KEYS = {
+_JSON_KEYS = {
     "wheeldiameter": "wheel_diameter_mm",
     "wheelSpacing": "wheel_spacing_mm",
     "back": "back_mm",
@@ -273,22 +273,25 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     theirs: dict[str, str] = {}
     unknown: list[str] = []
     for key, value in found.items():
-        if key in _KEYS:
+        if key in _JSON_KEYS:
             if key == "weight" and value in (None, ""):
                 # Medium, as without the key.
                 continue
-            ours[_KEYS[key]] = value
-            theirs[_KEYS[key]] = key
-        elif key in _PARTS:
-            place, keys = _PARTS[key]
+            ours[_JSON_KEYS[key]] = value
+            theirs[_JSON_KEYS[key]] = key
+        elif key in _JSON_PARTS:
+            place, keys = _JSON_PARTS[key]
             theirs |= {place: key, f"{place}.port": key} | {f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()}
             outer, _, inner = place.rpartition(".")
             part = files.table(value, at.at(key))
-            (ours[outer] if outer else ours)[inner] = _part(part, keys, at.at(key))
+            (ours[outer] if outer else ours)[inner] = _json_part(part, keys, at.at(key))
             unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
         elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
             unknown.append(key)
-    motor, light = _noise(found, _WHEEL_NOISE, MAX_MOTOR_NOISE, at), _noise(found, _SENSOR_NOISE, MAX_LIGHT_NOISE, at)
+    motor, light = (
+        _json_noise(found, _WHEEL_NOISE, MAX_MOTOR_NOISE, at),
+        _json_noise(found, _SENSOR_NOISE, MAX_LIGHT_NOISE, at),
+    )
     try:
         choice = robot_from_table(ours, name, at)
     except ConfigError as error:
@@ -297,7 +300,7 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     return replace(choice, motor_noise=_DEFAULT_NOISE if motor is None else motor, light_noise=light, notes=notes)
 
 
-def _noise(robot: Mapping[str, object], key: str, most: int, at: Location) -> int | None:
+def _json_noise(robot: Mapping[str, object], key: str, most: int, at: Location) -> int | None:
     from msgspec import Meta
 
     value = robot.get(key)
@@ -305,7 +308,7 @@ def _noise(robot: Mapping[str, object], key: str, most: int, at: Location) -> in
     return None if value is None else files.convert(value, kind, at.at(key))
 
 
-def _part(part: Mapping[str, object], keys: Mapping[str, str], at: Location) -> dict[str, object] | bool:
+def _json_part(part: Mapping[str, object], keys: Mapping[str, str], at: Location) -> dict[str, object] | bool:
     """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
     if at.key != "pen" and not files.convert(part.get("enabled", True), bool, at.at("enabled")):
         return False
