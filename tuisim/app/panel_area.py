@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
 from textual import events
 from textual.containers import Container
@@ -26,6 +26,18 @@ if TYPE_CHECKING:
     from tuisim.app.panels.obstacles import Obstacles
     from tuisim.app.panels.output import Output
     from tuisim.app.panels.world import World
+
+PanelWidget = TypeVar("PanelWidget", bound=Widget)
+
+
+class _Mounted(Generic[PanelWidget]):
+    """An attribute that is a panel, or None until that is mounted."""
+
+    def __init__(self, panel: str) -> None:
+        self._panel = panel
+
+    def __get__(self, area: PanelArea | None, owner: type[PanelArea]) -> PanelWidget | None:
+        return cast("PanelWidget | None", area.panels.get(self._panel) if area is not None else None)
 
 
 class PanelArea(Container):
@@ -61,45 +73,14 @@ class PanelArea(Container):
 
     # A hidden panel is still fed; one that was never shown is None.
 
-    @property
-    def world(self) -> World | None:
-        """The world panel, if mounted."""
-        return cast("World | None", self.panels.get("world"))
-
-    @property
-    def output(self) -> Output | None:
-        """The output panel, if mounted."""
-        return cast("Output | None", self.panels.get("output"))
-
-    @property
-    def chart(self) -> Chart | None:
-        """The chart panel, if mounted."""
-        return cast("Chart | None", self.panels.get("chart"))
-
-    @property
-    def code(self) -> Code | None:
-        """The code panel, if mounted."""
-        return cast("Code | None", self.panels.get("code"))
-
-    @property
-    def controls(self) -> Controls | None:
-        """The panel of the simulator controls, if mounted."""
-        return cast("Controls | None", self.panels.get("controls"))
-
-    @property
-    def debug(self) -> Debug | None:
-        """The debug panel, if mounted."""
-        return cast("Debug | None", self.panels.get("debug"))
-
-    @property
-    def brick(self) -> Brick | None:
-        """The brick panel, if mounted."""
-        return cast("Brick | None", self.panels.get("brick"))
-
-    @property
-    def obstacles(self) -> Obstacles | None:
-        """The obstacles panel, if mounted."""
-        return cast("Obstacles | None", self.panels.get("obstacles"))
+    world: _Mounted[World] = _Mounted("world")
+    output: _Mounted[Output] = _Mounted("output")
+    chart: _Mounted[Chart] = _Mounted("chart")
+    code: _Mounted[Code] = _Mounted("code")
+    controls: _Mounted[Controls] = _Mounted("controls")
+    debug: _Mounted[Debug] = _Mounted("debug")
+    brick: _Mounted[Brick] = _Mounted("brick")
+    obstacles: _Mounted[Obstacles] = _Mounted("obstacles")
 
     def shown(self, panel: str) -> bool:
         """Return whether a panel is on the screen."""
