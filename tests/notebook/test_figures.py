@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.charts.test_paper_chart import log_of
+from tests.charts.test_layout import log_of
 from tests.running import Run
 from tuisim.analysis.chart import View
 from tuisim.analysis.chart import chart_of as plotted
