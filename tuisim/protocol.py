@@ -70,7 +70,7 @@ class ExecutedLine:
     """Number of open calls of the program's own code, from 1."""
 
 
-PROTOCOL_VERSION = 3
+PROTOCOL_VERSION = 4
 
 
 class End(StrEnum):
@@ -147,6 +147,10 @@ class Message:
     """Base of all messages."""
 
     kind: ClassVar[str]
+    """The name of its class in small letters, such as `set_pose`; for user actions also the name in stored runs."""
+
+    def __init_subclass__(cls) -> None:
+        cls.kind = re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
 
     def encode(self) -> bytes:
         """Return the message as one JSON line."""
@@ -162,28 +166,21 @@ class Message:
 class Stop(Message):
     """Stop the program."""
 
-    kind = "stop"
-
 
 @dataclass(frozen=True, slots=True)
 class Pause(Message):
     """Pause at the next instant outside a device call."""
-
-    kind = "pause"
 
 
 @dataclass(frozen=True, slots=True)
 class Resume(Message):
     """Resume."""
 
-    kind = "resume"
-
 
 @dataclass(frozen=True, slots=True)
 class StepTicks(Message):
     """While paused: run this number of ticks, then pause again."""
 
-    kind = "step_ticks"
     ticks: int = 1
 
 
@@ -191,7 +188,6 @@ class StepTicks(Message):
 class StepLine(Message):
     """Run to the next line of the program, then pause; a running program pauses at its next line."""
 
-    kind = "step_line"
     how: LineStep = LineStep.OVER
 
     def __post_init__(self) -> None:
@@ -203,7 +199,6 @@ class StepLine(Message):
 class RunToLine(Message):
     """Run until a line of the program is about to run, in any thread, then pause."""
 
-    kind = "run_to_line"
     line: int
 
 
@@ -211,7 +206,6 @@ class RunToLine(Message):
 class RunToInstant(Message):
     """Run at full speed to a later instant and pause there, or at the end if it is never reached."""
 
-    kind = "run_to_instant"
     tick: int
     ordinal: int = BEFORE_NEXT_TICK
     """As in `Paused`."""
@@ -221,7 +215,6 @@ class RunToInstant(Message):
 class SetBreaks(Message):
     """Replace all breakpoints of the run."""
 
-    kind = "set_breaks"
     breaks: tuple[str, ...]
     """Breakpoints in the syntax of `tuisim.breakpoints`; disabled ones are ignored."""
 
@@ -234,7 +227,6 @@ class SetBreaks(Message):
 class Inspect(Message):
     """Request the state of a paused run; `Inspected` is the answer."""
 
-    kind = "look"
     watches: tuple[str, ...] = ()
     """Expressions, evaluated in the frame."""
     thread: str = ""
@@ -250,7 +242,6 @@ class Inspect(Message):
 class RequestHistory(Message):
     """Request the last executed lines; `LineHistory` is the answer."""
 
-    kind = "want_history"
     count: int = 100
 
 
@@ -258,7 +249,6 @@ class RequestHistory(Message):
 class SetSpeed(Message):
     """Set the pace against the wall clock: 1.0 is real time, 0 is as fast as possible."""
 
-    kind = "set_speed"
     speed: float
 
 
@@ -266,7 +256,6 @@ class SetSpeed(Message):
 class SetPose(Message):
     """User action: set the robot's pose."""
 
-    kind = "set_pose"
     x_mm: float
     y_mm: float
     heading_deg: float
@@ -276,7 +265,6 @@ class SetPose(Message):
 class SetNoise(Message):
     """User action: set the noise."""
 
-    kind = "set_noise"
     light: int
     motor: int
 
@@ -285,7 +273,6 @@ class SetNoise(Message):
 class SetPen(Message):
     """User action: lift or lower the pen."""
 
-    kind = "set_pen"
     down: bool
 
 
@@ -293,7 +280,6 @@ class SetPen(Message):
 class SetButtons(Message):
     """User action: these buttons of the brick are pressed from now on, all others are released."""
 
-    kind = "set_buttons"
     pressed: tuple[str, ...]
     """Names from `BUTTONS`; others raise a ConfigError."""
 
@@ -309,7 +295,6 @@ class SetButtons(Message):
 class Answer(Message):
     """User action: the answer to an `input()`; None is end of file."""
 
-    kind = "answer"
     text: str | None
     at_once: bool = False
     """Whether simulated time was stopped until it arrived."""
@@ -319,7 +304,6 @@ class Answer(Message):
 class Reply(Message):
     """User action: the answer of a responder to a request of the program; simulated time was stopped until then."""
 
-    kind = "reply"
     messages: tuple[Any, ...]
     """JSON data, oldest first."""
 
@@ -374,7 +358,6 @@ BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 class Started(Message):
     """The program's first line is about to run."""
 
-    kind = "started"
     protocol: int
     pid: int
 
@@ -383,7 +366,6 @@ class Started(Message):
 class Paused(Message):
     """The run has paused: program and world together."""
 
-    kind = "paused"
     tick: int
     time_ns: int
     line: int
@@ -406,14 +388,11 @@ class Paused(Message):
 class Resumed(Message):
     """The run has resumed."""
 
-    kind = "resumed"
-
 
 @dataclass(frozen=True, slots=True)
 class Spoke(Message):
     """The program said or played something."""
 
-    kind = "spoke"
     text: str
     """The spoken text; in brackets for other sounds."""
     time_ns: int
@@ -430,7 +409,6 @@ class Spoke(Message):
 class InputWanted(Message):
     """The program waits in `input()`."""
 
-    kind = "input_wanted"
     prompt: str
 
 
@@ -438,14 +416,11 @@ class InputWanted(Message):
 class ReplyWanted(Message):
     """The program has called `pyState()`: simulated time is stopped until a `Reply` arrives."""
 
-    kind = "reply_wanted"
-
 
 @dataclass(frozen=True, slots=True)
 class Ended(Message):
     """The end of a run: its last event, and part of what is stored of it."""
 
-    kind = "ended"
     end: End
     tick: int
     time_ns: int
@@ -463,7 +438,6 @@ class Ended(Message):
 class Inspected(Message):
     """The state of a paused run."""
 
-    kind = "looked"
     tick: int
     time_ns: int
     thread: str
@@ -486,7 +460,6 @@ class Inspected(Message):
 class LineHistory(Message):
     """The last executed lines, oldest first; the last one is about to run."""
 
-    kind = "line_history"
     lines: tuple[ExecutedLine, ...]
 
 

@@ -17,13 +17,12 @@ from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.handle import program_again
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream
-from tuisim.runs.run_folder import noise_at
+from tuisim.runs.run_folder import StoredRun, noise_at
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.side_files import read_actions
 
 if TYPE_CHECKING:
     from tuisim.runs.handle import RunHandle
-    from tuisim.runs.run_folder import StoredRun
     from tuisim.runs.views import OutputView, TelemetryView, TickRecord
 
 _STILL_DEG = 0.05
@@ -39,7 +38,7 @@ class Recording:
     """
 
     def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = ()) -> None:
-        self.run_id: str
+        self.run_id = source.id if isinstance(source, StoredRun) else source.run_id
         self.number: int = source.number
         """Number in the catalogue; 0 if it is not listed."""
         self.spec: RunSpec = source.spec
@@ -47,20 +46,10 @@ class Recording:
         self.telemetry: TelemetryView = source.telemetry
         self.rows = RowIndex(source.output)
         self.program = program_again(source)
-        self._actions: tuple[UserAction, ...] = ()
+        self._actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
         self._marks: _TimedMarks | None = None
-        self.answers = answers
+        self.answers = tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
         """Scripted answers to `input()`."""
-        self._take_source(source)
-
-    def _take_source(self, source: RunHandle | StoredRun) -> None:
-        from tuisim.runs.run_folder import StoredRun
-
-        if isinstance(source, StoredRun):
-            self.run_id, self._actions = source.id, source.actions
-            self.answers = tuple(source.options.get("answers", ()))
-        else:
-            self.run_id = source.run_id
 
     @property
     def name(self) -> str:

@@ -44,6 +44,10 @@ from tuisim.source import Program
 
 RUNS_FOLDER = "runs"
 LAST = "last"
+_PROGRAM_KEYS = (
+    "name", "path", "text", "sha256", "prelude", "arguments", "python_path", "working_directory", "module_folder",
+)  # fmt: skip
+"""What `run.json` holds of the program, in this order."""
 _COUNT_AT_ONCE_BYTES = 1 << 20
 """Longer outputs are counted later, so that the end of a run is not delayed."""
 
@@ -125,17 +129,7 @@ class RunStore:
                     "number": number,
                     "created": created,
                     "live": live,
-                    "program": {
-                        "name": program.name,
-                        "path": program.path,
-                        "text": program.text,
-                        "sha256": program.sha256,
-                        "prelude": program.prelude,
-                        "arguments": list(program.arguments),
-                        "python_path": list(program.python_path),
-                        "working_directory": program.working_directory,
-                        "module_folder": program.module_folder,
-                    },
+                    "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
                     "spec": to_plain(spec),
                     "field": None if field is None else dict(field),
                     "options": dict(options or {}),
