@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tuisim.errors import LogError
+from tuisim.logs import plateaus as plateaus_module
 from tuisim.logs.plateaus import plateaus, plateaus_aside
 
 
@@ -36,3 +37,7 @@ def test_ends_when_nobody_waits_for_it() -> None:
     values = np.random.default_rng(4).integers(0, 5, 2_000_000).astype(np.float64)
     with pytest.raises(LogError, match="stopped"):
         plateaus_aside(values, lambda: True)
+
+
+def test_it_imports_the_package_of_this_process() -> None:
+    assert plateaus_module.__file__ == str(plateaus_module._PACKAGE_FOLDER / "tuisim" / "logs" / "plateaus.py")
