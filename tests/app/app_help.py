@@ -38,11 +38,11 @@ def settings(text: str | None = None, background: str = "Grey_bands", **more: An
     return AppSettings(spec=spec, program=program(text) if text else None, background=background, **more)
 
 
-async def until(pilot: Pilot[Any], condition: Callable[[], bool]) -> None:
-    """Let the app go on until something is so."""
+async def until(pilot: Pilot[Any], condition: Callable[[], bool], case: str = "") -> None:
+    """Let the app go on until something is so; `case` names the row of a table that a test works through."""
     give_up = time.monotonic() + PATIENCE_S
     while not condition():
-        assert time.monotonic() < give_up, "it did not come about"
+        assert time.monotonic() < give_up, f"it did not come about {case}"
         await pilot.pause(0.01)
 
 

@@ -84,13 +84,13 @@ async def sent_for_a_while(pilot: Pilot[Any]) -> str:
     return "".join(wire_of(pilot).sent)
 
 
-@pytest.mark.parametrize("keys", [[], ["question_mark"], ["ctrl+p"], ["o"], ["d"]], ids=str)
-async def test_where_nothing_happens_nothing_is_sent(keys: list[str]) -> None:
+async def test_where_nothing_happens_nothing_is_sent() -> None:
     async with on_wire(LabApp(settings(LOGS))) as pilot:
         await ready(pilot)
-        await pilot.press(*keys)
+        for keys in ([], ["question_mark"], ["escape", "ctrl+p"], ["escape", "o"], ["escape", "d"]):
+            await pilot.press(*keys)
 
-        assert await sent_at_rest(pilot) == ""
+            assert await sent_at_rest(pilot) == "", keys
 
 
 @pytest.mark.parametrize("panels", [frozenset[str](), frozenset(["chart"])], ids=["no chart", "chart"])
