@@ -99,7 +99,7 @@ def given_ready(cell: Cell, words: str) -> bool:
 def own_mat(cell: Cell, words: str) -> str:
     """The file of the mat `Loop`, with a picture of one's own in a folder `pics`."""
     folder = Path(os.environ["TUISIM_HOME"], "pics")
-    folder.mkdir()
+    folder.mkdir(exist_ok=True)
     Image.new("RGB", (30, 20)).save(folder / "_loop.png")
     done = cell(f"%sim_magic -W -b Loop {words.replace('pics', str(folder))}\nroboSim.spec.world.background")
     return Path(done.result).name
