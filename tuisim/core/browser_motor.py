@@ -81,8 +81,8 @@ class BrowserMotor:
 
     def step(self, tick: int, noise_dps: float) -> float:
         """Run one tick; see `Motor.step`."""
-        speed, target = self.speed_dps, self.speed_sp
-        if speed != target or noise_dps:
+        speed = self.speed_dps
+        if speed != self.speed_sp or noise_dps:
             self.speed_dps = speed = self._next(speed, noise_dps)
         turned = speed * self._tick_s
         command = self._command

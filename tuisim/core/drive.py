@@ -46,14 +46,34 @@ class Records(NamedTuple):
     """Destination of the records of several ticks, and the fields that are the same in all of them."""
 
     buffer: Buffer
-    at: int
-    """Offset of the first record in the buffer, in bytes."""
-    tick: int
-    """The first tick."""
+    offsets: range
+    """Offset of each record in the buffer, in bytes."""
+    ticks: range
     line: int
     flags: int
     actions: int
     tick_hz: int
+
+
+_POSITIONS = Struct("<IIddddd")
+"""The first fields of `TICK_RECORD`: those that change while the speeds are steady."""
+
+
+def _fill(records: Records, at: int, left: EvenGlide, right: EvenGlide, zero_deg: float) -> None:
+    """Write what is the same in all records; the loops then pack only the positions, which is quicker.
+
+    Args:
+        records: The buffer and the common fields.
+        at: Offset of the first of the records to write.
+        left: The left wheel, whose speed is written.
+        right: The right wheel.
+        zero_deg: Heading at which the gyro reads 0.
+    """
+    left_dps, right_dps = left.roll_deg * records.tick_hz, right.roll_deg * records.tick_hz
+    zeros = 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0
+    common = TICK_RECORD.pack(*zeros, left_dps, right_dps, zero_deg, records.flags, records.actions)
+    end = records.offsets.stop
+    records.buffer[at:end] = common * ((end - at) // 64)
 
 
 class Glide(NamedTuple):
@@ -96,6 +116,23 @@ class Drive(Protocol):
         """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
 
 
+def _glide_straight(
+    drive: Drive, forward_mm: float, way: float, records: Records, left: EvenGlide, right: EvenGlide
+) -> tuple[float, float]:
+    """Move the robot by equal steps in the direction `way`, in radians; see `Drive.glide_evenly`."""
+    buffer, offsets, ticks, line, *_ = records
+    _fill(records, offsets.start, left, right, drive.gyro_zero_deg)
+    x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, _POSITIONS.pack_into
+    across, up = forward_mm * cos(way), forward_mm * sin(way)
+    left_at = right_at = 0.0
+    for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
+        x += across
+        y += up
+        pack_into(buffer, at, tick, line, x, y, heading, left_at, right_at)
+    drive.x_mm, drive.y_mm = x, y
+    return left_at, right_at
+
+
 class BrickDrive:
     """The drive of a brick.
 
@@ -128,10 +165,10 @@ class BrickDrive:
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
         """Move the robot by several ticks and write a record for each."""
-        buffer, at, tick, line, flags, actions, hz = records
+        buffer, offsets, ticks, line, flags, actions, hz = records
         per_deg, spacing, early, zero = self._mm_per_deg, self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
-        for left_deg, left_at, right_deg, right_at in zip(*left, *right, strict=True):
+        for at, tick, left_deg, left_at, right_deg, right_at in zip(offsets, ticks, *left, *right, strict=True):
             left_mm, right_mm = left_deg * per_deg, right_deg * per_deg
             turned, forward = degrees((right_mm - left_mm) / spacing), (left_mm + right_mm) / 2
             way = radians(heading + turned * early)
@@ -142,33 +179,25 @@ class BrickDrive:
                 buffer, at, tick, line, x, y, heading, left_at, right_at, left_deg * hz, right_deg * hz,
                 zero, flags, actions,
             )  # fmt: skip
-            at += 64
-            tick += 1
         self.x_mm, self.y_mm, self.heading_deg = x, y, heading
 
     def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
         """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
-        buffer, at, tick, line, flags, actions, hz = records
         left_mm, right_mm = left.roll_deg * self._mm_per_deg, right.roll_deg * self._mm_per_deg
         turned, forward = degrees((right_mm - left_mm) / self._spacing_mm), (left_mm + right_mm) / 2
-        left_dps, right_dps, zero = left.roll_deg * hz, right.roll_deg * hz, self.gyro_zero_deg
-        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
+        if not turned:
+            return _glide_straight(self, forward, radians(self.heading_deg), records, left, right)
+        buffer, offsets, ticks, line, *_ = records
+        _fill(records, offsets.start, left, right, self.gyro_zero_deg)
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, _POSITIONS.pack_into
         early = turned * self._early
-        way = radians(heading + early)
-        across, up = forward * cos(way), forward * sin(way)
         left_at = right_at = 0.0
-        for left_at, right_at in zip(left.counts_deg, right.counts_deg, strict=True):
-            x += across
-            y += up
-            if turned:
-                heading += turned
-                way = radians(heading + early)
-                across, up = forward * cos(way), forward * sin(way)
-            pack_into(
-                buffer, at, tick, line, x, y, heading, left_at, right_at, left_dps, right_dps, zero, flags, actions
-            )
-            at += 64
-            tick += 1
+        for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
+            way = radians(heading + early)
+            x += forward * cos(way)
+            y += forward * sin(way)
+            heading += turned
+            pack_into(buffer, at, tick, line, x, y, heading, left_at, right_at)
         self.x_mm, self.y_mm, self.heading_deg = x, y, heading
         return left_at, right_at
 
@@ -182,10 +211,15 @@ class BrowserDrive:
         early: Fraction of a tick's turn that already applies to the motion of that tick.
     """
 
-    __slots__ = ("_early", "_heading", "_rim_mm", "_spacing_mm", "gyro_zero_deg", "heading_deg", "x_mm", "y_mm")
+    __slots__ = (
+        "_early", "_forward_mm", "_heading", "_left_deg", "_right_deg", "_rim_mm", "_spacing_mm", "_turn",
+        "gyro_zero_deg", "heading_deg", "x_mm", "y_mm",
+    )  # fmt: skip
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
         self._rim_mm, self._spacing_mm, self._early = math.pi * robot.wheel_diameter_mm, robot.wheel_spacing_mm, early
+        self._left_deg = self._right_deg = self._forward_mm = self._turn = 0.0
+        """Rotation of the wheels in the last tick, and the step and turn that result from it."""
         self.put(start)
         self.gyro_zero_deg = float32(self.heading_deg)
 
@@ -193,12 +227,14 @@ class BrowserDrive:
         """Set the robot's pose."""
         self.x_mm, self.y_mm = pose.x_mm, pose.y_mm
         self._heading = radians(pose.heading_deg)
-        self.heading_deg = self._heading * 180 / math.pi
+        self.heading_deg = self._heading * 180.0 / math.pi
 
     def roll(self, left_deg: float, right_deg: float) -> None:
         """Move the robot by one tick's rotation of the wheels."""
-        left_mm, right_mm = left_deg / 360 * self._rim_mm, right_deg / 360 * self._rim_mm
-        turned, forward = (right_mm - left_mm) / self._spacing_mm, (left_mm + right_mm) / 2
+        if left_deg != self._left_deg or right_deg != self._right_deg:
+            self._left_deg, self._right_deg = left_deg, right_deg
+            self._forward_mm, self._turn = self._step(left_deg, right_deg)
+        turned, forward = self._turn, self._forward_mm
         way = self._heading + turned * self._early
         self.x_mm += forward * cos(way)
         self.y_mm += forward * sin(way)
@@ -207,16 +243,21 @@ class BrowserDrive:
             if heading > _WHOLE_TURN:
                 heading -= _WHOLE_TURN
                 self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
-            self._heading, self.heading_deg = heading, heading * 180 / math.pi
+            self._heading, self.heading_deg = heading, heading * 180.0 / math.pi
+
+    def _step(self, left_deg: float, right_deg: float) -> tuple[float, float]:
+        """Return the step in mm and the turn in radians for a rotation of the wheels."""
+        left_mm, right_mm = left_deg / 360.0 * self._rim_mm, right_deg / 360.0 * self._rim_mm
+        return (left_mm + right_mm) / 2, (right_mm - left_mm) / self._spacing_mm
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
         """Move the robot by several ticks and write a record for each."""
-        buffer, at, tick, line, flags, actions, hz = records
+        buffer, offsets, ticks, line, flags, actions, hz = records
         rim, spacing, early, zero = self._rim_mm, self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, shown, pack_into = self.x_mm, self.y_mm, self._heading, self.heading_deg, TICK_RECORD.pack_into
         whole, pi = _WHOLE_TURN, math.pi
-        for left_deg, left_at, right_deg, right_at in zip(*left, *right, strict=True):
-            left_mm, right_mm = left_deg / 360 * rim, right_deg / 360 * rim
+        for at, tick, left_deg, left_at, right_deg, right_at in zip(offsets, ticks, *left, *right, strict=True):
+            left_mm, right_mm = left_deg / 360.0 * rim, right_deg / 360.0 * rim
             turned, forward = (right_mm - left_mm) / spacing, (left_mm + right_mm) / 2
             way = heading + turned * early
             x += forward * cos(way)
@@ -225,38 +266,32 @@ class BrowserDrive:
                 heading += turned
                 if heading > whole:
                     heading, zero = heading - whole, float32(zero - 360)
-                shown = heading * 180 / pi
+                shown = heading * 180.0 / pi
             pack_into(
                 buffer, at, tick, line, x, y, shown, left_at, right_at, left_deg * hz, right_deg * hz,
                 zero, flags, actions,
             )  # fmt: skip
-            at += 64
-            tick += 1
         self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = x, y, heading, shown, zero
 
     def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
         """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
-        buffer, at, tick, line, flags, actions, hz = records
-        left_mm, right_mm = left.roll_deg / 360 * self._rim_mm, right.roll_deg / 360 * self._rim_mm
-        turned, forward = (right_mm - left_mm) / self._spacing_mm, (left_mm + right_mm) / 2
-        left_dps, right_dps, zero = left.roll_deg * hz, right.roll_deg * hz, self.gyro_zero_deg
-        x, y, heading, shown, pack_into = self.x_mm, self.y_mm, self._heading, self.heading_deg, TICK_RECORD.pack_into
-        whole, pi = _WHOLE_TURN, math.pi
-        early = turned * self._early
-        way = heading + early
-        across, up = forward * cos(way), forward * sin(way)
+        forward, turned = self._step(left.roll_deg, right.roll_deg)
+        if not turned:
+            return _glide_straight(self, forward, self._heading, records, left, right)
+        buffer, offsets, ticks, line, *_ = records
+        _fill(records, offsets.start, left, right, self.gyro_zero_deg)
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self._heading, _POSITIONS.pack_into
+        whole, pi, early = _WHOLE_TURN, math.pi, turned * self._early
         left_at = right_at = 0.0
-        for left_at, right_at in zip(left.counts_deg, right.counts_deg, strict=True):
-            x += across
-            y += up
-            if turned:
-                heading += turned
-                if heading > whole:
-                    heading, zero = heading - whole, float32(zero - 360)
-                shown, way = heading * 180 / pi, heading + early
-                across, up = forward * cos(way), forward * sin(way)
-            pack_into(buffer, at, tick, line, x, y, shown, left_at, right_at, left_dps, right_dps, zero, flags, actions)
-            at += 64
-            tick += 1
-        self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = x, y, heading, shown, zero
+        for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
+            way = heading + early
+            x += forward * cos(way)
+            y += forward * sin(way)
+            heading += turned
+            if heading > whole:
+                heading -= whole
+                self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
+                _fill(records, at, left, right, self.gyro_zero_deg)
+            pack_into(buffer, at, tick, line, x, y, heading * 180.0 / pi, left_at, right_at)
+        self.x_mm, self.y_mm, self._heading, self.heading_deg = x, y, heading, heading * 180.0 / pi
         return left_at, right_at

@@ -261,7 +261,8 @@ class Motion:
             buffer = self._make_room(part)
             sink, hz = self._sink, self._hz
             at, flags, actions = 64 + 64 * sink.count, self._flags(), self.actions & 0xFFFF
-            records = Records(buffer, at, self.tick + 1, self.line, flags, actions, hz)
+            offsets, ticks_ahead = range(at, at + 64 * part, 64), range(self.tick + 1, self.tick + 1 + part)
+            records = Records(buffer, offsets, ticks_ahead, self.line, flags, actions, hz)
             if ramping:
                 left, right = self.left.glide(part), self.right.glide(part)
                 self.drive.glide(records, left, right)
