@@ -144,7 +144,9 @@ class ProgramRunner:
             if self._session.stop_reason is not None:
                 # Its traceback keeps frames alive.
                 self._session.stop_reason.with_traceback(None)
-            self._clear_module()
+            if self._session.stop_reason is None or len(self._scheduler.tasks) == 1:
+                # A thread that still computes when the user stops the program needs its names.
+                self._clear_module()
         except BaseException as error:  # the program is over: later errors are only reported
             self._thread_error(type(error), error, None)
 
