@@ -67,7 +67,7 @@ def test_a_key_draws_what_something_else_has_written_over(
     for key in opened:
         terminal.keys("?" if key == "question_mark" else key)
     if opened:
-        terminal.until(lambda text: "R run" not in text.splitlines()[-1])
+        terminal.until(lambda text: "─ Help" in text or "R run" not in text.splitlines()[-1])
 
     def is_written_over(text: str) -> bool:
         if "Broken pipe" in text and not text.splitlines()[-1].strip():

@@ -72,19 +72,27 @@ class Settings(VerticalScroll, can_focus=False):
                 row.show(edit.read(plan))
 
     async def _rebuild(self, parts: list[FieldGroup]) -> None:
-        """Rebuild the form: another robot may have other sensors, and so other fields."""
-        focused = next((row.field for row in self.query(Row) if row.entry.has_focus), None)
-        await self.query(".form").remove()
+        """Rebuild the form: another robot may have other sensors, and so other fields.
+
+        Rows of fields that stay are kept, so that the focus stays, too, and no key is lost.
+        """
+        wanted = {edit.id for part in parts for edit in part.edits}
+        rows = {row.field: row for row in self.query(Row)}
+        await self.query(".heading").remove()
+        for field, row in rows.items():
+            if field not in wanted:
+                await row.remove()
         for part in parts:
-            rows = [Row(edit.id, edit.label, bool(edit.choices)) for edit in part.edits]
-            for row in rows:
-                row.add_class("form")
-            await self.mount(Static(part.title, classes="form heading", markup=False), *rows)
+            await self.mount(Static(part.title, classes="form heading", markup=False))
+            for edit in part.edits:
+                if edit.id in rows:
+                    self.move_child(rows[edit.id], after=-1)
+                else:
+                    row = Row(edit.id, edit.label, bool(edit.choices))
+                    row.add_class("form")
+                    await self.mount(row)
         if self._plan:
             self.show_next_run(self._plan)
-        for row in self.query(Row):
-            if row.field == focused:
-                row.entry.focus()
         if self._begins:
             self.begin()
 
