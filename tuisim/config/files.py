@@ -485,7 +485,8 @@ def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str
         document = tomlkit.parse(old)
         _update(document, tomlkit.parse(new), kept, whole)
         return tomlkit.dumps(document)
-    except (TOMLKitError, RecursionError) as error:
+    except (TOMLKitError, RecursionError, IndexError) as error:
+        # IndexError: tables whose parts lie apart in the file.
         raise ConfigError(f"cannot be updated: {error}") from None
 
 
