@@ -179,10 +179,11 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
     with TemporaryDirectory(prefix="tuisim-") as home:
         scratch = RunStore(Path(home))
         handle = rerun(run, scratch)
-        ticks = run.telemetry.count
+        what, ticks = f"rerunning run {run.number}: {run.program.name}", run.telemetry.count
+        tell(what, 0, ticks)
         try:
             while handle.wait(ASK_AGAIN_S) is None:
-                tell(f"rerunning run {run.number}: {run.program.name}", handle.telemetry.count, ticks)
+                tell(what, handle.telemetry.count, ticks)
         finally:
             handle.close()
         tell(f"comparing run {run.number}")
