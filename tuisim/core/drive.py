@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec
-from tuisim.core.state import TICK_RECORD, Buffer
+from tuisim.core.state import POSITION_FIELDS, TICK_RECORD, Buffer
 
 _FLOAT32 = Struct("<f")
 _WHOLE_TURN = 2 * math.pi
@@ -53,10 +53,6 @@ class Records(NamedTuple):
     flags: int
     actions: int
     tick_hz: int
-
-
-_POSITIONS = Struct("<IIddddd")
-"""The first fields of `TICK_RECORD`: those that change while the speeds are steady."""
 
 
 def _fill(records: Records, at: int, left: EvenGlide, right: EvenGlide, zero_deg: float) -> None:
@@ -122,7 +118,7 @@ def _glide_straight(
     """Move the robot by equal steps in the direction `way`, in radians; see `Drive.glide_evenly`."""
     buffer, offsets, ticks, line, *_ = records
     _fill(records, offsets.start, left, right, drive.gyro_zero_deg)
-    x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, _POSITIONS.pack_into
+    x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, POSITION_FIELDS.pack_into
     across, up = forward_mm * cos(way), forward_mm * sin(way)
     left_at = right_at = 0.0
     for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
@@ -189,7 +185,7 @@ class BrickDrive:
             return _glide_straight(self, forward, radians(self.heading_deg), records, left, right)
         buffer, offsets, ticks, line, *_ = records
         _fill(records, offsets.start, left, right, self.gyro_zero_deg)
-        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, _POSITIONS.pack_into
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, POSITION_FIELDS.pack_into
         early = turned * self._early
         left_at = right_at = 0.0
         for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
@@ -280,7 +276,7 @@ class BrowserDrive:
             return _glide_straight(self, forward, self._heading, records, left, right)
         buffer, offsets, ticks, line, *_ = records
         _fill(records, offsets.start, left, right, self.gyro_zero_deg)
-        x, y, heading, pack_into = self.x_mm, self.y_mm, self._heading, _POSITIONS.pack_into
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self._heading, POSITION_FIELDS.pack_into
         whole, pi, early = _WHOLE_TURN, math.pi, turned * self._early
         left_at = right_at = 0.0
         for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):

@@ -30,6 +30,11 @@ FEW_TICKS = 3
 """Up to this number of ticks, setting up a tight loop costs more than it saves."""
 
 
+def stall_ticks(tick_hz: int) -> int:
+    """Return the number of ticks without motion after which a running motor is stalled."""
+    return STALL_MS * tick_hz // 1000 + 1
+
+
 class Motion:
     """Robot and motors of one run.
 
@@ -223,7 +228,7 @@ class Motion:
     @property
     def stall_ticks(self) -> int:
         """Number of blocked ticks after which a motor is stalled."""
-        return STALL_MS * self._hz // 1000 + 1
+        return stall_ticks(self._hz)
 
     def _fields(self) -> tuple[float, ...]:
         """Return the record of the current tick."""

@@ -17,6 +17,9 @@ left_speed_dps, right_speed_dps, gyro_zero_deg, flags, actions.
 `line` is the program's own line that spent the time (0: none). `gyro_deg` is
 gyro_zero_deg - heading_deg. `actions` counts the user actions applied before this tick."""
 
+POSITION_FIELDS = Struct("<IIddddd")
+"""The first fields of `TICK_RECORD`, up to right_position_deg: those that change while the speeds are steady."""
+
 FLAG_LEFT_RUNNING = 1
 FLAG_RIGHT_RUNNING = 2
 FLAG_PEN_DOWN = 4

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.core.field import Field
-from tuisim.core.motion import STALL_MS
+from tuisim.core.motion import stall_ticks
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
@@ -94,7 +94,7 @@ class Recording:
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn."""
-        ticks = STALL_MS * self.spec.profile.tick_hz // 1000 + 1
+        ticks = stall_ticks(self.spec.profile.tick_hz)
         if record.tick < ticks:
             return False, False
         before = self.telemetry.record(record.tick - ticks)
