@@ -10,7 +10,7 @@ import shutil
 import signal
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tests.running import Start, over
+from tests.running import PATIENCE_S, Start, over
 from tuisim.commands import run as run_command
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -31,7 +31,7 @@ from tuisim.runs import store as store_module
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.packed_files import PACKED_SUFFIX
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE, OutputWriter, TelemetryWriter
-from tuisim.runs.run_folder import StoredRun, field_files
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.store import PACKER_LOCK_FILE, PACKERS, RunStore
 from tuisim.runs.views import TelemetryView
 from tuisim.source import Program
@@ -182,22 +182,35 @@ def test_export_that_fails_does_not_hinder_the_others(
     assert len(read_log(tmp_path / "c.csv")) == 3
 
 
-def test_folder_that_is_deleted_in_mid_run_is_told_in_one_line(endless: Path, home: Path, here: Command) -> None:
-    def delete() -> None:
-        give_up = time.monotonic() + 20
-        while not list((home / "runs").glob(f"*/{OUTPUT_FILE}")) and time.monotonic() < give_up:
+def _delete_once_begun(home: Path, delete: Callable[[Path], None]) -> threading.Thread:
+    def wait() -> None:
+        give_up = time.monotonic() + PATIENCE_S
+        while not (begun := list((home / "runs").glob(f"*/{OUTPUT_FILE}"))) and time.monotonic() < give_up:
             time.sleep(0.01)
-        shutil.rmtree(home / "runs", ignore_errors=True)
+        delete(begun[0].parent)
 
-    field_files(SPEC)
-    deleting = threading.Thread(target=delete)
+    deleting = threading.Thread(target=wait)
     deleting.start()
+    return deleting
+
+
+def test_folder_that_is_deleted_in_mid_run_is_told_in_one_line(endless: Path, home: Path, here: Command) -> None:
+    field_files(SPEC)
+    deleting = _delete_once_begun(home, lambda folder: shutil.rmtree(folder.parent, ignore_errors=True))
     done = here("run", endless, "--speed", "1", "--export", "a.csv")
     deleting.join()
     assert done.returncode == 2
     assert done.stderr == "tuisim: endless.py: run 1 was not stored: its folder was deleted while it ran\n"
     assert not list(home.glob("runs/*"))
     assert RunStore().runs() == []
+
+
+def test_folder_of_which_a_part_is_deleted_yet_is_told_alike(endless: Path, home: Path, here: Command) -> None:
+    field_files(SPEC)
+    deleting = _delete_once_begun(home, lambda folder: (folder / RUN_FILE).unlink())
+    done = here("run", endless, "--speed", "4", "--timeout", "12")
+    deleting.join()
+    assert done.stderr == "tuisim: endless.py: run 1 was not stored: its folder was deleted while it ran\n"
 
 
 @pytest.mark.parametrize(("presses", "rows"), [(1, 3), (2, None)], ids=["once", "twice"])

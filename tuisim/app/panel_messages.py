@@ -95,15 +95,13 @@ class PanelMessages(ActionHost, TerminalApp):
     def on_settings_edited(self, message: Settings.Edited) -> None:
         """Apply a field of the settings; the field shows an error."""
         try:
-            self.workspace.loader.set_next_run(
-                self.workspace.loader.change(lambda plan: message.edit.write(plan, message.text))
-            )
+            self.workspace.loader.set_next_run(self.workspace.loader.change(message.apply))
         except TuisimError as error:
             message.row.refuse(error)
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
         """Apply obstacles that were typed, added or removed."""
-        self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
+        self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.change(plan.spec.world.obstacles)))
 
     def on_obstacles_marked(self) -> None:
         """Mark another obstacle as the selected one."""

@@ -223,12 +223,14 @@ def _run_all(
             continue
         how_far = _how_far(at, len(prepared))
         exit_code, handle = _run_one(one, arguments, store, interrupts, how_far)
-        if handle.folder.is_dir():
+        try:
             run = handle.stored()
+        except LogError:
+            echo_error(f"tuisim: {handle.program.name}: run {handle.number} was not stored: {handle.unstored}")
+            exit_code = max(exit_code, exit_status.EXIT_BAD_OUTPUT)
+        else:
             results.append((one.label or run.program.name, run))
             exit_status.report(run, exit_code, as_json=arguments.json)
-        else:
-            echo_error(f"tuisim: {handle.program.name}: run {handle.number} was not stored: {handle.unstored}")
         code = max(code, exit_code)
         if exit_code > exit_status.SIGNALLED:
             break

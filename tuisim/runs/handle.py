@@ -46,7 +46,7 @@ from tuisim.runs.process import (
     what_ended,
     write_command,
 )
-from tuisim.runs.run_folder import StoredRun, field_files
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.side_files import copy_modules
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView, TelemetryView
@@ -131,7 +131,7 @@ class RunHandle:
         self._announced: Ended | None = None
         self._announced_at = 0.0
         self.unstored = ""
-        """Why the end of the run is not stored; empty if it is."""
+        """Why the run or its end is not stored; empty if it is."""
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
                 run.folder, program.working_directory
@@ -241,7 +241,7 @@ class RunHandle:
         try:
             self._store.finish(self.run_id, final)
         except LogError as error:
-            self.unstored = str(error) if self.folder.is_dir() else "its folder was deleted while it ran"
+            self.unstored = self._what_is_wrong(error)
             summary = f"{final.summary}; its end" if final.summary else "its end"
             self.ended = replace(final, summary=f"{summary} cannot be stored: {self.unstored}")
 
@@ -251,10 +251,18 @@ class RunHandle:
         Raises:
             LogError: it no longer exists, or is damaged.
         """
-        run = self._store.load_run(self.folder)
+        try:
+            run = self._store.load_run(self.folder)
+        except LogError as error:
+            self.unstored = self._what_is_wrong(error)
+            raise
         if run.end is None and self.ended is not None:
             return replace(run, end=self.ended)
         return run
+
+    def _what_is_wrong(self, error: LogError) -> str:
+        # A folder that is being deleted loses its files one by one.
+        return str(error) if (self.folder / RUN_FILE).exists() else "its folder was deleted while it ran"
 
     def wait(self, timeout_s: float | None = None) -> Ended | None:
         """Block until the run is over.

@@ -79,6 +79,16 @@ async def test_add_type_and_remove() -> None:
         assert "There is none to remove" in screen_text(app)
 
 
+async def test_no_box_is_lost_when_two_are_added_at_once() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await opened(pilot)
+        panel = app.query_one(Obstacles)
+        panel.action_add()
+        panel.action_add()
+        await until(pilot, lambda: len(boxes(app)) == 2)
+        assert boxes(app)[0] != boxes(app)[1]
+
+
 async def test_a_wrong_number_is_refused() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)

@@ -14,7 +14,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.setup.next_run import with_robot
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.widgets.form import Choice, Row
-from tuisim.config.robots import load_robot
+from tuisim.config.robots import ROBOTS, load_robot
 
 
 async def opened(pilot: Pilot[Any]) -> LabApp:
@@ -111,6 +111,19 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
         assert app.run_controller.mat is not None
         assert app.run_controller.mat.key[2] == {30, 10}
         assert app.run_controller.pose.x_mm == 150
+
+
+async def test_no_step_is_lost_when_a_choice_is_stepped_through_quickly() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await opened(pilot)
+        choice = row(app, "preset").entry
+        assert isinstance(choice, Choice)
+        names = [*ROBOTS]
+        for _ in range(3):
+            choice.action_step(1)
+        await pilot.pause()
+        wanted = names[names.index("Default_Robot") + 3 - len(names)]
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == wanted)
 
 
 @pytest.mark.slow

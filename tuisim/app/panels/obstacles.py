@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from functools import partial
+from typing import ClassVar, TypeAlias
 
 from textual import events, on
 from textual.app import ComposeResult
@@ -20,6 +21,8 @@ from tuisim.app.widgets.form import reason, typed_number
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
 from tuisim.errors import ConfigError, ObstacleError
 
+Boxes: TypeAlias = tuple[Obstacle, ...]
+
 _FIELDS = {"x_mm": "X", "y_mm": "Y", "width_mm": "W", "height_mm": "H"}
 _NEW_SIZE_MM = 200.0
 _USE = "A drag draws another"
@@ -29,6 +32,17 @@ _NONE = "none: a drag draws one"
 def box_label(number: int, box: Obstacle) -> str:
     """Return the list entry of an obstacle."""
     return f"{number:>2}  {box.width_mm:g}×{box.height_mm:g} at {box.x_mm:g}, {box.y_mm:g}"
+
+
+def _with_another(boxes: Boxes) -> Boxes:
+    middle = ((FIELD_WIDTH_MM - _NEW_SIZE_MM) // 2, (FIELD_HEIGHT_MM - _NEW_SIZE_MM) // 2)
+    # A box on top of another would be invisible.
+    shift = 20.0 * len(boxes)
+    return (*boxes, Obstacle(middle[0] + shift, middle[1], _NEW_SIZE_MM, _NEW_SIZE_MM))
+
+
+def _replaced(at: int, by: Boxes, boxes: Boxes) -> Boxes:
+    return (*boxes[:at], *by, *boxes[at + 1 :])
 
 
 class Obstacles(Vertical):
@@ -44,7 +58,8 @@ class Obstacles(Vertical):
     class Edited(Message):
         """Posted when the user has edited the obstacles."""
 
-        obstacles: tuple[Obstacle, ...]
+        change: Callable[[Boxes], Boxes]
+        """Return the obstacles with this edit, for those of the plan when the message arrives."""
 
     @dataclass
     class Marked(Message):
@@ -152,25 +167,18 @@ class Obstacles(Vertical):
             entry.add_class("wrong")
             self._say(f"{_FIELDS[entry.id or '']} {reason(error)}")
             return
-        self.edit((*self._boxes[: self.at], box, *self._boxes[self.at + 1 :]))
+        self.post_message(self.Edited(partial(_replaced, self.at, (box,))))
 
     def action_add(self) -> None:
         """Add a box in the middle of the field."""
-        middle = ((FIELD_WIDTH_MM - _NEW_SIZE_MM) // 2, (FIELD_HEIGHT_MM - _NEW_SIZE_MM) // 2)
-        # A box on top of another would be invisible.
-        shift = 20.0 * len(self._boxes)
-        self.edit((*self._boxes, Obstacle(middle[0] + shift, middle[1], _NEW_SIZE_MM, _NEW_SIZE_MM)))
+        self.post_message(self.Edited(_with_another))
 
     def action_remove(self) -> None:
         """Remove the selected box."""
         if self.at is None:
             self._say("There is none to remove")
             return
-        self.edit((*self._boxes[: self.at], *self._boxes[self.at + 1 :]))
-
-    def edit(self, boxes: Sequence[Obstacle]) -> None:
-        """Request other obstacles."""
-        self.post_message(self.Edited(tuple(boxes)))
+        self.post_message(self.Edited(partial(_replaced, self.at, ())))
 
     def _say(self, wrong: str) -> None:
         self.query_one("#message", Static).update(wrong or _USE)

@@ -34,11 +34,21 @@ class Settings(VerticalScroll, can_focus=False):
 
     @dataclass
     class Edited(Message):
-        """Posted when the user has entered a value."""
+        """Posted when the user has entered a value, or asks for another choice."""
 
         row: Row
         edit: Field
         text: str
+        by: int
+        """Steps to another choice, from the one that is current when the message arrives."""
+
+        def apply(self, plan: NextRun) -> NextRun:
+            """Return the plan with this edit.
+
+            Raises:
+                TuisimError: the value is invalid.
+            """
+            return self.edit.write(plan, step(self.edit, plan, self.by) if self.by else self.text)
 
     def __init__(self) -> None:
         super().__init__()
@@ -107,6 +117,5 @@ class Settings(VerticalScroll, can_focus=False):
     def _entered(self, event: Row.Entered) -> None:
         event.stop()
         edit = find(self._plan, event.row.field) if self._plan else None
-        if edit is not None and self._plan is not None:
-            text = step(edit, self._plan, event.by) if event.by else event.text
-            self.post_message(self.Edited(event.row, edit, text))
+        if edit is not None:
+            self.post_message(self.Edited(event.row, edit, event.text, event.by))
