@@ -33,6 +33,11 @@ def _notices_stay() -> None:
 
 
 @pytest.fixture(autouse=True)
+def _children_of_their_own(real_start: None) -> None:
+    """Start children as users do: a server that forks them would stay, as a child of this process."""
+
+
+@pytest.fixture(autouse=True)
 def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "work"
     folder.mkdir()

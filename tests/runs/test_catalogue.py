@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,7 +18,8 @@ from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import End, Ended
-from tuisim.runs.catalogue import CATALOGUE_FILE, Catalogue
+from tuisim.runs import catalogue
+from tuisim.runs.catalogue import CATALOGUE_FILE, Catalogue, RunInfo
 from tuisim.runs.store import RunStore
 
 FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
@@ -116,6 +118,26 @@ def test_harm_to_the_catalogue_does_not_stop_a_run(
 def test_seed_may_be_larger_than_the_integers_of_the_catalogue(store: RunStore, spec: RunSpec) -> None:
     store.new_run(PROGRAM, replace(spec, seed=1 << 80))
     assert store.runs()[0].seed == 1 << 80
+
+
+def _info(run_id: str) -> RunInfo:
+    return RunInfo(0, run_id, "2026-01-01T00:00:00.000+00:00", "p.py", "Empty_Map", "robolab", 0)
+
+
+def test_a_catalogue_that_another_process_has_made_meanwhile_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home, other = tmp_path / "home", tmp_path / "other"
+    home.mkdir()
+    Catalogue(other, lambda: ()).add(_info("a"))
+
+    @contextmanager
+    def locked(_: Path) -> Iterator[None]:
+        shutil.copy(other / CATALOGUE_FILE, home)
+        yield
+
+    monkeypatch.setattr(catalogue, "locked", locked)
+    assert Catalogue(home, lambda: ()).add(_info("b")) == 2
 
 
 def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:

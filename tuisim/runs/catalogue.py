@@ -22,7 +22,7 @@ from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, RunState
 
 CATALOGUE_FILE = "runs.db"
-LOCK_FILE = "runs.side_files"
+LOCK_FILE = "runs.lock"
 _SCHEMA_VERSION = 1
 _BUSY_S = 10.0
 
@@ -256,8 +256,10 @@ def _must_be_made_again(error: sqlite3.DatabaseError) -> bool:
 def _is_sound(path: Path) -> bool:
     try:
         with closing(_open(path)) as connection:
+            if connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
+                return False
             _all_rows(connection)
-            return bool(connection.execute("PRAGMA quick_check").fetchone()[0] == "ok")
+            return True
     except sqlite3.DatabaseError as error:
         if _must_be_made_again(error):
             return False
