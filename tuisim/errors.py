@@ -1,4 +1,4 @@
-"""Every error that tuisim raises on purpose.
+"""Every error that tuisim raises on purpose, and the checks of values that raise them.
 
 TuisimError(message, hint, exit_code)
 ├─ ConfigError: file, key ── BackgroundError, RobotError, ObstacleError, ProfileError
@@ -13,6 +13,7 @@ goes to stderr, to a notice in the app, and to the notebook.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 MOST_LISTED = 20
@@ -156,3 +157,46 @@ class LogError(TuisimError):
 
 class ExportError(TuisimError):
     """An export could not be written; no partial file is left."""
+
+
+def require(
+    value: float, low: float, high: float, key: str, error: type[ConfigError] = RobotError, *, whole: bool = False
+) -> None:
+    """Check that a value is a number within limits.
+
+    Args:
+        value: Value to check; a bool is not a number.
+        low: Smallest allowed value.
+        high: Largest allowed value.
+        key: Name of the value in the error.
+        error: Class of the error.
+        whole: Whether only whole numbers are allowed.
+
+    Raises:
+        ConfigError: the check failed; raised as `error`.
+    """
+    number = isinstance(value, int) or (isinstance(value, float) and not whole and math.isfinite(value))
+    if not number or isinstance(value, bool):
+        raise error(f"must be a {'whole ' if whole else ''}number, got {value!r}", key=key)
+    if not low <= value <= high:
+        raise error(f"must be from {low:g} to {high:g}, got {value!r}", key=key)
+
+
+def require_one_of(
+    value: object, what: str, allowed: Iterable[object], key: str, error: type[ConfigError] = RobotError
+) -> None:
+    """Check that a value is one of `allowed`.
+
+    Args:
+        value: Value to check; a bool is not a number.
+        what: What the value is, such as `port`.
+        allowed: All allowed values.
+        key: Name of the value in the error.
+        error: Class of the error.
+
+    Raises:
+        ConfigError: the check failed; raised as `error`.
+    """
+    allowed = tuple(allowed)
+    if value not in allowed or isinstance(value, bool):
+        raise error(f"no such {what} {value!r}", f"one of {', '.join(map(str, allowed))}", key=key)

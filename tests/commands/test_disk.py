@@ -22,7 +22,7 @@ from tests.running import PATIENCE_S, Start, over
 from tuisim.commands import run as run_command
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.export import export_samples
 from tuisim.logs.reader import read_log

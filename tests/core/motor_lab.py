@@ -26,7 +26,7 @@ from tuisim.core.drive import EvenGlide
 from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.runs.run_folder import field_files
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.clock import loop_hook, patch_time

@@ -17,7 +17,7 @@ from tuisim.core.profile import PROFILES, ROBOLAB
 from tuisim.core.sensors import infrared, touch
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec, from_plain, to_plain
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import ConfigError
 
 ROBOT = RobotSpec(

@@ -15,7 +15,7 @@ import pytest
 
 from tests.runs.run_recorder import Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.runs.records import (
     HEADER_BYTES,
@@ -33,7 +33,7 @@ from tuisim.runs.views import OutputView, TelemetryView, TickRecord, instant_of
 CHILD = """
 import sys
 from pathlib import Path
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.runs.records import HEADER_BYTES, OutputWriter, TelemetryWriter
 telemetry, output = TelemetryWriter(Path(sys.argv[1])), OutputWriter(Path(sys.argv[1]))
 for tick in range(int(sys.argv[2])):

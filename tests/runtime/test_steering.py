@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.running import PATIENCE_S, Run, Start, until
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import HostError
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, StepTicks
 from tuisim.runs.process import decode_event

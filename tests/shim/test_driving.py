@@ -8,7 +8,7 @@ import pytest
 
 from tests.shim.conftest import START, RunOn
 from tuisim.core.geometry import Pose
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 
 EXERCISED = {
     "ev3dev2.motor:LineFollowErrorLostLine",

@@ -10,7 +10,7 @@ from tuisim.app.snapshot import telemetry_traces
 from tuisim.charts.world_image import pen_points_mm
 from tuisim.core.field import Field
 from tuisim.core.spec import RobotSpec
-from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.runs.records import OutputRow
 from tuisim.runs.samples import samples_of
 

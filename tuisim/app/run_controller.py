@@ -14,7 +14,8 @@ from tuisim.app.timeline import Timeline
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.state import FLAG_PEN_DOWN, Instant
+from tuisim.core.state import Instant
+from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.protocol import RunState
 from tuisim.runs.recording import Recording
 from tuisim.runs.records import OutputRow

@@ -15,7 +15,7 @@ from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.sensors.ultrasonic import rays_mm
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
-from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:

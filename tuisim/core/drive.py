@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec
-from tuisim.core.state import POSITION_FIELDS, TICK_RECORD, Buffer
+from tuisim.core.tick_record import POSITION_FIELDS, TICK_RECORD, Buffer
 
 _FLOAT32 = Struct("<f")
 _WHOLE_TURN = 2 * math.pi

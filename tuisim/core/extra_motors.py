@@ -8,7 +8,7 @@ from tuisim.core.motor_laws import motor_of
 from tuisim.core.motors import Motor
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RunSpec
-from tuisim.core.state import TickSink
+from tuisim.core.tick_record import TickSink
 
 Turn = tuple[float, float]
 """Position in degrees and speed in degrees per second, both at the axle."""

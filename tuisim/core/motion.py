@@ -15,7 +15,7 @@ from tuisim.core.motor_laws import drive_of, motor_of
 from tuisim.core.motors import MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise
 from tuisim.core.spec import RunSpec
-from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
+from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
 
 STALL_MS = 100
 """A running motor that does not turn for longer than this is stalled (EV3 motor driver)."""

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tuisim.core.checks import require, require_one_of
-from tuisim.errors import ObstacleError
+from tuisim.errors import ObstacleError, require, require_one_of
 
 MOTOR_KINDS = ("large", "medium")
 """Kinds of motors, for `MotorSpec.kind` and the wheel motors."""

@@ -10,7 +10,7 @@ from tuisim.core.css_colors import css_rgb
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, RunSpec
-from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.core.weights import disc_weights
 
 _BLOCK_PX = 32

@@ -9,7 +9,8 @@ from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion
 from tuisim.core.motors import Motor
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.state import TICK_RECORD, Instant
+from tuisim.core.state import Instant
+from tuisim.core.tick_record import TICK_RECORD
 
 
 class Simulation(Motion):

@@ -10,11 +10,10 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, ClassVar, Protocol
 
-from tuisim.core.checks import require, require_one_of
 from tuisim.core.geometry import Pose
 from tuisim.core.parts import MOTOR_KINDS, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import ProfileSpec, profile_from_plain, profile_to_plain
-from tuisim.errors import ObstacleError, RobotError
+from tuisim.errors import ObstacleError, RobotError, require, require_one_of
 
 FIELD_WIDTH_MM = 2362
 """Width of the field; one mat pixel is one mm."""

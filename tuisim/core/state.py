@@ -1,28 +1,11 @@
-"""The state of the world at one tick, and the interface that receives tick records."""
+"""The state of the world at one tick."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from mmap import mmap
-from struct import Struct
-from typing import Protocol, TypeAlias
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
-
-TICK_RECORD = Struct("<IIdddddfffHH")
-"""tick, line, x_mm, y_mm, heading_deg, left_position_deg, right_position_deg,
-left_speed_dps, right_speed_dps, gyro_zero_deg, flags, actions.
-
-`line` is the program's own line that spent the time (0: none). `gyro_deg` is
-gyro_zero_deg - heading_deg. `actions` counts the user actions applied before this tick."""
-
-POSITION_FIELDS = Struct("<IIddddd")
-"""The first fields of `TICK_RECORD`, up to right_position_deg: those that change while the speeds are steady."""
-
-FLAG_LEFT_RUNNING = 1
-FLAG_RIGHT_RUNNING = 2
-FLAG_PEN_DOWN = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,19 +24,3 @@ class Instant:
     """Heading at which the gyro reads 0."""
     noise: NoiseSpec = NoiseSpec()
     seed: int = 0
-
-
-Buffer: TypeAlias = mmap | bytearray
-"""A mutable buffer: a mapped file, or memory."""
-
-
-class TickSink(Protocol):
-    """Receives tick records."""
-
-    count: int
-
-    def room(self, records: int) -> Buffer:
-        """Return a writable buffer in which record k of 64 bytes starts at 64 + 64·k; valid until the next call."""
-
-    def publish(self, count: int) -> None:
-        """Make the first `count` records visible to readers."""

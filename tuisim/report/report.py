@@ -16,7 +16,7 @@ from tuisim.charts.layout import Chart, Span, laid_out
 from tuisim.charts.world_image import world_at_end, world_view
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.state import FLAG_PEN_DOWN
+from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
 from tuisim.logs.export import check_place
 from tuisim.logs.plateaus import Plateau, plateaus

@@ -15,7 +15,7 @@ from struct import error as StructError
 
 from tuisim.atomic import replacing, sweep
 from tuisim.core.spec import RunSpec
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.runs.records import (
     HEADER_BYTES,

@@ -13,7 +13,7 @@ from tuisim.core.field import Field
 from tuisim.core.motion import stall_ticks
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.handle import program_again
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream

@@ -20,7 +20,7 @@ from pathlib import Path
 from struct import Struct
 
 from tuisim.atomic import private
-from tuisim.core.state import TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import LogError
 
 HEADER_BYTES = 64
@@ -46,7 +46,7 @@ TICK_FIELDS = (
     ("flags", "<u2"),
     ("actions", "<u2"),
 )
-"""Name and numpy type of each field of `core.state.TICK_RECORD`."""
+"""Name and numpy type of each field of `core.tick_record.TICK_RECORD`."""
 
 OUTPUT_ROW = Struct("<IIqIB3x")
 """Number of bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.state import TICK_RECORD, Instant
+from tuisim.core.state import Instant
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import LogError, counted
 from tuisim.runs.packed_files import Packed, find_packed
 from tuisim.runs.records import (
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class TickRecord:
-    """Telemetry of one tick; see `core.state.TICK_RECORD`."""
+    """Telemetry of one tick; see `core.tick_record.TICK_RECORD`."""
 
     tick: int
     line: int

@@ -18,8 +18,8 @@ from tuisim.protocol import End
 from tuisim.runtime import wallclock
 from tuisim.runtime.control import ATTENTION
 from tuisim.runtime.session import Session
+from tuisim.runtime.stack import PACKAGE_FOLDER
 
-PACKAGE_FOLDER = str(Path(__file__).parent.parent) + os.sep
 RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
 STALL_LOOK_S = 1.0
 STACK_FILE = "stack.txt"

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from tuisim.runs.side_files import OwnModule, note_module, read_modules
-from tuisim.runtime.interrupts import PACKAGE_FOLDER
+from tuisim.runtime.stack import PACKAGE_FOLDER
 
 _FOREIGN = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
 _INSTALLED = ("site-packages", "dist-packages")

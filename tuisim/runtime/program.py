@@ -26,9 +26,8 @@ from tuisim.runtime.output import LineStream, Output
 from tuisim.runtime.replacement import replace
 from tuisim.runtime.run_config import RunConfig
 from tuisim.runtime.scheduler import Scheduler
-from tuisim.runtime.session import Session
+from tuisim.runtime.session import Deadlock, Session, StopProgram
 from tuisim.runtime.stack import patch_faulthandler
-from tuisim.runtime.stop import Deadlock, StopProgram
 from tuisim.runtime.tracebacks import point_at_namesake, report_error
 
 

@@ -16,8 +16,7 @@ from typing import Any
 from tuisim.runtime import wallclock
 from tuisim.runtime.control import STOPPING, THREADS
 from tuisim.runtime.limits import limit_memory
-from tuisim.runtime.session import Session
-from tuisim.runtime.stop import Deadlock, StopProgram
+from tuisim.runtime.session import Deadlock, Session, StopProgram
 
 MOST_THREADS = 1000
 """Each is a real thread, and a machine has only so many."""

@@ -11,21 +11,20 @@ import sys
 import types
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from tuisim.core.field import Field
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.simulation import Simulation
-from tuisim.protocol import End, Reply, ReplyWanted, Spoke
+from tuisim.protocol import End, Message, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE, STOPPING, THREADS, RunControl
 from tuisim.runtime.output import Output
-from tuisim.runtime.stop import StopProgram
 
 if TYPE_CHECKING:
     from tuisim.core.pen_marks import PenMarks
-    from tuisim.runtime.debugger.debugger import Debugger
+    from tuisim.runtime.run_config import RunConfig
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
@@ -48,6 +47,61 @@ class Limits:
     time_ns: int = 0
     stall_s: float = 0.0
     """CPU seconds in one instant of simulated time."""
+
+
+class StopProgram(BaseException):
+    """Unwinds the program. Not an `Exception`, so that the program's handlers do not catch it.
+
+    Args:
+        end: How the run ends by it.
+        summary: One line for the user.
+    """
+
+    def __init__(self, end: End, summary: str) -> None:
+        super().__init__(summary)
+        self.end = end
+        self.summary = summary
+
+
+class Deadlock(RuntimeError):
+    """Every thread of the program waits for another one."""
+
+
+class Debugger(Protocol):
+    """What session and control need of the debugger."""
+
+    def begin(self, config: RunConfig) -> None:
+        """Apply the settings that are known before the program's first line."""
+
+    def take(self, command: Message) -> None:
+        """Process a command; the caller handles pausing and resuming."""
+
+    def enter(self) -> None:
+        """Switch tracing in the current thread on or off as needed."""
+
+    def before_tick(self) -> None:
+        """Pause if the goal is reached. Called right before a tick, after user actions."""
+
+    def most_ticks(self, most: int) -> int:
+        """Return the number of ticks that may run before `after_ticks` has to be called."""
+
+    def after_ticks(self) -> None:
+        """Pause if a breakpoint matches the tick that was just run."""
+
+    def at_end(self) -> None:
+        """Pause at the end of the program if a requested instant was never reached."""
+
+    def pause(self) -> None:
+        """Pause at the next line, if it is reached before the next tick."""
+
+    def answer(self) -> None:
+        """Answer the requests received while paused."""
+
+    def forget_goals(self) -> None:
+        """Cancel steps and goals: the user has requested something else."""
+
+    def go_on(self) -> None:
+        """Prepare for resuming from a pause."""
 
 
 class Session:

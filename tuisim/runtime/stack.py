@@ -12,11 +12,12 @@ import types
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
+from pathlib import Path
 from typing import Any
 
-from tuisim.runtime.interrupts import PACKAGE_FOLDER
 from tuisim.runtime.replacement import replace
 
+PACKAGE_FOLDER = str(Path(__file__).parent.parent) + os.sep
 _BOTTOM = os.path.join(PACKAGE_FOLDER, "runtime", "__main__.py")
 """File of the outermost frame of the process."""
 

@@ -15,7 +15,7 @@ from tuisim.runtime.modules import OWN_FILES, is_own
 from tuisim.runtime.stack import every_frame
 from tuisim.source import source_lines
 
-_OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.stop.")
+_OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.session.")
 MOST_LINKED = 10
 """Of a longer chain of causes, this many are shown at either end."""
 _HEADING = "Traceback (most recent call last):\n"

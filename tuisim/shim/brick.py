@@ -9,20 +9,15 @@ from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.motors import Motor
 from tuisim.core.parts import InfraredSpec, TouchSpec
-from tuisim.core.sensors import mounted
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
-from tuisim.shim.browser_motor import BrowserTacho
 from tuisim.shim.devices import Brick, SimDevice
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
-from tuisim.shim.motor import KINDS, TachoMotor
-from tuisim.shim.ports import PORT_CLASS, all_ports
+from tuisim.shim.motor import BrowserTacho, TachoMotor
+from tuisim.shim.ports import MOTOR_CLASS, PORT_CLASS, SENSOR_CLASS, all_ports
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.shim.sensors.color import ColorDevice, LegoSensor
 from tuisim.shim.sensors.others import GyroDevice, infrared_sensor, touch_sensor, ultrasonic_sensor
 from tuisim.shim.session import Session
-
-MOTOR_CLASS, SENSOR_CLASS = "tacho-motor", "lego-sensor"
-"""Device classes, by their kernel names."""
 
 DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor]] = {
     ColorSensorSpec: lambda session, spec, _others: ColorDevice(session, spec),
@@ -68,16 +63,3 @@ def _motor_device(session: Session, motor: Motor, port: str, kind: str) -> SimDe
         case BrowserMotor():
             return BrowserTacho(session, motor, port, kind).device()
     raise TypeError(f"no driver for {type(motor).__name__}")
-
-
-def ports_hint(session: Session, class_name: str) -> str:
-    """Return which devices are on which ports, as a hint for a failed look-up; empty for other classes."""
-    robot = session.sim.spec.robot
-    if class_name == MOTOR_CLASS:
-        found = [(motor.port, KINDS[motor.kind].driver_name) for motor in robot.motors]
-    elif class_name == SENSOR_CLASS:
-        found = [(sensor.port, kind.driver_name) for kind, sensor in mounted(robot)]
-    else:
-        return ""
-    parts = [f"{port} {name}" for port, name in sorted(found)]
-    return f"This robot has: {', '.join(parts) or 'nothing of the kind'}."

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Callable, Collection, Iterator, Mapping
-from functools import partial
+from functools import partial, wraps
+from typing import Any
 
 from tuisim.shim.session import Session
 
@@ -120,3 +121,17 @@ class Brick:
 def refuse(text: str) -> OSError:
     """Return the error of a driver that rejects a value."""
     return OSError(errno.EINVAL, f"invalid value {text!r}")
+
+
+def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return `function` with the library's own look-ups inside it free of charge."""
+
+    @wraps(function)
+    def wrapper(*args: Any, **kwargs: Any) -> Any:
+        session.free += 1
+        try:
+            return function(*args, **kwargs)
+        finally:
+            session.free -= 1
+
+    return wrapper

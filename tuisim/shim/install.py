@@ -6,6 +6,7 @@ import importlib.machinery
 import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from tuisim.shim.brick import build_brick
 from tuisim.shim.buttons import evdev_module, patch_button_module
@@ -14,6 +15,7 @@ from tuisim.shim.display import patch_display_module
 from tuisim.shim.fonts import patch_fonts_module, quiet_pillow
 from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
+from tuisim.shim.ports import ports_hint
 from tuisim.shim.robolab import glue_module, patch_lego_module
 from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
@@ -98,6 +100,6 @@ def install(
         **more_finishers,
     }
     finish_imports(finishers, is_own)
-    connect(session, brick)
+    connect(brick, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules["evdev"] = evdev_module(session)

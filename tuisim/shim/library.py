@@ -10,9 +10,8 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS, MotorLaw
-from tuisim.shim.brick import ports_hint
 from tuisim.shim.browser_library import speak_as_browser
-from tuisim.shim.devices import Brick
+from tuisim.shim.devices import Brick, free_of_charge
 from tuisim.shim.session import Session
 
 
@@ -81,19 +80,19 @@ class MotorPoll:
         return []
 
 
-def connect(session: Session, brick: Brick) -> None:
+def connect(brick: Brick, hint: Callable[[str], str]) -> None:
     """Patch `ev3dev2` before any of its submodules is imported.
 
     Args:
-        session: Clock and simulation.
         brick: The devices.
+        hint: Returns what to add to the error about a missing device of a class.
     """
     import ev3dev2
 
     ev3dev2.get_current_platform = lambda: "ev3"
     ev3dev2.list_device_names = _in_place_of(ev3dev2.list_device_names, _device_lister(brick))
     _patch_device(ev3dev2.Device, brick)
-    _patch_look_up(session, ev3dev2)
+    _patch_look_up(ev3dev2, hint)
 
 
 def _in_place_of(original: Callable[..., Any], replacement: Callable[..., Any]) -> Callable[..., Any]:
@@ -103,8 +102,7 @@ def _in_place_of(original: Callable[..., Any], replacement: Callable[..., Any]) 
     return wraps(original)(copy)
 
 
-def _patch_look_up(session: Session, library: Any) -> None:
-    """Extend the error about a missing device by a list of the devices that exist."""
+def _patch_look_up(library: Any, hint: Callable[[str], str]) -> None:
     look_up = library.Device.__init__
 
     @wraps(look_up)
@@ -112,9 +110,8 @@ def _patch_look_up(session: Session, library: Any) -> None:
         try:
             look_up(self, class_name, *args, **kwargs)
         except library.DeviceNotFound as error:
-            hint = ports_hint(session, class_name)
-            if hint:
-                error.args = (f"{error} {hint}",)
+            if addition := hint(class_name):
+                error.args = (f"{error} {addition}",)
             raise
 
     library.Device.__init__ = __init__
@@ -178,20 +175,6 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
         for name in names:
             setattr(device_class, name, _in_place_of(getattr(device_class, name), replacement))
     device_class._attribute_file_open = lambda self, name: OpenAttribute(brick, self._path, name)
-
-
-def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` with the library's own look-ups inside it free of charge."""
-
-    @wraps(function)
-    def wrapper(*args: Any, **kwargs: Any) -> Any:
-        session.free += 1
-        try:
-            return function(*args, **kwargs)
-        finally:
-            session.free -= 1
-
-    return wrapper
 
 
 def _set_directly(motor_class: Any, brick: Brick) -> None:

@@ -16,8 +16,8 @@ from tuisim.shim.devices import SimDevice, refuse
 from tuisim.shim.motor import KINDS
 from tuisim.shim.session import Session
 
-PORT_CLASS = "lego-port"
-"""The kernel's class of ports."""
+PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
+"""Classes of devices, by their kernel names."""
 AUTO = "auto"
 """The mode in which a port detects the connected device by itself."""
 
@@ -117,3 +117,13 @@ def all_ports(session: Session) -> list[SimDevice]:
     """Return the brick's ports, inputs first."""
     plugged = plugged_in(session.sim.spec.robot)
     return [LegoPort(session, port, plugged.get(port)).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]
+
+
+def ports_hint(session: Session, class_name: str) -> str:
+    """Return which devices are on which ports, as a hint for a failed look-up; empty for other classes."""
+    if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
+        return ""
+    ports = OUTPUT_PORTS if class_name == MOTOR_CLASS else INPUT_PORTS
+    plugged = plugged_in(session.sim.spec.robot)
+    parts = [f"{port} {plugged[port].driver_name}" for port in sorted(plugged) if port in ports]
+    return f"This robot has: {', '.join(parts) or 'nothing of the kind'}."

@@ -10,7 +10,7 @@ The same world at the same tick has the same voltage, no matter how often it was
 from __future__ import annotations
 
 from tuisim.core.motors import STOPPED, Motor
-from tuisim.core.state import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.shim.devices import SimDevice
 from tuisim.shim.session import Session
 

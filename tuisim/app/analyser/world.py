@@ -22,7 +22,8 @@ from tuisim.app.terminal.cell_view import LinesView
 from tuisim.charts.text_runs import Run
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RunSpec, from_plain
-from tuisim.core.state import FLAG_PEN_DOWN, Instant
+from tuisim.core.state import Instant
+from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.errors import TuisimError, printable
 from tuisim.runs.recording import Recording
 from tuisim.runs.views import instant_of

@@ -19,8 +19,7 @@ from tuisim.runtime.debugger.inspection import Looker
 from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
 from tuisim.runtime.debugger.tracer import Tracer
 from tuisim.runtime.scheduler import Scheduler
-from tuisim.runtime.session import Session
-from tuisim.runtime.stop import StopProgram
+from tuisim.runtime.session import Session, StopProgram
 
 if TYPE_CHECKING:
     from tuisim.runtime.run_config import RunConfig

@@ -10,9 +10,9 @@ from typing import Any
 
 from tuisim.core.motors import POSITION, TIMED, Motor
 from tuisim.core.profile import NS_PER_S
-from tuisim.runtime.interrupts import PACKAGE_FOLDER
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread
 from tuisim.runtime.session import Session
+from tuisim.runtime.stack import PACKAGE_FOLDER
 
 _LIBRARY = os.sep + "ev3dev2" + os.sep
 
