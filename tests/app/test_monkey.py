@@ -82,7 +82,8 @@ async def one_go(pilot: Pilot[Any], rng: Random, count: int, done: list[str]) ->
         await leave(pilot)
     # Whatever it is, it helps to know what was pressed.
     except BaseException as error:
-        error.add_note(f"after {done}")
+        notices = [str(notice.message) for notice in pilot.app._notifications]
+        error.add_note(f"after {done}, with the notices {notices} and the work {list(pilot.app.workers)}")
         raise
 
 

@@ -8,11 +8,14 @@ import pandas as pd
 import pytest
 from textual.widgets import Input
 
-from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tests.app.app_help import ENDLESS, LOGS, lab, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.output import Answer
 from tuisim.app.snapshot import RunPhase
+from tuisim.config import mat_cache
+from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
+from tuisim.errors import BackgroundError
 from tuisim.logs.reader import read_log
 
 pytestmark = pytest.mark.usefixtures("home")
@@ -148,3 +151,20 @@ async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
         assert len(app.screen_stack) == 1
         await pilot.press("q", "y")
     assert run.ended is not None
+
+
+async def test_a_mat_that_failed_is_prepared_again_for_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    open_field, tries = mat_cache.open_field, []
+
+    def opened(files: mat_cache.FieldFiles) -> Field:
+        tries.append(files)
+        if len(tries) == 1:
+            raise BackgroundError("the prepared mat cannot be opened")
+        return open_field(files)
+
+    monkeypatch.setattr(mat_cache, "open_field", opened)
+    async with LabApp(settings("print(1)\n")).run_test(size=(80, 24)) as pilot:
+        app = lab(pilot)
+        await until(pilot, lambda: any("cannot be opened" in notice for notice in notices(app)))
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)

@@ -139,6 +139,24 @@ def test_the_cache_drops_what_was_not_used_longest(home: Path, tmp_path: Path, m
     assert cached(home) == sorted([made[0], made[2], last])
 
 
+def test_a_file_that_is_used_while_others_are_dropped_is_kept(
+    home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
+    first = mat_cache.prepare(picture(tmp_path, "a.png", fill="navy"), ()).pixels
+    os.utime(first, (0, 0))
+    by_age = mat_cache._by_age
+
+    def listed_then_used(folder: Path) -> list[tuple[float, Path]]:
+        found = list(by_age(folder))
+        os.utime(first)
+        return found
+
+    monkeypatch.setattr(mat_cache, "_by_age", listed_then_used)
+    last = mat_cache.prepare(picture(tmp_path, "b.png", fill="white"), ()).pixels
+    assert cached(home) == sorted([first, last])
+
+
 def test_a_mat_with_many_diameters_is_kept_whole(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
     files = mat_cache.prepare(picture(tmp_path), (10, 20))

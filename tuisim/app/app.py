@@ -220,6 +220,7 @@ class LabApp(PanelMessages):
         """
         if not self.loader.mat_is_ready:
             self._run_when_ready = not paused
+            self.loader.prepare_mat_again()
             self.say("The mat is being prepared; the program starts at once after that")
             return False
         if not self.document.apply():

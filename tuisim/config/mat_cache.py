@@ -184,10 +184,13 @@ def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
 def _trim(folder: Path, keep: set[Path]) -> None:
     """Remove the least recently used files beyond MAX_CACHED_FILES, and temporary files of killed processes."""
     sweep(folder)
-    cached = [path for _, path in sorted(_by_age(folder)) if path.suffix != PART_SUFFIX]
+    cached = [(used, path) for used, path in sorted(_by_age(folder)) if path.suffix != PART_SUFFIX]
     surplus = max(0, len(cached) - MAX_CACHED_FILES)
-    for path in [path for path in cached if path not in keep][:surplus]:
-        path.unlink(missing_ok=True)
+    for used, path in [(used, path) for used, path in cached if path not in keep][:surplus]:
+        # Another process may have removed it, or may be about to open it.
+        with suppress(FileNotFoundError):
+            if path.stat().st_mtime == used:
+                path.unlink()
 
 
 def _mapped(path: Path, size: int) -> memoryview:
