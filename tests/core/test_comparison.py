@@ -12,7 +12,7 @@ import pytest
 
 from tuisim.analysis.events import FORM, threshold_of, thresholds_of
 from tuisim.analysis.table import Rows, conditions_of
-from tuisim.app.goto import find
+from tuisim.app.timeline import find
 from tuisim.breakpoints import SampleBreak, parse_break
 from tuisim.core.profile import PROFILES
 from tuisim.errors import ConfigError, LogError

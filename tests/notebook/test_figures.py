@@ -15,7 +15,7 @@ from tests.charts.test_layout import log_of
 from tests.running import Run
 from tuisim.analysis.chart import View
 from tuisim.analysis.chart import chart_of as plotted
-from tuisim.app.render.viewport import whole_field
+from tuisim.app.render.mat import whole_field
 from tuisim.charts.files import svg_of
 from tuisim.charts.layout import Chart, Stroke, Words, laid_out
 from tuisim.charts.world_image import (

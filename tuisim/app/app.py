@@ -25,8 +25,7 @@ from tuisim.app.branch import branch_message
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
-from tuisim.app.keys.action import KeyWord, key_bindings
-from tuisim.app.keys.footer import FIELD_KEYS, TYPING_KEYS, KeyFooter
+from tuisim.app.keys import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages

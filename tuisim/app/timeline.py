@@ -1,11 +1,19 @@
-"""The timeline that all panels share: the current run, and the instant of it in view."""
+"""The timeline that all panels share: the current run, the instant of it in view, and how users name an instant."""
 
 from __future__ import annotations
 
+import re
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from tuisim.core.comparison import COMPARE, Comparison, comparison_form, comparison_in, finite_number, spelled
+from tuisim.errors import ConfigError
 from tuisim.runs.brick_state import BrickState, face_after
-from tuisim.runs.records import Mark
+from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
+from tuisim.runs.samples import parse_sample
+from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.runs.recording import Recording
@@ -121,3 +129,143 @@ class Timeline:
             return True
         self.at = tick
         return False
+
+
+FORMS = (
+    ("3.5", "a time in seconds"),
+    ("tick 120", "a tick"),
+    ("line 12", "the next time that line 12 runs"),
+    ("sample Colour", "the next sample of that name, or of any"),
+    ("sample Colour < 90", f"the next that matches: {spelled()}"),
+    ("print REGEX", "the next printed line that matches"),
+    ("start, end", "the first instant, and now"),
+    ("… back", "line, sample or print: the last one before"),
+)
+"""The accepted forms, with what they mean."""
+
+_HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, print REGEX, start or end"
+_SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
+_NAME = r"(?:[^\W\d]\w*)?"
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """Where a search begins, and in which direction."""
+
+    recording: Recording
+    at: int
+    back: bool
+
+    @property
+    def side(self) -> str:
+        return "before" if self.back else "after"
+
+    @property
+    def words(self) -> str:
+        return f"{self.side} {self.at / self.recording.spec.profile.tick_hz:.2f} s"
+
+    def tick_of(self, fits: Callable[[OutputRow], bool]) -> int | None:
+        """Return the tick of the next matching row that is at another tick than the current one."""
+        rows = self.recording.rows
+        found: Iterable[OutputRow] = (
+            rows.rows(rows.until(self.at - 1) - 1, -1) if self.back else rows.rows(rows.until(self.at))
+        )
+        return next((row.tick for row in found if fits(row)), None)
+
+    def nearest(self, ticks: list[int]) -> int | None:
+        """Return the next of some sorted ticks."""
+        where = bisect_left(ticks, self.at) - 1 if self.back else bisect_right(ticks, self.at)
+        return ticks[where] if 0 <= where < len(ticks) else None
+
+
+def find(text: str, timeline: Timeline) -> int:
+    """Return the tick that an expression means, relative to the instant in view.
+
+    Args:
+        text: One of `FORMS`.
+        timeline: The run, and where one is in it.
+
+    Raises:
+        ConfigError: the words are not understood, or there is no such instant.
+    """
+    recording = timeline.recording
+    if recording is None or recording.newest < 0:
+        raise ConfigError("there is no run yet")
+    word, _, rest = text.strip().partition(" ")
+    rest, back = re.subn(r"(?:^|\s+)back$", "", rest.strip())
+    word = word.lower()
+    if not back and (word == "start" or word == "end") and not rest:
+        return 0 if word == "start" else recording.newest
+    if not back and (seconds := _SECONDS.fullmatch(text.strip())):
+        return _within(round(float(seconds[1]) * timeline.tick_hz), recording)
+    if not back and word == "tick" and rest.isdecimal():
+        return _within(int(rest), recording)
+    at = recording.newest if timeline.at is None else timeline.at
+    # Nothing can be found after the newest instant.
+    search = _Search(recording, at, bool(back) or at >= recording.newest)
+    if word == "line" and rest.isdecimal():
+        return _line(search, int(rest))
+    if word == "sample" and re.fullmatch(_NAME, rest):
+        return _sample(search, rest, None)
+    if word == "sample" and (wanted := comparison_in(rest, _NAME)) and wanted.operator in COMPARE:
+        return _sample(search, wanted.name, wanted)
+    if word == "print" and rest:
+        return _printed(search, rest)
+    raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "where to?", _HINT)
+
+
+def _within(tick: int, recording: Recording) -> int:
+    hz = recording.spec.profile.tick_hz
+    if tick > recording.newest:
+        newest = recording.newest
+        raise ConfigError(f"the run has reached {newest / hz:.2f} s, tick {newest}, so far", "an earlier instant")
+    return tick
+
+
+def _line(search: _Search, line: int) -> int:
+    import numpy as np
+
+    lines = len(source_lines(search.recording.program.text))
+    if not 1 <= line <= lines:
+        raise ConfigError(f"the program has no line {line}", f"1 … {lines}")
+    at_it = search.recording.telemetry.array()["line"] == line
+    # Of consecutive ticks at one line, the first is meant: that is when the program reached the line.
+    came = np.flatnonzero(at_it & ~np.concatenate(([False], at_it[:-1]))).tolist()
+    tick = search.nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
+    if tick is None:
+        hint = "only lines that let time pass, or print, can be found"
+        raise ConfigError(f"line {line} does not run {search.words}", hint)
+    return tick
+
+
+def _sample(search: _Search, name: str, wanted: Comparison | None) -> int:
+    try:
+        value = finite_number(wanted.value) if wanted else 0.0
+    except ValueError as error:
+        raise ConfigError(str(error), _HINT) from error
+    seen: set[str] = set()
+
+    def fits(row: OutputRow) -> bool:
+        sample = parse_sample(row.text) if row.stream in TEXT_STREAMS else None
+        if sample is None:
+            return False
+        seen.add(sample[0])
+        return name in ("", sample[0]) and (wanted is None or COMPARE[wanted.operator](sample[1], value))
+
+    tick = search.tick_of(fits)
+    if tick is None:
+        what = f"sample {wanted or name}".rstrip()
+        hint = f"there are {', '.join(sorted(seen))}" if seen and name not in seen and name else ""
+        raise ConfigError(f"no {what} {search.words}", hint)
+    return tick
+
+
+def _printed(search: _Search, pattern: str) -> int:
+    try:
+        regex = re.compile(pattern)
+    except re.error as error:
+        raise ConfigError(f"{pattern!r} is not a regular expression: {error}") from error
+    tick = search.tick_of(lambda row: row.stream in TEXT_STREAMS and regex.search(row.text) is not None)
+    if tick is None:
+        raise ConfigError(f"nothing printed {search.words} matches {pattern!r}")
+    return tick

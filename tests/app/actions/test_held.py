@@ -15,9 +15,9 @@ from tests.running import PATIENCE_S
 from tuisim.app.actions.time_travel import to_now, to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.question import BranchQuestion
+from tuisim.app.form import Slider
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.widgets.slider import Slider
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle
 from tuisim.protocol import SetNoise

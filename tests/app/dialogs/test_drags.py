@@ -7,10 +7,10 @@ from textual.widget import Widget
 from tests.app.app_help import LOGS, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.form import Slider
 from tuisim.app.panels.brick import Brick
 from tuisim.app.panels.chart import Chart
 from tuisim.app.panels.world import WorldView
-from tuisim.app.widgets.slider import Slider
 
 
 async def test_no_drag_outlives_a_dialog() -> None:

@@ -22,8 +22,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.dialogs.question import Question
-from tuisim.app.keys.action import Palette
-from tuisim.app.keys.help import KeyHelp
+from tuisim.app.keys import KeyHelp, Palette
 
 IN_THE_LAB = {
     "mat": "b enter enter",

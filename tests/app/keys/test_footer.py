@@ -14,7 +14,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.actions.table import working
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
-from tuisim.app.keys.footer import fitting
+from tuisim.app.keys import fitting
 from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings

@@ -11,8 +11,7 @@ from textual.widgets import Input, OptionList, Static
 from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
 from tuisim.app.actions.table import ACTIONS, LabAction, working
 from tuisim.app.app import LabApp
-from tuisim.app.keys.footer import fitting
-from tuisim.app.keys.help import KeyHelp
+from tuisim.app.keys import KeyHelp, fitting
 from tuisim.app.panels import PANELS, TerminalSize
 from tuisim.app.panels.position import parse_field
 from tuisim.app.snapshot import RunPhase, Situation

@@ -12,7 +12,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.actions.table import ACTIONS
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
-from tuisim.app.keys.action import ActionProvider
+from tuisim.app.keys import ActionProvider
 
 
 async def test_it_offers_every_key_and_finds_it_by_its_title() -> None:

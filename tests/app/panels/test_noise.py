@@ -9,9 +9,9 @@ from textual.widgets import Input, Static
 
 from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
+from tuisim.app.form import Slider
 from tuisim.app.panels.noise import Noise
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.widgets.slider import Slider
 from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import SetNoise
 from tuisim.runs.side_files import read_actions

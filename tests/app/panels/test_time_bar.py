@@ -13,10 +13,9 @@ from textual.widgets import Input
 
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
-from tuisim.app.goto import find
 from tuisim.app.panels.world import Moment, bar_cells, mark_cells, words
 from tuisim.app.snapshot import RunPhase, snapshot_of
-from tuisim.app.timeline import Timeline
+from tuisim.app.timeline import Timeline, find
 from tuisim.errors import ConfigError
 from tuisim.protocol import End
 from tuisim.runs.records import Mark

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.render.mat import MatPictures, Pixels, shrink
-from tuisim.app.render.viewport import whole_field
+from tuisim.app.render.mat import MatPictures, Pixels, shrink, whole_field
 from tuisim.charts.world_image import Viewport
 
 OUTSIDE = (1, 2, 3)

@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tuisim.app.render.mat import Pixels
+from tuisim.app.render.mat import Pixels, whole_field
 from tuisim.app.render.scene import BEACON_CORE_RGB, BEACON_RGB, PenTrace, ScenePainter, SceneState, pen_rgb
-from tuisim.app.render.viewport import whole_field
 from tuisim.charts.world_image import COLORED, Viewport, draw_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of

@@ -170,7 +170,7 @@ WRONG = [
 
 @pytest.mark.parametrize(("field", "typed", "said"), WRONG, ids=[f"{f} {t!r}" for f, t, _ in WRONG])
 def test_a_wrong_value_is_refused(field: str, typed: str, said: str) -> None:
-    from tuisim.app.widgets.form import reason
+    from tuisim.app.form import reason
 
     with pytest.raises(ConfigError) as caught:
         edited(plan_of(Settings()), field, typed)

@@ -11,9 +11,9 @@ from textual.widgets import Input, OptionList
 
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
+from tuisim.app.form import Choice, Row
 from tuisim.app.setup.next_run import with_robot
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.widgets.form import Choice, Row
 from tuisim.config.robots import ROBOTS, load_robot
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tuisim.app.actions.panel import _world
+from tuisim.app.actions.app import _world
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.core.geometry import Pose

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from functools import lru_cache, partial
 from typing import TypeAlias
 
-from tuisim.app.actions import app, debug, files, panel, program, robot, time_travel
+from tuisim.app.actions import app, files, program, robot, time_travel
 from tuisim.app.actions.files import analyse
-from tuisim.app.keys.action import Action
+from tuisim.app.keys import Action
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
 from tuisim.app.workspace import Workspace
@@ -90,7 +90,7 @@ def _nudges() -> list[LabAction]:
 
 def _toggles() -> list[LabAction]:
     return [
-        Action(f"panel-{p.id}", p.key, f"{p.title} on or off", PANEL, partial(panel.toggle, panel=p.id), footer=p.id)
+        Action(f"panel-{p.id}", p.key, f"{p.title} on or off", PANEL, partial(app.toggle, panel=p.id), footer=p.id)
         for p in PANELS.values()
     ]
 
@@ -106,15 +106,15 @@ def _can_debug(now: Situation) -> str:
 def _debugs() -> list[LabAction]:
     can = _can_debug
     return [
-        Action("next-line", "n", "Next line", DEBUG, debug.next_line, can, "next"),
-        Action("step-into", "s", "Next line, into calls", DEBUG, debug.step_into, can, "into"),
-        Action("step-out", "u", "Continue until this function returns", DEBUG, debug.step_out, can, "out"),
-        Action("line-back", "N", "One line back", DEBUG, debug.line_back, _can_look_back, "line back"),
-        Action("break", "t", "Breakpoint on the cursor's line on or off", DEBUG, debug.toggle_break, can, "break"),
-        Action("breaks", "T", "Breakpoints: add, edit, switch on or off, delete", DEBUG, debug.list_breaks, can),
-        Action("watches", "w", "Watches: expressions to evaluate", DEBUG, debug.list_watches, can),
-        Action("to-cursor", "L", "Run to the cursor's line", DEBUG, debug.to_cursor, can),
-        Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, debug.ten_ticks, _can_step),
+        Action("next-line", "n", "Next line", DEBUG, program.next_line, can, "next"),
+        Action("step-into", "s", "Next line, into calls", DEBUG, program.step_into, can, "into"),
+        Action("step-out", "u", "Continue until this function returns", DEBUG, program.step_out, can, "out"),
+        Action("line-back", "N", "One line back", DEBUG, program.line_back, _can_look_back, "line back"),
+        Action("break", "t", "Breakpoint on the cursor's line on or off", DEBUG, program.toggle_break, can, "break"),
+        Action("breaks", "T", "Breakpoints: add, edit, switch on or off, delete", DEBUG, program.list_breaks, can),
+        Action("watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can),
+        Action("to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can),
+        Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, program.ten_ticks, _can_step),
     ]
 
 
@@ -166,12 +166,12 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("save-world", "ctrl+s", "Save the world to a file", FILES, files.save_world, footer="save"),
         Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, files.save_robot),
         Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
-        Action("zoom", "v", "Zoom the world", ROBOT, panel.zoom, footer="zoom"),
+        Action("zoom", "v", "Zoom the world", ROBOT, app.zoom, footer="zoom"),
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
-        Action("enlarge", "plus", "Enlarge the panel with the focus, or restore", PANEL, panel.enlarge),
-        Action("rays", "U", "Ultrasonic rays on or off", PANEL, panel.rays, footer="rays"),
+        Action("enlarge", "plus", "Enlarge the panel with the focus, or restore", PANEL, app.enlarge),
+        Action("rays", "U", "Ultrasonic rays on or off", PANEL, app.rays, footer="rays"),
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
         Action("redraw", "ctrl+l", "Redraw, after something else has written over the screen", APP, app.redraw),

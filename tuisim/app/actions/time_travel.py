@@ -127,7 +127,7 @@ def beat(workspace: Workspace) -> None:
 def ask_where(workspace: Workspace) -> None:
     """Ask for an instant and go there."""
     from tuisim.app.dialogs.question import LinePrompt
-    from tuisim.app.goto import FORMS, find
+    from tuisim.app.timeline import FORMS, find
 
     timeline = workspace.run_controller.timeline
 
@@ -138,7 +138,7 @@ def ask_where(workspace: Workspace) -> None:
 
 
 def _to_sample(workspace: Workspace, words: str) -> None:
-    from tuisim.app.goto import find
+    from tuisim.app.timeline import find
 
     try:
         to_tick(workspace, find(words, workspace.run_controller.timeline))

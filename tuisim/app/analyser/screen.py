@@ -23,8 +23,7 @@ from tuisim.app.analyser.panes import PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
-from tuisim.app.keys.action import ActionHost
-from tuisim.app.keys.footer import KeyFooter
+from tuisim.app.keys import ActionHost, KeyFooter
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.errors import LogError, TuisimError
 from tuisim.logs.columns import choose_columns, is_numeric

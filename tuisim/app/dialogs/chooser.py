@@ -18,8 +18,7 @@ from textual.widgets.option_list import Option
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.save import typed_path
-from tuisim.app.render.mat import Pixels, shrink
-from tuisim.app.render.viewport import whole_field
+from tuisim.app.render.mat import Pixels, shrink, whole_field
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM

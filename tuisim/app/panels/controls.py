@@ -10,7 +10,7 @@ from rich.text import Text
 from textual import events
 from textual.widget import Widget
 
-from tuisim.app.keys.action import ACT, Act
+from tuisim.app.keys import ACT, Act
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
 
 _LABEL_CELLS = 9

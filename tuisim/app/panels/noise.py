@@ -11,9 +11,8 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
+from tuisim.app.form import NumberInput, Slider
 from tuisim.app.snapshot import Snapshot
-from tuisim.app.widgets.form import NumberInput
-from tuisim.app.widgets.slider import Slider
 from tuisim.config.options import MAX_SEED, whole
 from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec
 from tuisim.errors import ConfigError

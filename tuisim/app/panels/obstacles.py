@@ -15,9 +15,9 @@ from textual.message import Message
 from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
+from tuisim.app.form import reason, typed_number
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
-from tuisim.app.widgets.form import reason, typed_number
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
 from tuisim.errors import ConfigError, ObstacleError
 

@@ -11,8 +11,8 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
+from tuisim.app.form import NumberInput
 from tuisim.app.snapshot import Snapshot
-from tuisim.app.widgets.form import NumberInput
 from tuisim.config.options import MAX_ANGLE_DEG, MAX_POSITION_MM
 from tuisim.core.geometry import Pose, shown_heading_deg
 

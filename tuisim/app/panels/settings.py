@@ -12,10 +12,10 @@ from textual.containers import Horizontal, VerticalScroll
 from textual.message import Message
 from textual.widgets import Static
 
+from tuisim.app.form import Choice, Row
 from tuisim.app.setup.fields import Field, FieldGroup, find, sections, step
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
-from tuisim.app.widgets.form import Choice, Row
 
 _LINKS = (
     (("robot", "r Robots"), ("save-robot", "ctrl+r Save")),

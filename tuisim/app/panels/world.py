@@ -15,9 +15,8 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.app.panels.obstacles import BoxGrip, box_at
-from tuisim.app.render.mat import Pixels
+from tuisim.app.render.mat import ZOOMS, Pixels, following
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
-from tuisim.app.render.viewport import ZOOMS, following
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.charts.axes import time_limits

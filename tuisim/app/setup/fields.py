@@ -12,8 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from tuisim.app.form import reason, typed_number
 from tuisim.app.setup.next_run import NextRun, with_arguments, with_profile, with_robot, with_robot_edited, with_values
-from tuisim.app.widgets.form import reason, typed_number
 from tuisim.config.options import MAX_PEN_MM, MIN_PEN_MM, number, pen_color
 from tuisim.config.robots import ROBOTS
 from tuisim.core.parts import MOTOR_KINDS

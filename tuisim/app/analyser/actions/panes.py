@@ -1,13 +1,20 @@
-"""Keys of the group Panes: which pane is shown, what its events are, and the world beside the log."""
+"""Keys of the groups Panes, Table and Cursor: which pane is shown, its rows and columns, and the cursor in them."""
 
 from __future__ import annotations
 
+import re
+from functools import partial
+
 from tuisim.analysis.events import Event, Threshold, events_of, thresholds_of
+from tuisim.analysis.model import Model
+from tuisim.analysis.table import TableTask, TableView, conditions_of
 from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.analyser.world import NO_POSES, has_poses
+from tuisim.core.comparison import spelled
+from tuisim.errors import LogError
 from tuisim.logs.log import Log
 
-_FORMS = (
+_THRESHOLDS = (
     ("Colour < 50", "where it falls below 50"),
     ("Colour > 50", "where it rises above 50"),
     ("Colour = 50", "both"),
@@ -29,7 +36,7 @@ def events(screen: LogScreen) -> None:
     screen.show_pane("events")
     if (shown or not model.events.thresholds) and model.log.rows:
         now = ", ".join(map(str, model.events.thresholds))
-        screen.ask("Events", lambda text: _search(screen, text), now, _FORMS, completes=True)
+        screen.ask("Events", lambda text: _search(screen, text), now, _THRESHOLDS, completes=True)
 
 
 def _search(screen: LogScreen, text: str) -> None:
@@ -59,3 +66,187 @@ def world(screen: LogScreen) -> None:
         return
     pane.display = pane.is_on = not pane.display
     screen.call_after_refresh(screen.update)
+
+
+_FILTERS = (
+    ("value > 50", f"the rows for which that is true; {spelled()}"),
+    ("variable ~ col", "the rows whose text contains col"),
+    ("value > 50 and time < 3", "the rows for which both are true"),
+    ("(nothing)", "all rows"),
+)
+
+
+def choose(screen: LogScreen, step: int) -> None:
+    """Select another column."""
+    screen.model.rows.choose(step)
+    screen.update()
+
+
+def sort(screen: LogScreen) -> None:
+    """Sort by the selected column: ascending, descending, not at all."""
+    model, rows = screen.model, screen.model.rows
+    if rows.sorted_by != rows.chosen:
+        order = rows.chosen, False
+    else:
+        order = ("", False) if rows.descending else (rows.chosen, True)
+    screen.work("sorting …", len(rows), lambda _: rows.sorted(*order), partial(_arrange, screen, model))
+
+
+def _arrange(screen: LogScreen, model: Model, arrangement: TableView) -> None:
+    """Show filtered and sorted rows, the cursor among them."""
+    if screen.model is not model:
+        return
+    rows = model.rows
+    rows.arrange(arrangement)
+    if rows.conditions and len(rows):
+        model.go_to_row(rows.row(rows.place(model.row)))
+    screen.update()
+
+
+def select(screen: LogScreen) -> None:
+    """Ask for a filter."""
+
+    def keep(text: str) -> None:
+        model = screen.model
+        conditions = tuple(conditions_of(text, model.log.table.column_names)) if text else ()
+        then = partial(_arrange, screen, model)
+        screen.work("filtering …", model.log.rows, lambda _: model.rows.filtered(conditions), then)
+
+    screen.ask("Filter", keep, " and ".join(map(str, screen.model.rows.conditions)), _FILTERS)
+
+
+def show_all(screen: LogScreen) -> None:
+    """Show every row and every column, in the order of the log."""
+    screen.give_up()
+    rows = screen.model.rows
+    rows.sort("", False)
+    rows.filter(())
+    rows.show_all()
+    screen.update()
+
+
+def search(screen: LogScreen) -> None:
+    """Ask for a search text."""
+
+    def go(text: str) -> None:
+        screen.searched = text
+        if text:
+            find(screen, 1)
+
+    screen.ask("Search", go, screen.searched)
+
+
+def find(screen: LogScreen, step: int) -> None:
+    """Go to the next or previous match; may search in the background.
+
+    Raises:
+        LogError: there is no match, if that is known at once.
+    """
+    model, text = screen.model, screen.searched
+    if not text:
+        search(screen)
+        return
+    rows = model.rows
+    here = rows.place(model.row)
+
+    def match(task: TableTask) -> int:
+        place = rows.find(text, here, step, task)
+        if place is None:
+            raise LogError(f"{text!r} was not found", "in the rows and columns that are shown")
+        return place
+
+    def found(place: int) -> None:
+        if screen.model is model:
+            screen.pane.turn_to("table")
+            model.go_to_row(rows.row(place))
+            model.follow_cursor()
+            screen.update()
+
+    screen.work("searching …", len(rows), match, found)
+
+
+def hide(screen: LogScreen) -> None:
+    """Hide the selected column."""
+    screen.model.rows.hide()
+    screen.update()
+
+
+def freeze(screen: LogScreen) -> None:
+    """Freeze the selected column at the left, or release it."""
+    screen.model.rows.freeze()
+    screen.update()
+
+
+_SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
+_PLACES = (("120", "row 120"), ("2.5s", "the sample nearest to 2.5 seconds"), ("50%", "halfway through the table"))
+
+
+def rows(screen: LogScreen, step: int) -> None:
+    """Move by rows of the pane."""
+    model, pane = screen.model, screen.pane
+    if pane.name_shown == "table":
+        if len(model.rows):
+            place = model.rows.place(model.row) + step
+            model.go_to_row(model.rows.row(min(max(place, 0), len(model.rows) - 1)))
+            model.follow_cursor()
+    else:
+        screen.choose(pane.chosen + step)
+    screen.update()
+
+
+def pages(screen: LogScreen, step: int) -> None:
+    """Move by pages of the pane."""
+    rows(screen, step * screen.pane.lines)
+
+
+def to_end(screen: LogScreen, last: bool) -> None:
+    """Go to the first or the last row."""
+    rows(screen, screen.model.log.rows if last else -screen.model.log.rows)
+
+
+def columns(screen: LogScreen, step: int) -> None:
+    """Move the cursor by columns of the chart, at least to another sample."""
+    model = screen.model
+    before = model.row
+    model.go_to_time(screen.chart.time_beside(model.cursor_s, step))
+    if model.row == before:
+        model.step(1 if step > 0 else -1)
+    model.follow_cursor()
+    screen.update()
+
+
+def go_to(screen: LogScreen) -> None:
+    """Ask for a row or a time, and go there."""
+
+    def go(text: str) -> None:
+        model = screen.model
+        seconds = _SECONDS.fullmatch(text)
+        if seconds:
+            model.go_to_time(float(seconds[1]))
+        elif text.endswith("%") and text[:-1].strip().isdecimal():
+            share = min(int(text[:-1]), 100) / 100
+            model.go_to_row(model.rows.row(round(share * (len(model.rows) - 1))))
+        elif text.isdecimal() and 0 < int(text) <= model.log.rows:
+            model.go_to_row(int(text) - 1)
+        else:
+            raise LogError(f"{text!r} is no row or time", f"a row from 1 to {model.log.rows}, or a time such as 2.5s")
+        model.follow_cursor()
+        screen.update()
+
+    screen.ask("Go to", go, forms=_PLACES)
+
+
+def event(screen: LogScreen, step: int) -> None:
+    """Go to the next event, or the previous one."""
+    model = screen.model
+    events = model.events.found(model.log)
+    if not events:
+        screen.say("No events: c asks for a threshold, such as Colour < 50")
+        return
+    rows = [event.row for event in events]
+    ahead = [at for at, row in enumerate(rows) if (row > model.row if step > 0 else row < model.row)]
+    if not ahead:
+        screen.say("That was the last event" if step > 0 else "That was the first event")
+        return
+    screen.go_to_event(ahead[0] if step > 0 else ahead[-1])
+    screen.update()

@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from tuisim.app.analyser.actions import chart, cursor, files, log, panes, table_view
+from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.keys.action import Action
-from tuisim.app.keys.help import KeyHelp, key_groups
+from tuisim.app.keys import Action, KeyHelp, key_groups
 
 CURSOR, PANE, CHART, TABLE, LOG = "Cursor", "Panes", "Chart", "Table", "Log"
 FILES, APP = "Files", "App"
@@ -63,19 +62,19 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("runs", "r", "Runs of this log", PANE, partial(panes.show, pane="runs"), _log, "runs"),
         Action("events", "c", "Events: crossings of a threshold; again: set it", PANE, panes.events, _log, "events"),
         Action("note", "m", "Note on the sample, band or range from A", LOG, log.note, _rows, "note"),
-        Action("up", "up", "Previous row", CURSOR, partial(cursor.rows, step=-1), _rows),
-        Action("down", "down", "Next row", CURSOR, partial(cursor.rows, step=1), _rows),
-        Action("page-up", "pageup", "Previous page", CURSOR, partial(cursor.pages, step=-1), _rows),
-        Action("page-down", "pagedown", "Next page", CURSOR, partial(cursor.pages, step=1), _rows),
-        Action("head", "home", "First row", CURSOR, partial(cursor.to_end, last=False), _rows),
-        Action("tail", "end", "Last row", CURSOR, partial(cursor.to_end, last=True), _rows),
-        Action("left", "left", "Cursor left by one column", CURSOR, partial(cursor.columns, step=-1), _rows),
-        Action("right", "right", "Cursor right by one column", CURSOR, partial(cursor.columns, step=1), _rows),
-        Action("far-left", "shift+left", "Cursor left by ten", CURSOR, partial(cursor.columns, step=-10), _rows),
-        Action("far-right", "shift+right", "Cursor right by ten", CURSOR, partial(cursor.columns, step=10), _rows),
-        Action("go-to", "g", "Go to a row, or a time such as 2.5s", CURSOR, cursor.go_to, _rows, "go to"),
-        Action("event", "j", "Next event", CURSOR, partial(cursor.event, step=1), _rows),
-        Action("event-before", "J", "Previous event", CURSOR, partial(cursor.event, step=-1), _rows),
+        Action("up", "up", "Previous row", CURSOR, partial(panes.rows, step=-1), _rows),
+        Action("down", "down", "Next row", CURSOR, partial(panes.rows, step=1), _rows),
+        Action("page-up", "pageup", "Previous page", CURSOR, partial(panes.pages, step=-1), _rows),
+        Action("page-down", "pagedown", "Next page", CURSOR, partial(panes.pages, step=1), _rows),
+        Action("head", "home", "First row", CURSOR, partial(panes.to_end, last=False), _rows),
+        Action("tail", "end", "Last row", CURSOR, partial(panes.to_end, last=True), _rows),
+        Action("left", "left", "Cursor left by one column", CURSOR, partial(panes.columns, step=-1), _rows),
+        Action("right", "right", "Cursor right by one column", CURSOR, partial(panes.columns, step=1), _rows),
+        Action("far-left", "shift+left", "Cursor left by ten", CURSOR, partial(panes.columns, step=-10), _rows),
+        Action("far-right", "shift+right", "Cursor right by ten", CURSOR, partial(panes.columns, step=10), _rows),
+        Action("go-to", "g", "Go to a row, or a time such as 2.5s", CURSOR, panes.go_to, _rows, "go to"),
+        Action("event", "j", "Next event", CURSOR, partial(panes.event, step=1), _rows),
+        Action("event-before", "J", "Previous event", CURSOR, partial(panes.event, step=-1), _rows),
         Action("mark", "a", "Set A here and measure from it; remove it", CHART, chart.mark, _rows, "A"),
         Action("zoom-in", "z", "Zoom in at the cursor", CHART, partial(chart.zoom, factor=0.5), _rows, "zoom"),
         Action("zoom-out", "Z", "Zoom out", CHART, partial(chart.zoom, factor=2.0), _rows),
@@ -92,16 +91,16 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("against", "k", "Draw the path, or a variable against another", CHART, chart.against, _rows),
         Action("derive", "d", "Derive a variable, such as slope(Colour)", LOG, log.derived, _rows, "derive"),
         Action("larger", "plus", "Chart and pane, chart alone, pane alone", PANE, panes.larger, _log),
-        Action("column-before", "less_than_sign", "Previous column", TABLE, partial(table_view.choose, step=-1), _rows),
-        Action("column", "greater_than_sign", "Next column", TABLE, partial(table_view.choose, step=1), _rows),
-        Action("sort", "o", "Sort by the column: ascending, descending, off", TABLE, table_view.sort, _rows, "sort"),
-        Action("filter", "F", "Filter: value > 50 and time < 3", TABLE, table_view.select, _rows, "filter"),
-        Action("unfilter", "U", "All rows, all columns", TABLE, table_view.show_all, _rows),
-        Action("search", "slash", "Search", TABLE, table_view.search, _rows, "search"),
-        Action("find-next", "N", "Next match", TABLE, partial(table_view.find, step=1), _rows),
-        Action("find-before", "P", "Previous match", TABLE, partial(table_view.find, step=-1), _rows),
-        Action("hide", "h", "Hide the column", TABLE, table_view.hide, _rows),
-        Action("freeze", "p", "Pin the column at the left", TABLE, table_view.freeze, _rows),
+        Action("column-before", "less_than_sign", "Previous column", TABLE, partial(panes.choose, step=-1), _rows),
+        Action("column", "greater_than_sign", "Next column", TABLE, partial(panes.choose, step=1), _rows),
+        Action("sort", "o", "Sort by the column: ascending, descending, off", TABLE, panes.sort, _rows, "sort"),
+        Action("filter", "F", "Filter: value > 50 and time < 3", TABLE, panes.select, _rows, "filter"),
+        Action("unfilter", "U", "All rows, all columns", TABLE, panes.show_all, _rows),
+        Action("search", "slash", "Search", TABLE, panes.search, _rows, "search"),
+        Action("find-next", "N", "Next match", TABLE, partial(panes.find, step=1), _rows),
+        Action("find-before", "P", "Previous match", TABLE, partial(panes.find, step=-1), _rows),
+        Action("hide", "h", "Hide the column", TABLE, panes.hide, _rows),
+        Action("freeze", "p", "Pin the column at the left", TABLE, panes.freeze, _rows),
         Action("copy", "y", "Copy the value", FILES, files.copy_value, _rows, "copy"),
         Action("copy-row", "Y", "Copy the row", FILES, files.copy_row, _rows),
         Action("copy-pane", "ctrl+y", "Copy the table as shown, or the pane", FILES, files.copy_pane, _rows),

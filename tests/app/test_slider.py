@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.app import App, ComposeResult
 
-from tuisim.app.widgets.slider import Slider
+from tuisim.app.form import Slider
 
 
 class Frame(App[None]):

@@ -1,0 +1,371 @@
+"""The keys: a line of a table of keys, what runs them, and where they are shown: footer, help, command palette."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, ClassVar, Generic, TypeVar
+
+from rich.style import Style
+from rich.table import Table
+from rich.text import Text
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.containers import VerticalScroll
+from textual.message import Message
+from textual.message_pump import MessagePump
+from textual.widget import Widget
+from textual.widgets import Static
+
+from tuisim.app.background import is_leaving
+from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.errors import TuisimError
+
+ACT = "act"
+"""Key of the style metadata that names the action of a clickable word."""
+
+KeyWord = tuple[str, str]
+"""The display name of a key, and what it does."""
+
+Host = TypeVar("Host")
+Now = TypeVar("Now")
+
+
+class Act(Message):
+    """Posted when a word that stands for an action was clicked."""
+
+    def __init__(self, action: str) -> None:
+        super().__init__()
+        self.action = action
+
+
+@dataclass(frozen=True, slots=True)
+class Action(Generic[Host, Now]):
+    """One line of a table of keys."""
+
+    id: str
+    key: str
+    """In Textual's notation; several keys are separated by commas."""
+    title: str
+    group: str
+    do: Callable[[Host], None]
+    why_not: Callable[[Now], str] = lambda _: ""
+    """Why the key is unavailable now; empty if it is available."""
+    footer: str = ""
+    """Short label for the footer; empty leaves the key out of it."""
+    shown_key: str = ""
+    """Display name of the key, if it differs from that of `key`."""
+    footer_key: str = ""
+    """Display name in the footer, if that entry stands for two keys."""
+
+    @property
+    def key_label(self) -> str:
+        """The display name of the key."""
+        return self.shown_key or ", ".join(map(_label, self.key.split(",")))
+
+
+_LABELS = {
+    "full_stop": ".",
+    "left_square_bracket": "[",
+    "right_square_bracket": "]",
+    "question_mark": "?",
+    "comma": ",",
+    "colon": ":",
+    "slash": "/",
+    "plus": "+",
+    "equals_sign": "=",
+    "less_than_sign": "<",
+    "greater_than_sign": ">",
+    "left_parenthesis": "(",
+    "right_parenthesis": ")",
+    "left": "←",
+    "right": "→",
+    "up": "↑",
+    "down": "↓",
+    "pageup": "page up",
+    "pagedown": "page down",
+}
+
+
+def _label(key: str) -> str:
+    modifier, _, name = key.rpartition("+")
+    label = _LABELS.get(name, name)
+    return f"⇧{label}" if modifier == "shift" else f"{modifier}+{label}" if modifier else label
+
+
+def key_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
+    """Return the bindings of an `ActionHost`."""
+    return [Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in actions]
+
+
+class ActionHost(MessagePump):
+    """An app or a screen whose keys are lines of a table; the command palette offers them by title."""
+
+    ACTIONS: ClassVar[Mapping[str, Action[Any, Any]]] = {}
+    """The lines by id."""
+
+    def situation(self) -> Any:
+        """Return the state that decides which keys are available."""
+
+    def action_target(self) -> Any:
+        """Return what the functions behind the keys get."""
+        return self
+
+    def action_act(self, name: str) -> None:
+        """Run the action of a key, or say why it is unavailable now."""
+        if is_leaving(self.app):
+            return
+        action = self.ACTIONS[name]
+        if reason := action.why_not(self.situation()):
+            self.say(reason)
+            return
+        try:
+            action.do(self.action_target())
+        except TuisimError as error:
+            self.complain(error)
+
+    def on_act(self, message: Act) -> None:
+        """Run an action whose word in the footer or on a panel was clicked."""
+        message.stop()
+        self.action_act(message.action)
+
+    def say(self, text: str) -> None:
+        """Show a short notice."""
+        self.app.notify(text, timeout=3, markup=False)
+
+    def complain(self, error: TuisimError) -> None:
+        """Show an error."""
+        self.app.notify(str(error), severity="error", timeout=8, markup=False)
+
+
+class Palette(CommandPalette, ClosesOnce[None]):
+    """Textual's command palette, as one of the app's screens that close once."""
+
+    def _action_command_list(self, action: str) -> None:
+        # A list that was never shown has no pages and no lines yet.
+        if self.query_one(CommandList).size:
+            super()._action_command_list(action)
+
+
+class ActionProvider(Provider):
+    """Provides the actions of the screen that the palette opens above, else those of the app."""
+
+    def _offers(self) -> Iterator[tuple[str, Callable[[], None], str]]:
+        """Yield the title of each action, a call that runs it, and the text below the title."""
+        host = self.screen if isinstance(self.screen, ActionHost) else self.app
+        if isinstance(host, ActionHost):
+            for action in host.ACTIONS.values():
+                yield action.title, partial(host.action_act, action.id), f"{action.group} · key {action.key_label}"
+
+    async def discover(self) -> Hits:
+        """Yield every action, before anything is typed."""
+        for title, do, text in self._offers():
+            yield DiscoveryHit(title, do, help=text)
+
+    async def search(self, query: str) -> Hits:
+        """Yield the actions with a matching title."""
+        matcher = self.matcher(query)
+        for title, do, text in self._offers():
+            if (score := matcher.match(title)) > 0:
+                yield Hit(score, matcher.highlight(title), do, help=text)
+
+
+_ALWAYS = ("help", "quit", "leave")
+
+FIELD_KEYS: tuple[KeyWord, ...] = (("⏎", "apply"), ("esc", "leave"), ("tab", "next"))
+"""Keys of a text field, where letters are not keys."""
+TYPING_KEYS: tuple[KeyWord, ...] = (
+    ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("^g", "line"), ("^z", "undo"), ("^y", "redo"),
+    ("^/", "comment"),
+)  # fmt: skip
+"""Keys while the user types in the program."""
+
+
+def fitting(actions: Sequence[Action[Any, Any]], width: int) -> list[Action[Any, Any]]:
+    """Return the actions that fit a footer, the keys for help and for leaving before any other.
+
+    Args:
+        actions: The available ones, the most useful first.
+        width: Cells.
+    """
+    always = [action for action in actions if action.id in _ALWAYS]
+    left = width - sum(map(_cells, always))
+    chosen = []
+    for action in actions:
+        if action.footer and action not in always and _cells(action) <= left:
+            left -= _cells(action)
+            chosen.append(action)
+    return chosen + always
+
+
+def _cells(action: Action[Any, Any]) -> int:
+    return len(_key(action)) + len(action.footer) + 2
+
+
+def _key(action: Action[Any, Any]) -> str:
+    return action.footer_key or action.key_label
+
+
+class KeyFooter(Widget):
+    """The bottom row of the screen."""
+
+    DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
+    ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--failed", "footer--off"}
+
+    def __init__(self) -> None:
+        super().__init__(id="footer")
+        self._actions: Sequence[Action[Any, Any]] = ()
+        self._status = ""
+        self._failed = False
+        self._off: frozenset[str] = frozenset()
+        self._typing: tuple[KeyWord, ...] = ()
+
+    def show(
+        self,
+        actions: Sequence[Action[Any, Any]],
+        status: str = "",
+        off: frozenset[str] = frozenset(),
+        typing: tuple[KeyWord, ...] = (),
+        failed: bool = False,
+    ) -> None:
+        """Show the keys that are available.
+
+        Args:
+            actions: The available actions, the most useful first.
+            status: State of the run, at the right.
+            off: Ids of the actions whose keys are shown as switched off.
+            typing: Keys of the text field that has the focus, where letters are not keys.
+            failed: Whether the run has failed, so that its state is shown as a warning.
+        """
+        now = actions, status, off, typing, failed
+        if now != (self._actions, self._status, self._off, self._typing, self._failed):
+            self._actions, self._status, self._off, self._typing, self._failed = now
+            self.refresh()
+
+    def render(self) -> Text:
+        """Return the content."""
+        width = self.size.width
+        status = f" {self._status} " if self._status else ""
+        key_style = self.get_component_rich_style("footer--key", partial=True)
+        line = Text(no_wrap=True, end="")
+        for key, word in self._typing:
+            if len(line) + len(key) + len(word) + 2 <= width - len(status):
+                line.append(f" {key}", key_style)
+                line.append(f" {word}")
+        for action in [] if self._typing else fitting(self._actions, width - len(status)):
+            meta = Style(meta={ACT: action.id})
+            line.append(f" {_key(action)}", key_style + meta)
+            line.append(f" {action.footer}", self._word_style(action) + meta)
+        line.append(" " * max(0, width - len(status) - len(line)))
+        name = "footer--failed" if self._failed else "footer--status"
+        line.append(status, self.get_component_rich_style(name, partial=True))
+        return line
+
+    def on_click(self, event: events.Click) -> None:
+        """Run the action that was clicked."""
+        if name := event.style.meta.get(ACT):
+            event.stop()
+            self.post_message(Act(name))
+
+    def _word_style(self, action: Action[Any, Any]) -> Style:
+        return self.get_component_rich_style("footer--off", partial=True) if action.id in self._off else Style()
+
+
+COLUMN_CELLS = 50
+"""A column of keys is not made narrower than this to fit another one next to it."""
+
+
+def key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Table:
+    """Return every key by group, in as many columns as fit; a group without a name has no heading."""
+    rows = [(group, list(keys)) for group, keys in groups.items()]
+    count = max(1, min(width // COLUMN_CELLS, len(rows)))
+    columns = Table.grid(padding=(0, 2), expand=True)
+    for _ in range(count):
+        columns.add_column(ratio=1)
+    columns.add_row(*map(_column, _in_columns(rows, count)))
+    return columns
+
+
+_Group = tuple[str, list[KeyWord]]
+
+
+def _in_columns(groups: list[_Group], count: int) -> list[list[_Group]]:
+    """Distribute groups over columns, in their order, so that the longest column is as short as possible."""
+
+    def filled(most: int) -> list[list[_Group]]:
+        columns: list[list[_Group]] = [[]]
+        left = most
+        for name, keys in groups:
+            rows = len(keys) + 2
+            if rows > left and columns[-1]:
+                columns.append([])
+                left = most
+            columns[-1].append((name, keys))
+            left -= rows
+        return columns
+
+    lowest = next(most for most in range(1, 10_000) if len(filled(most)) <= count)
+    columns = filled(lowest)
+    return columns + [[] for _ in range(count - len(columns))]
+
+
+def _column(groups: list[_Group]) -> Table:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(justify="right", style="bold")
+    table.add_column()
+    for group, keys in groups:
+        if group:
+            table.add_row("", Text(group, "bold #5fafff"))
+        for key, title in keys:
+            table.add_row(Text(key), Text(title))
+        table.add_row()
+    return table
+
+
+class _KeyTable(Static):
+    """The table of keys, laid out for the available width."""
+
+    def __init__(self, groups: Mapping[str, Iterable[KeyWord]]) -> None:
+        super().__init__()
+        self._groups = {group: list(keys) for group, keys in groups.items()}
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out for the new width."""
+        self.update(key_table(self._groups, event.size.width))
+
+
+def key_groups(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
+    """Return the keys of actions by the name of their group."""
+    groups: dict[str, list[KeyWord]] = {}
+    for action in actions:
+        groups.setdefault(action.group, []).append((action.key_label, action.title))
+    return groups
+
+
+class KeyHelp(Dialog[None]):
+    """A help screen; `?` closes it as well.
+
+    Args:
+        title: Title of the dialog.
+        start: How to start.
+        groups: The keys by the name of their group.
+    """
+
+    HINT: str = "↑ ↓ scroll · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("question_mark,q", "leave", "Close", show=False)]
+
+    def __init__(self, title: str, start: str, groups: Mapping[str, Iterable[KeyWord]]) -> None:
+        super().__init__()
+        self.TITLE_TEXT = title
+        self._start = start
+        self._groups = groups
+
+    def content(self) -> ComposeResult:
+        """Return the text, scrolled if necessary."""
+        with VerticalScroll():
+            yield Static(self._start, classes="start", markup=False)
+            yield _KeyTable(self._groups)

@@ -1,1 +1,0 @@
-"""Displays of the keys: footer, command palette and help."""
