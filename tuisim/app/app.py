@@ -145,12 +145,10 @@ class LabApp(PanelMessages):
     # Lifecycle
 
     def compose(self) -> ComposeResult:
-        """Lay out the panel area and the footer."""
         yield self.panel_area
         yield self.key_footer
 
     def on_ready(self) -> None:
-        """Start the expensive work after the first paint."""
         if self.is_headless:
             self.pacer.asks = False
         self.situation_changed()
@@ -184,7 +182,6 @@ class LabApp(PanelMessages):
         time_travel.stop_time(self.workspace)
 
     def on_unmount(self) -> None:
-        """Kill the child process and save unsaved work as a draft."""
         self.document.save_draft()
         self.debugger.close()
         self.run_controller.close()
@@ -282,7 +279,6 @@ class LabApp(PanelMessages):
             self._beats.resume()
 
     async def on_event(self, event: events.Event) -> None:
-        """Poll at frame rate while the user does something."""
         if isinstance(event, events.InputEvent):
             self._wake()
         await super().on_event(event)
@@ -384,7 +380,6 @@ class LabApp(PanelMessages):
             self._driver.write(_CURSOR_QUERY)
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
-        """The terminal has shown a frame."""
         self.pacer.answered()
 
     def situation_changed(self) -> None:
@@ -434,7 +429,6 @@ class LabApp(PanelMessages):
     # Panels
 
     def on_panel_area_added(self, message: PanelArea.Added) -> None:
-        """Bring a newly mounted panel up to date."""
         if message.panel == "world" and (world := self.panel_area.world):
             world.show_rays = self.settings.rays
             if self.run_controller.mat:
@@ -450,7 +444,6 @@ class LabApp(PanelMessages):
         self.call_after_refresh(self.draw, force=True)
 
     def on_panel_area_rearranged(self) -> None:
-        """Handle panels that were shown, hidden or moved."""
         self.mark_box()
         self.call_after_refresh(self.draw, force=True)
 
@@ -472,7 +465,6 @@ class LabApp(PanelMessages):
         self.action_leave_field()
 
     def on_click(self, event: events.Click) -> None:
-        """Leave the input field when the user clicks elsewhere."""
         in_a_dialog = self.screen is not self.panel_area.screen
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             self.action_leave_field()

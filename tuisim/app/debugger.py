@@ -260,7 +260,6 @@ class AppDebugger:
         self._inspect_again()
 
     def _open_panels(self) -> None:
-        """Open the debug panels, once per run."""
         if self._panels_opened:
             return
         self._panels_opened = True

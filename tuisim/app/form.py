@@ -81,15 +81,12 @@ class Choice(Widget, can_focus=True):
         self.action_step(-1 if event.x == 0 else 1)
 
     def on_focus(self) -> None:
-        """Show that the keys work here."""
         self.refresh()
 
     def on_blur(self) -> None:
-        """Show that the keys no longer work here."""
         self.refresh()
 
     def render(self) -> Text:
-        """Return the row."""
         line = Text(f"‹ {self._word}", no_wrap=True, end="")
         line.truncate(max(self.size.width - 2, 1), overflow="ellipsis")
         line.append(" ›")
@@ -131,7 +128,6 @@ class Row(Vertical):
         self._shown = ""
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         with Horizontal():
             if self._label:
                 yield Label(self._label, markup=False)
@@ -165,7 +161,6 @@ class Row(Vertical):
         self._enter()
 
     def on_descendant_blur(self) -> None:
-        """Apply the typed value when the field loses the focus."""
         if isinstance(self.entry, Input) and self.entry.value != self._shown:
             self._enter()
 
@@ -189,7 +184,6 @@ class NumberInput(Input):
     """A text field for a number; letters and other characters remain keys of the app."""
 
     def on_mount(self) -> None:
-        """Leave the keys of the app to the app."""
         for action in self.app.ACTIONS.values() if isinstance(self.app, ActionHost) else ():
             for key in action.key.split(","):
                 if len(key) == 1 or key in _SIGNS:
@@ -258,27 +252,22 @@ class Slider(Widget, can_focus=True):
             self.post_message(self.Changed(self, self._value, not self.dragging))
 
     def action_move(self, step: int) -> None:
-        """Change the number by a step."""
         self._choose(self._value + step)
 
     def action_put(self, value: int) -> None:
-        """Set the number."""
         self._choose(value)
 
     def action_put_last(self) -> None:
-        """Set the maximum."""
         self._choose(self.maximum)
 
     def _knob(self) -> int:
         return round(self._value / self.maximum * (self.size.width - 1))
 
     def _under(self, event: events.MouseEvent) -> int:
-        """Return the number under the mouse."""
         last = max(self.size.width - 1, 1)
         return round(min(max(event.x, 0), last) / last * self.maximum)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the knob to the mouse and grab it."""
         if event.button == 1:
             event.stop()
             self.focus()
@@ -288,13 +277,11 @@ class Slider(Widget, can_focus=True):
                 self._choose(self._under(event))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Drag the knob."""
         if self.dragging:
             event.stop()
             self._choose(self._under(event))
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Release the knob."""
         if self.dragging:
             event.stop()
             self._let_go()
@@ -310,25 +297,20 @@ class Slider(Widget, can_focus=True):
         self.post_message(self.Changed(self, self._value))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Increase the number by a step."""
         event.stop()
         self._choose(self._value + STEP)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        """Decrease the number by a step."""
         event.stop()
         self._choose(self._value - STEP)
 
     def on_focus(self) -> None:
-        """Show that the keys work here."""
         self.refresh()
 
     def on_blur(self) -> None:
-        """Show that the keys no longer work here."""
         self.refresh()
 
     def render(self) -> Text:
-        """Return the row."""
         knob, width = self._knob(), self.size.width
         filled, empty, held = (
             self.get_component_rich_style(f"slider--{part}", partial=True) for part in ("filled", "empty", "knob")

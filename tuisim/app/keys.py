@@ -115,7 +115,6 @@ class ActionHost(MessagePump):
         return self
 
     def action_act(self, name: str) -> None:
-        """Run the action of a key, or say why it is unavailable now."""
         if is_leaving(self.app):
             return
         action = self.ACTIONS[name]
@@ -128,7 +127,6 @@ class ActionHost(MessagePump):
             self.complain(error)
 
     def on_act(self, message: Act) -> None:
-        """Run an action whose word in the footer or on a panel was clicked."""
         message.stop()
         self.action_act(message.action)
 
@@ -247,7 +245,6 @@ class KeyFooter(Widget):
             self.refresh()
 
     def render(self) -> Text:
-        """Return the content."""
         width = self.size.width
         status = f" {self._status} " if self._status else ""
         key_style = self.get_component_rich_style("footer--key", partial=True)
@@ -266,7 +263,6 @@ class KeyFooter(Widget):
         return line
 
     def on_click(self, event: events.Click) -> None:
-        """Run the action that was clicked."""
         if name := event.style.meta.get(ACT):
             event.stop()
             self.post_message(Act(name))
@@ -334,7 +330,6 @@ class _KeyTable(Static):
         self._groups = {group: list(keys) for group, keys in groups.items()}
 
     def on_resize(self, event: events.Resize) -> None:
-        """Lay out for the new width."""
         self.update(key_table(self._groups, event.size.width))
 
 

@@ -204,7 +204,6 @@ class PanelArea(Container):
                 self._panel(panel).display = False
 
     def on_resize(self, event: events.Resize) -> None:
-        """Lay out for the new size."""
         self.lay_out()
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
@@ -216,7 +215,6 @@ class PanelArea(Container):
         self._mark(event.widget)
 
     def on_descendant_blur(self) -> None:
-        """Remove the mark when no panel has the focus."""
         if self.screen.focused is None:
             self._mark(None)
 
@@ -273,7 +271,6 @@ def side_width(width: int) -> int:
 
 
 def _in_place(panels: Sequence[str], place: str) -> list[str]:
-    """Return the panels of one area, in the order of the table."""
     return [info.id for info in PANELS.values() if info.place == place and info.id in panels]
 
 

@@ -35,7 +35,6 @@ class PanelMessages(ActionHost, TerminalApp):
         """Update the footer."""
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
-        """While the user types, give the code panel room and show the editor's keys in the footer."""
         self.situation_changed()
         if not message.typing:
             self.workspace.panel_area.maximize("")
@@ -43,12 +42,10 @@ class PanelMessages(ActionHost, TerminalApp):
             self.workspace.panel_area.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
 
     def on_code_edited(self, message: Code.Edited) -> None:
-        """Handle an edit of the text."""
         self.workspace.document.edited(message.text)
         self.workspace.debugger.edited(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
-        """Handle a key of the editor."""
         from tuisim.app.panels.code import ProgramCommand
 
         match message.command:
@@ -81,15 +78,12 @@ class PanelMessages(ActionHost, TerminalApp):
             self.workspace.run_controller.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
-        """Go to the time of the chart's cursor."""
         time_travel.to_time(self.workspace, message.time_s)
 
     def on_time_bar_scrubbed(self, message: TimeBar.Scrubbed) -> None:
-        """Go to the instant chosen with the mouse."""
         time_travel.to_tick(self.workspace, message.tick)
 
     def on_positioning_applied(self, message: Positioning.Applied) -> None:
-        """Place the robot at a pose that was typed in."""
         self.workspace.run_controller.place(message.pose)
 
     def on_settings_edited(self, message: Settings.Edited) -> None:
@@ -100,11 +94,9 @@ class PanelMessages(ActionHost, TerminalApp):
             message.row.refuse(error)
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
-        """Apply obstacles that were typed, added or removed."""
         self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.change(plan.spec.world.obstacles)))
 
     def on_obstacles_marked(self) -> None:
-        """Mark another obstacle as the selected one."""
         self.mark_box()
 
     def mark_box(self) -> None:
@@ -116,7 +108,6 @@ class PanelMessages(ActionHost, TerminalApp):
             )
 
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
-        """Apply obstacles that were drawn or moved with the mouse."""
         if (
             self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
             and self.workspace.panel_area.obstacles
@@ -124,19 +115,15 @@ class PanelMessages(ActionHost, TerminalApp):
             self.workspace.panel_area.obstacles.mark(message.index)
 
     def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
-        """Toggle the breakpoint whose gutter cell was clicked."""
         self.workspace.debugger.toggle_line(message.line)
 
     def on_debug_frame_wanted(self, message: Debug.FrameWanted) -> None:
-        """Select another frame."""
         self.workspace.debugger.choose_frame(message.by)
 
     def on_debug_thread_wanted(self) -> None:
-        """Select another thread."""
         self.workspace.debugger.choose_thread()
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
-        """Press or release the brick's buttons."""
         if message.buttons <= self.workspace.run_controller.pressed or (
             self.workspace.run_controller.in_run and not self.workspace.run_controller.in_past
         ):
@@ -147,9 +134,7 @@ class PanelMessages(ActionHost, TerminalApp):
             self.notify("The brick's buttons work while a program runs: R runs it", timeout=3)
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
-        """Set the noise."""
         self.workspace.run_controller.set_noise(message.noise)
 
     def on_noise_seeded(self, message: Noise.Seeded) -> None:
-        """Set the seed of the next run."""
         self.workspace.run_controller.set_seed(message.seed)

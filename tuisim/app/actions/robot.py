@@ -82,8 +82,6 @@ def choose_mat(workspace: Workspace) -> None:
 
 
 def _choose(workspace: Workspace, chooser: Chooser, change: Callable[[NextRun, str], NextRun]) -> None:
-    """Ask for a name or a file, and apply the choice to the plan."""
-
     def chosen(word: str | None) -> None:
         if word:
             workspace.loader.attempt(lambda plan: change(plan, word))

@@ -82,7 +82,6 @@ class LogChart(Widget):
         self._model: Model | None = None
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._text
 
     def set_model(self, model: Model) -> None:
@@ -148,7 +147,6 @@ class LogChart(Widget):
         return time_s + columns * (high - low) / self.columns()
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self.call_after_refresh(self._again)
 
     def _again(self) -> None:
@@ -161,7 +159,6 @@ class LogChart(Widget):
         return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go to the time, or toggle the variable, that was clicked."""
         column, row = self._cell(event)
         for first, picture in self._pictures:
             for box in picture.boxes:
@@ -173,17 +170,14 @@ class LogChart(Widget):
                 self.post_message(self.Pointed(time_s))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Show the values of the variables at the mouse."""
         column, row = self._cell(event)
         times_s = (picture.time_at(column, row - first) for first, picture in self._pictures)
         self._read(next((time_s for time_s in times_s if time_s is not None), None))
 
     def on_leave(self) -> None:
-        """Stop showing the values at the mouse."""
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        """Show below the chart the values of the variables at a time."""
         read: list[Run] = []
         if time_s is not None and self._model is not None:
             unit = "mm" if self._model.alignment == DISTANCE else "s"

@@ -81,7 +81,6 @@ class ColumnsDialog(Dialog[Columns]):
         yield Static(keys)
 
     def on_mount(self) -> None:
-        """List the columns, with the first one selected."""
         self._list(0)
         self.query_one(OptionList).focus()
 
@@ -119,7 +118,6 @@ class ColumnsDialog(Dialog[Columns]):
         self._list(self._at)
 
     def action_time(self) -> None:
-        """Use the selected column as time, or none."""
         name, chosen = self._names[self._at], self._chosen
         if name == chosen.time:
             self._choose(replace(chosen, time=ROW))
@@ -127,14 +125,12 @@ class ColumnsDialog(Dialog[Columns]):
             self._choose(replace(chosen, time=name, values=tuple(value for value in chosen.values if value != name)))
 
     def action_value(self) -> None:
-        """Use the selected column as values, or not."""
         name, chosen = self._names[self._at], self._chosen
         values = {*chosen.values} ^ {name}
         time = ROW if name == chosen.time else chosen.time
         self._choose(replace(chosen, time=time, values=tuple(n for n in self._names if n in values)))
 
     def action_unit(self) -> None:
-        """Go to the next unit of the time."""
         units = list(SECONDS)
         self._choose(replace(self._chosen, unit=units[(units.index(self._chosen.unit) + 1) % len(units)]))
 

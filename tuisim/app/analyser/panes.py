@@ -365,7 +365,6 @@ class PaneView(Widget):
         """The log that is being processed, by pane."""
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._text
 
     @property
@@ -408,7 +407,6 @@ class PaneView(Widget):
         self._again()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Draw for the new size."""
         self.call_after_refresh(self._again)
 
     def _again(self) -> None:
@@ -422,7 +420,6 @@ def _find_bands(model: Model, names: list[str]) -> None:
 
 
 def _summary(model: Model) -> str:
-    """Return a summary of what the table shows."""
     rows, total = model.rows, model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
     conditions = " and ".join(map(str, rows.conditions))

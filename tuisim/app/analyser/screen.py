@@ -81,7 +81,6 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.key_footer = KeyFooter()
 
     def compose(self) -> ComposeResult:
-        """Title, log and world, keys."""
         yield self.title_line
         with Horizontal():
             with Vertical(id="log"):
@@ -91,7 +90,6 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         yield self.key_footer
 
     def on_mount(self) -> None:
-        """Start to open the log."""
         self.open(self.request)
         self.set_interval(_POLL_S, self.poll)
 
@@ -210,7 +208,6 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.update()
 
     def _progress(self) -> str:
-        """Return how much of the log has been read."""
         subject = self._model.subject if self._model else None
         if subject is None or subject.done:
             return ""
@@ -259,13 +256,11 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             self.pane.chosen = number
 
     def on_log_chart_pointed(self, message: LogChart.Pointed) -> None:
-        """Go to a time that was clicked."""
         if self.situation():
             self.model.go_to_time(message.time_s)
             self.update()
 
     def on_log_chart_ticked(self, message: LogChart.Ticked) -> None:
-        """Select a variable, and toggle it."""
         if self.situation():
             self.model.selected = message.name
             self.action_act("tick")
@@ -370,5 +365,4 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.job = None
 
     def on_unmount(self) -> None:
-        """Ignore the results of running jobs."""
         self.give_up()

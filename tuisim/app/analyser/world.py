@@ -166,7 +166,6 @@ class WorldPane(Vertical):
         self._shown: WorldAt | None = None
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         for title, view in (("World", self._world), ("Source", self._source)):
             frame = Vertical(view, classes="frame")
             frame.border_title = title
@@ -174,7 +173,6 @@ class WorldPane(Vertical):
         yield self._arrays
 
     def on_resize(self) -> None:
-        """Hide the pixels if there is little room."""
         self._arrays.display = self.size.height >= 34
         self.call_after_refresh(self._show_again)
 

@@ -78,7 +78,6 @@ class _Listed(Dialog[None], Generic[Entry]):
         return self.written(entry)
 
     def on_mount(self) -> None:
-        """Fill the list and focus it, or the field if it is empty."""
         self._list()
         self.query_one(OptionList if self._entries else Input).focus()
 
@@ -101,14 +100,12 @@ class _Listed(Dialog[None], Generic[Entry]):
         self._changed(tuple(self._entries))
 
     def action_remove(self) -> None:
-        """Delete the selected entry."""
         if isinstance(self.focused, OptionList) and (at := self._at) is not None:
             del self._entries[at]
             self._report(at)
 
     @on(OptionList.OptionSelected)
     def action_edit(self) -> None:
-        """Load the selected entry into the field."""
         if (at := self._at) is not None:
             self._editing = at
             field = self.query_one(Input)
@@ -179,7 +176,6 @@ class BreaksDialog(_Listed[Breakpoint]):
         return f"{'○' if entry.disabled else '●'} {'line ' if entry.text[:1].isdigit() else ''}{entry.text}"
 
     def action_switch(self) -> None:
-        """Enable or disable the selected breakpoint."""
         if isinstance(self.focused, OptionList) and (at := self._at) is not None:
             self._entries[at] = replace(self._entries[at], disabled=not self._entries[at].disabled)
             self._report(at)

@@ -67,11 +67,9 @@ class ListDialog(Dialog[str]):
     """A list, usually with a field for a path. Its result is what was chosen or typed."""
 
     def on_mount(self) -> None:
-        """Focus the list."""
         self.query_one(OptionList).focus()
 
     def on_key(self, event: events.Key) -> None:
-        """Redirect characters typed in the list to the field."""
         if event.character and event.is_printable and not event.character.isspace() and self.query(Input):
             field = self.query_one(Input)
             if not field.has_focus:
@@ -238,11 +236,9 @@ class MatPicker(ListDialog):
         yield Input(placeholder="Or the path of an image of your own", compact=True, select_on_focus=False)
 
     def on_mount(self) -> None:
-        """Set the height of the preview from its width."""
         self.call_after_refresh(self._begin)
 
     def on_resize(self) -> None:
-        """Fit the preview to the new width."""
         self.call_after_refresh(self._begin)
 
     def _begin(self) -> None:

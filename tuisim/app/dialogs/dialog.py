@@ -46,7 +46,6 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
     """Whether it is mounted, and has focused the widget that gets the first key."""
 
     def on_mount(self) -> None:
-        """Become ready after the first layout and the pending changes of focus."""
         self.call_after_refresh(self.app.call_later, self._become_ready)
 
     def _become_ready(self) -> None:
@@ -88,7 +87,6 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Close", show=False)]
 
     def compose(self) -> ComposeResult:
-        """Frame the content."""
         frame = Vertical(classes="dialog")
         frame.border_title = self.TITLE_TEXT
         frame.border_subtitle = self.HINT

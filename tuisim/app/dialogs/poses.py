@@ -45,7 +45,6 @@ class SavedPoses(Dialog[Pose]):
         yield Static(id="message", markup=False)
 
     def on_mount(self) -> None:
-        """Fill the list and focus it, or the field if it is empty."""
         self._list()
         self.query_one(OptionList if self._poses else Input).focus()
 
@@ -68,7 +67,6 @@ class SavedPoses(Dialog[Pose]):
         self.dismiss(self._poses.get(event.option.id or ""))
 
     def action_remove(self) -> None:
-        """Delete the selected pose."""
         listed = self.query_one(OptionList)
         at = listed.highlighted
         if at is None or not self._poses:

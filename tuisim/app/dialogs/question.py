@@ -48,14 +48,12 @@ class Question(Dialog[str]):
         yield Static("   ".join(words), classes="link")
 
     def on_key(self, event: events.Key) -> None:
-        """Handle the key of an answer."""
         key = self._answers[0][0] if event.key == "enter" else event.key
         if key in dict(self._answers):
             event.stop()
             self.action_answer(key)
 
     def action_answer(self, key: str) -> None:
-        """Return an answer."""
         self.dismiss(key)
 
 
@@ -123,7 +121,6 @@ class LeaveQuestion(Dialog[bool]):
         yield Static("[@click=screen.yes]  y  Stop it and quit  [/]   [@click=screen.leave]  n  Stay  [/]")
 
     def action_yes(self) -> None:
-        """Quit."""
         self.dismiss(True)
 
 

@@ -44,7 +44,6 @@ def _searched(run: RunInfo) -> str:
 
 
 def _when(run: RunInfo) -> str:
-    """Return the local start time."""
     try:
         return datetime.fromisoformat(run.created).astimezone().strftime("%Y-%m-%d %H:%M")
     except ValueError:
@@ -178,7 +177,6 @@ class RunsChooser(RunChooser):
         return run_line(run, run.id in self._marked)
 
     def action_mark(self) -> None:
-        """Mark or unmark the selected run, and go to the next one."""
         options = self.query_one(OptionList)
         at = options.highlighted
         run = self._run_of(options.get_option_at_index(at).id) if at is not None else None
@@ -243,5 +241,4 @@ class Differences(Dialog[bool]):
             yield Static(table)
 
     def action_go(self) -> None:
-        """Go to the first difference."""
         self.dismiss(self._goes)

@@ -202,7 +202,6 @@ class ExportDialog(FileDialog):
         yield Static(self._kind(), id="kind")
 
     def action_switch(self) -> None:
-        """Switch between samples and telemetry."""
         self._telemetry = not self._telemetry
         self.query_one("#kind", Static).update(self._kind())
 

@@ -250,11 +250,9 @@ class CodeArea(TextArea):
         return self.typing if action in ("undo", "redo") else super().check_action(action, parameters)
 
     def action_want(self, command: str) -> None:
-        """Post a request that is more than an edit of the text."""
         self.post_message(self.Wanted(EditorCommand(command)))
 
     def on_key(self, event: events.Key) -> None:
-        """Handle the keys that start and end typing, indent, and comment."""
         if not self.typing:
             if event.key == "enter":
                 self._done(event)
@@ -379,7 +377,6 @@ class FindBar(Horizontal):
         self.display = False
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield Static(id="label", markup=False)
         yield Input(compact=True)
         yield Static(id="found", markup=False)
@@ -401,12 +398,10 @@ class FindBar(Horizontal):
         self.query_one("#found", Static).update(text)
 
     def action_close(self) -> None:
-        """Hide the bar."""
         self.display = False
         self.post_message(self.Closed())
 
     def action_go(self, by: int) -> None:
-        """Go to the next match, or the previous one."""
         self._ask(by)
 
     def _ask(self, by: int) -> None:
@@ -416,13 +411,11 @@ class FindBar(Horizontal):
         self.post_message(self.Asked(self.mode, text, by))
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Search while the user types."""
         event.stop()
         if self.mode == FIND:
             self._ask(0)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Go to the next match, or to the line."""
         event.stop()
         self._ask(1)
         if self.mode == LINE:

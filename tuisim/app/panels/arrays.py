@@ -42,7 +42,6 @@ class Arrays(Widget):
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._names
         yield self._discs
 

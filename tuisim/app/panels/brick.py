@@ -67,15 +67,12 @@ class Brick(Widget, can_focus=True):
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._view
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self.call_after_refresh(self._draw)
 
     def on_focus(self) -> None:
-        """Show which keys press the buttons."""
         self.border_subtitle = _HELP
 
     def on_blur(self) -> None:
@@ -145,7 +142,6 @@ class Brick(Widget, can_focus=True):
         self._changed(before)
 
     def action_latch(self, name: str) -> None:
-        """Hold a button down, or release it."""
         if not self._has_program(name):
             return
         before = self.held
@@ -185,7 +181,6 @@ class Brick(Widget, can_focus=True):
         self._changed(before)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Release the button."""
         if self._clicked:
             self._unclick()
             self.release_mouse()

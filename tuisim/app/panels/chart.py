@@ -65,7 +65,6 @@ class Chart(Widget, can_focus=True):
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._text
 
     def append(self, name: str, times_s: Sequence[float], values: Sequence[float]) -> None:
@@ -121,21 +120,17 @@ class Chart(Widget, can_focus=True):
         self._throttle.now()
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self.call_after_refresh(self._draw_now)
 
     def on_focus(self) -> None:
-        """Show which tick box the keys act on."""
         self._draw_now()
 
     def on_blur(self) -> None:
-        """Hide which tick box the keys acted on."""
         self._draw_now()
 
     # Keys
 
     def action_select(self, step: int) -> None:
-        """Select another tick box."""
         names = [trace.name for trace in self._traces]
         if names:
             at = names.index(self._state.selected) + step if self._state.selected in names else 0
@@ -143,7 +138,6 @@ class Chart(Widget, can_focus=True):
             self._draw_now()
 
     def action_tick(self, number: int = 0) -> None:
-        """Toggle the selected trace, or the one with that number."""
         traces = list(self._traces)
         if number:
             chosen = traces[number - 1] if number <= len(traces) else None
@@ -158,14 +152,12 @@ class Chart(Widget, can_focus=True):
         self._draw_now()
 
     def action_freeze(self) -> None:
-        """Stop following the run, or follow it again."""
         frozen = self._state.x_limits is None and self._picture is not None and self._picture.columns > 0
         self._state = replace(self._state, x_limits=self._picture.x_limits if frozen and self._picture else None)
         self._read(None)
         self._draw_now()
 
     def action_clear(self) -> None:
-        """Remove all traces."""
         self.clear()
 
     def action_move_cursor(self, columns: int) -> None:
@@ -178,7 +170,6 @@ class Chart(Widget, can_focus=True):
         self._put_cursor(axes.at_column(column, picture.x_limits, picture.columns))
 
     def action_drop_cursor(self) -> None:
-        """Remove the cursor."""
         if self._state.cursor_s is not None:
             self._state = replace(self._state, cursor_s=None)
             self.post_message(self.CursorMoved(None))
@@ -199,7 +190,6 @@ class Chart(Widget, can_focus=True):
         return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Toggle a tick box, or start to drag the cursor."""
         picture = self._picture
         if picture is None or event.button != 1:
             return
@@ -214,7 +204,6 @@ class Chart(Widget, can_focus=True):
             self._cursor_to(column, picture)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Drag the cursor, or show the values of the traces at the mouse."""
         picture = self._picture
         if picture is None:
             return
@@ -225,11 +214,9 @@ class Chart(Widget, can_focus=True):
             self._read(picture.time_at(column, row))
 
     def on_leave(self) -> None:
-        """Stop showing the values at the mouse."""
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        """Show below the chart the values of the traces at a time."""
         if time_s is None:
             self.border_subtitle = self.FROZEN if self._state.x_limits else ""
             return
@@ -237,7 +224,6 @@ class Chart(Widget, can_focus=True):
         self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Stop dragging the cursor."""
         if self._dragging:
             self._dragging = False
             self.release_mouse()

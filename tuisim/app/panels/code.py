@@ -93,7 +93,6 @@ class Code(Vertical):
         self._said = (self.TITLE, "")
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         self._area.placeholder = NOTHING_OPEN
         yield self._area
         yield self._bar
@@ -239,7 +238,6 @@ class Code(Vertical):
             self.post_message(self.TypingChanged(typing))
 
     def on_text_area_changed(self, event: TextArea.Changed) -> None:
-        """Report an edit."""
         event.stop()
         text = self._area.program_text
         if text != self._shown:
@@ -250,16 +248,13 @@ class Code(Vertical):
             self.post_message(self.Edited(text))
 
     def action_want(self, command: str) -> None:
-        """Post a request to the app."""
         self.post_message(self.Wanted(ProgramCommand(command)))
 
     def on_code_area_gutter_clicked(self, event: CodeArea.GutterClicked) -> None:
-        """Toggle a breakpoint."""
         event.stop()
         self.post_message(self.BreakpointToggled(event.line))
 
     def on_code_area_wanted(self, event: CodeArea.Wanted) -> None:
-        """Run the action of a key."""
         event.stop()
         match event.command:
             case EditorCommand.TYPE:
@@ -284,7 +279,6 @@ class Code(Vertical):
     # Find
 
     def on_find_bar_asked(self, event: FindBar.Asked) -> None:
-        """Go to a match."""
         event.stop()
         if event.mode == FIND:
             self._find(event.text, event.by)
@@ -295,7 +289,6 @@ class Code(Vertical):
             self._bar.say("a number, please")
 
     def on_find_bar_closed(self, event: FindBar.Closed) -> None:
-        """Return the focus to the text."""
         event.stop()
         self._area.focus()
 

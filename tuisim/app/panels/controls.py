@@ -52,7 +52,6 @@ class Controls(Widget, can_focus=False):
         return Text(f" {text} ", style + Style(meta={ACT: action}))
 
     def on_click(self, event: events.Click) -> None:
-        """Run the action that was clicked."""
         if name := event.style.meta.get(ACT):
             event.stop()
             self.post_message(Act(name))
@@ -69,7 +68,6 @@ class Controls(Widget, can_focus=False):
         return Text(_state_label(now), style)
 
     def render(self) -> Text:
-        """Return the content."""
         now = self._snapshot
         if now is None:
             return Text()

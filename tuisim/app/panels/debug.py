@@ -61,15 +61,12 @@ class Debug(Widget, can_focus=True):
         self._lines: list[Line] = []
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._view
 
     def on_focus(self) -> None:
-        """Show which keys work here."""
         self.border_subtitle = "↑↓ scroll · ←→ calls · ⏎ thread"
 
     def on_blur(self) -> None:
-        """The keys belong to the app again."""
         self.border_subtitle = ""
 
     def show(self, snapshot: Snapshot) -> None:
@@ -92,7 +89,6 @@ class Debug(Widget, can_focus=True):
         self._draw()
 
     def on_resize(self, event: events.Resize) -> None:
-        """Draw for the new size."""
         self.call_after_refresh(self._draw)
 
     def _draw(self) -> None:
@@ -106,24 +102,19 @@ class Debug(Widget, can_focus=True):
         self._view.set_lines(self._lines[self._top : self._top + size.height])
 
     def action_scroll_lines(self, by: int) -> None:
-        """Scroll the text."""
         self._top = max(0, self._top + by)
         self._draw()
 
     def action_frame(self, by: int) -> None:
-        """Select another frame."""
         self.post_message(self.FrameWanted(by))
 
     def action_thread(self) -> None:
-        """Select another thread."""
         self.post_message(self.ThreadWanted())
 
     def on_mouse_scroll_down(self) -> None:
-        """Scroll with the wheel."""
         self.action_scroll_lines(2)
 
     def on_mouse_scroll_up(self) -> None:
-        """Scroll with the wheel."""
         self.action_scroll_lines(-2)
 
 

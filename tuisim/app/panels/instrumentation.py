@@ -46,11 +46,9 @@ class Instrumentation(Widget):
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._text
 
     def on_resize(self) -> None:
-        """Choose the form for the new size."""
         self.call_after_refresh(self._draw)
 
     def show(self, snapshot: Snapshot) -> None:

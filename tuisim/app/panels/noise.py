@@ -46,7 +46,6 @@ class Noise(Vertical):
         self._past = False
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         for kind, (name, maximum) in _KINDS.items():
             with Horizontal(classes="field"):
                 yield Label(f"{name}", markup=False)
@@ -102,7 +101,6 @@ class Noise(Vertical):
         self._apply(event.input)
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Apply a typed value when its field loses the focus."""
         if isinstance(event.widget, Input):
             self._apply(event.widget)
 

@@ -75,7 +75,6 @@ class Obstacles(Vertical):
         """Index of the selected obstacle."""
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield OptionList(compact=True)
         for pair in (("x_mm", "y_mm"), ("width_mm", "height_mm")):
             with Horizontal(classes="field"):
@@ -152,7 +151,6 @@ class Obstacles(Vertical):
         self._apply(event.input)
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Apply a typed value when its field loses the focus."""
         if isinstance(event.widget, Input) and not event.widget.disabled:
             self._apply(event.widget)
 
@@ -170,11 +168,9 @@ class Obstacles(Vertical):
         self.post_message(self.Edited(partial(_replaced, self.at, (box,))))
 
     def action_add(self) -> None:
-        """Add a box in the middle of the field."""
         self.post_message(self.Edited(_with_another))
 
     def action_remove(self) -> None:
-        """Remove the selected box."""
         if self.at is None:
             self._say("There is none to remove")
             return

@@ -34,7 +34,6 @@ class Answer(Input):
         """Posted when the user sends end of file instead of an answer."""
 
     def action_end_of_file(self) -> None:
-        """Send end of file."""
         self.post_message(self.EndOfFile())
 
 
@@ -61,7 +60,6 @@ class Output(Vertical):
         """Whether the field for `input()` is shown."""
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._log
         yield self._past_log
 
@@ -214,7 +212,6 @@ class Log(Widget, can_focus=True):
                 self._top = max(0, self._top - too_many)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Wrap the lines for the new width."""
         self._lines.clear()
         self._wrap(self._rows)
         self._shown.clear()
@@ -280,15 +277,12 @@ class Log(Widget, can_focus=True):
         self._update()
 
     def action_scroll_pages(self, pages: int) -> None:
-        """Scroll by a number of pages."""
         self.action_scroll_lines(pages * max(1, self.size.height - 1))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Scroll up."""
         event.stop()
         self.action_scroll_lines(-3)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        """Scroll down."""
         event.stop()
         self.action_scroll_lines(3)

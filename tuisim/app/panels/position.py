@@ -55,7 +55,6 @@ class Positioning(Vertical):
         self._shown = {"x": "", "y": "", "angle": ""}
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         for field, (name, unit, _) in _FIELDS.items():
             with Horizontal(classes="field"):
                 yield Label(f"{name}, {unit}", markup=False)

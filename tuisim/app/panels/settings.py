@@ -59,7 +59,6 @@ class Settings(VerticalScroll, can_focus=False):
         """Whether to focus the form as soon as it has fields."""
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         for pair in _LINKS:
             with Horizontal(classes="links"):
                 for action, words in pair:

@@ -85,7 +85,6 @@ class World(Widget, can_focus=True):
         self.time_bar = TimeBar()
 
     def compose(self) -> ComposeResult:
-        """Create the child widgets."""
         yield self._view
         yield self.time_bar
 
@@ -191,7 +190,6 @@ class WorldView(PixelView):
         self._held_shows = 0
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self.repaint_scene()
 
     def set_mat(self, pixels: Pixels) -> None:
@@ -277,7 +275,6 @@ class WorldView(PixelView):
         return self._port.to_mm(col, 2 * row)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Grab the robot or an obstacle, or start to draw one."""
         if event.button != 1 or self._port is None or self._snapshot is None:
             return
         if not self._grip_robot(event) and self._edits_boxes:
@@ -302,7 +299,6 @@ class WorldView(PixelView):
         return True
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Move or turn what was grabbed."""
         if self._box_grip is not None:
             event.stop()
             dragged = self._box_grip.dragged_to(*self._at(event))
@@ -318,7 +314,6 @@ class WorldView(PixelView):
             self._draw()
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """End the drag."""
         if self._box_grip is not None:
             event.stop()
             self.release_mouse()
@@ -348,11 +343,9 @@ class WorldView(PixelView):
             self._tell_boxes(grip.boxes, grip.index)
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Turn the robot counter-clockwise."""
         self._turn(event, TURN_STEP_DEG)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        """Turn the robot clockwise."""
         self._turn(event, -TURN_STEP_DEG)
 
     def _turn(self, event: events.MouseEvent, angle_deg: float) -> None:
@@ -494,7 +487,6 @@ class TimeBar(LinesView):
         self._draw()
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self._draw()
 
     def _draw(self) -> None:
@@ -529,12 +521,10 @@ class TimeBar(LinesView):
             self._choose(event)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Follow the mouse."""
         if self._dragging:
             self._choose(event)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Stop following the mouse."""
         if self._dragging:
             event.stop()
             self._dragging = False

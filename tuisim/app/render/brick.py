@@ -201,7 +201,6 @@ def led_name(red: int, green: int) -> str:
 
 
 def _lamps(face: BrickState) -> list[tuple[int, int]]:
-    """Return red and green of the left and of the right pair."""
     if not face.leds:
         return [(0, 255), (0, 255)]
     return [(face.leds.get(f"{side} red", 0), face.leds.get(f"{side} green", 0)) for side in ("left", "right")]

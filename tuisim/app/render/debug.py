@@ -114,7 +114,6 @@ def _hint(state: RunPhase, width: int) -> list[Line]:
 
 
 def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) -> list[Line]:
-    """Return the known data of the instant at which the program is paused."""
     lines = [_where(view, paused, width)]
     if view.source:
         lines.append([(cut(f"  {view.source.strip()}", width), _VALUE)])

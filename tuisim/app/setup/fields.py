@@ -104,8 +104,6 @@ def _robot_field(
     change: Callable[[RobotSpec, str], RobotSpec],
     choices: tuple[str, ...] = (),
 ) -> Field:
-    """Return a field of the robot."""
-
     def write(plan: NextRun, text: str) -> NextRun:
         return with_robot_edited(plan, change(plan.robot_choice.spec, text))
 
@@ -155,8 +153,6 @@ def _motor_port_field(key: str, label: str) -> Field:
 
 
 def _motor_kind_field(key: str, label: str) -> Field:
-    """Return the field for the kind of a wheel's motor."""
-
     def change(robot: RobotSpec, kind: str) -> RobotSpec:
         kinds: dict[str, Any] = {key: kind}
         return replace(robot, **kinds)
@@ -189,7 +185,6 @@ def _robot_fields() -> tuple[Field, ...]:
 
 
 def _sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
-    """Return all sensors by name."""
     return {sensor.name: sensor for sensor in robot.sensors}
 
 
@@ -204,8 +199,6 @@ def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
 
 
 def _sensor_field(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> Field:
-    """Return a field of a sensor."""
-
     def change(robot: RobotSpec, text: str) -> RobotSpec:
         changed: dict[str, Any] = {key: parse(text)}
         return _with_sensors(robot, replace(_sensors(robot)[name], **changed))

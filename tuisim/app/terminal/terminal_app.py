@@ -207,7 +207,6 @@ class TerminalApp(App[None]):
         return [*super().get_line_filters(), _HARMLESS]
 
     def on_ready(self) -> None:
-        """Handle the signals that end the app, as its own key does."""
         if self.is_headless:
             return
         loop = asyncio.get_running_loop()
@@ -227,7 +226,6 @@ class TerminalApp(App[None]):
         self.draw_again()
 
     def action_suspend_process(self) -> None:
-        """Suspend the app as a job of its shell."""
         if isinstance(self._driver, TerminalDriver):
             self.suspending()
             if not self._driver.stop_as_job():

@@ -79,7 +79,6 @@ def export(screen: LogScreen) -> None:
 
 
 def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
-    """Write a frame, or the rows of the table."""
     from tuisim.logs.export import LOG_FORMAT, export_frame, export_log
 
     if frame is None:
