@@ -15,10 +15,9 @@ import pytest
 from tests.conftest import Command
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.cli import EXIT_OUR_MISTAKE
-from tuisim.core.parts import MotorSpec
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter
 from tuisim.runs.run_folder import RUN_FILE

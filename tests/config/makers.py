@@ -5,16 +5,20 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from tuisim.core.css_colors import css_names
-from tuisim.core.parts import MOTOR_KINDS, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.spec import (
     INPUT_PORTS,
+    MOTOR_KINDS,
     OUTPUT_PORTS,
     STRATEGIES,
     ColorSensorSpec,
     GyroSpec,
+    InfraredSpec,
+    MotorSpec,
     Obstacle,
     PenSpec,
+    RemotePress,
     RobotSpec,
+    TouchSpec,
     UltrasonicSpec,
 )
 

@@ -21,9 +21,19 @@ from tuisim.config.profiles import SOURCES, load_profile
 from tuisim.config.robots import ROBOTS, choose_robot, load_robot, save_robot
 from tuisim.config.shared_options import parse_words
 from tuisim.config.worlds import load_world, save_world
-from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.profile import PROFILES, MotorLaw, ProfileSpec
-from tuisim.core.spec import GyroSpec, Obstacle, PenSpec, RobotSpec, RunSpec, UltrasonicSpec
+from tuisim.core.spec import (
+    BeaconSpec,
+    GyroSpec,
+    InfraredSpec,
+    MotorSpec,
+    Obstacle,
+    PenSpec,
+    RobotSpec,
+    RunSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
 from tuisim.errors import ConfigError, ObstacleError, RobotError
 
 Write = Callable[[str, str], str]

@@ -20,7 +20,7 @@ from typing import Any, NoReturn
 
 from tests.core.memory_sink import MemorySink
 from tuisim.config.mat_cache import FieldFiles, open_field
-from tuisim.core import motor_laws
+from tuisim.core import motion
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.drive import EvenGlide
 from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S
@@ -178,7 +178,7 @@ def courses(jobs: Iterable[Job], folder: Path) -> list[Course]:
 
 def main(folder: Path) -> None:
     """Run the programs of a folder, each in a fork."""
-    vars(motor_laws)["BrowserMotor"] = Watched
+    vars(motion)["BrowserMotor"] = Watched
     for at, job in enumerate(json.loads((folder / "jobs.json").read_text())):
         spec = from_plain(job["spec"])
         files = field_files(spec)

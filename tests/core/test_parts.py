@@ -10,13 +10,25 @@ from typing import Any
 import pytest
 
 from tests.core.memory_sink import MemorySink
-from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.geometry import Pose
-from tuisim.core.parts import BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import PROFILES, ROBOLAB
 from tuisim.core.sensors import infrared, touch
-from tuisim.core.simulation import Simulation
-from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec, from_plain, to_plain
+from tuisim.core.simulation import FurtherMotors, Simulation, Turn, simulation_of
+from tuisim.core.spec import (
+    BeaconSpec,
+    InfraredSpec,
+    MotorSpec,
+    NoiseSpec,
+    Obstacle,
+    RemotePress,
+    RobotSpec,
+    RunSpec,
+    TouchSpec,
+    UltrasonicSpec,
+    WorldSpec,
+    from_plain,
+    to_plain,
+)
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import ConfigError
 

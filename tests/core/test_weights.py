@@ -7,12 +7,11 @@ from dataclasses import replace
 import pytest
 
 from tuisim.config import mat_cache, mats
-from tuisim.core.field import Field
+from tuisim.core.field import Field, disc_weights
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors.color import reading
 from tuisim.core.spec import STRATEGIES, NoiseSpec, RobotSpec
 from tuisim.core.state import Instant
-from tuisim.core.weights import disc_weights
 
 LEFT = RobotSpec().color_sensors[0]
 

@@ -10,9 +10,22 @@ import pytest
 from tests.running import Done, over
 from tuisim.commands.press import parse_press, press_actions
 from tuisim.core.geometry import Pose
-from tuisim.core.parts import REMOTE_CHANNELS, REMOTE_CODES, BeaconSpec, InfraredSpec, MotorSpec, RemotePress, TouchSpec
 from tuisim.core.profile import PROFILES
-from tuisim.core.spec import GyroSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.core.spec import (
+    REMOTE_CHANNELS,
+    REMOTE_CODES,
+    BeaconSpec,
+    GyroSpec,
+    InfraredSpec,
+    MotorSpec,
+    Obstacle,
+    RemotePress,
+    RobotSpec,
+    RunSpec,
+    TouchSpec,
+    UltrasonicSpec,
+    WorldSpec,
+)
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.source import Program
 

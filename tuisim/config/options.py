@@ -11,9 +11,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from tuisim.core.parts import BeaconSpec, RemotePress
 from tuisim.core.profile import ProfileSpec
-from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, Obstacle, RobotSpec
+from tuisim.core.spec import (
+    BACKGROUND_FITS,
+    MAX_LIGHT_NOISE,
+    MAX_MOTOR_NOISE,
+    BeaconSpec,
+    Obstacle,
+    RemotePress,
+    RobotSpec,
+)
 from tuisim.errors import ConfigError
 
 PRELOADS = ("none", "imports", "preloaded")

@@ -14,17 +14,20 @@ from typing import Annotated, Any
 from tuisim.config import files
 from tuisim.config.files import Location, Scalar
 from tuisim.config.options import RobotChoice, pen_color
-from tuisim.core.parts import MOTOR_KINDS, InfraredSpec, MotorSpec, TouchSpec
 from tuisim.core.spec import (
     MAX_LIGHT_NOISE,
     MAX_MOTOR_NOISE,
+    MOTOR_KINDS,
     MOUNTS,
     OUTPUT_PORTS,
     ROBOT_WEIGHTS,
     ColorSensorSpec,
+    InfraredSpec,
+    MotorSpec,
     Mount,
     RobotSpec,
     SensorSpec,
+    TouchSpec,
     UltrasonicSpec,
 )
 from tuisim.errors import ConfigError, RobotError, nearest

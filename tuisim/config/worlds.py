@@ -31,9 +31,16 @@ from tuisim.config.options import (
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
 from tuisim.config.robots import load_robot, robot_from_table, robot_lines
 from tuisim.core.geometry import Pose
-from tuisim.core.parts import REMOTE_BUTTONS, BeaconSpec, RemotePress
 from tuisim.core.profile import ProfileSpec
-from tuisim.core.spec import BACKGROUND_FITS, MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, RunSpec
+from tuisim.core.spec import (
+    BACKGROUND_FITS,
+    MAX_LIGHT_NOISE,
+    MAX_MOTOR_NOISE,
+    REMOTE_BUTTONS,
+    BeaconSpec,
+    RemotePress,
+    RunSpec,
+)
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
 WORLD_SUFFIX = ".toml"

@@ -1,4 +1,4 @@
-"""Motion: advances motors and robot in whole ticks, each of which is recorded.
+"""Motion: advances motors and robot, by the motor law of the profile, in whole ticks, each of which is recorded.
 
 `advance` gives the same state to the last bit however the ticks are divided among
 calls: stretches with nothing but motion run in tight loops, and every loop does the same
@@ -8,12 +8,15 @@ floating-point operations in the same order as a single tick.
 from __future__ import annotations
 
 from math import degrees
+from typing import assert_never
 
+from tuisim.core.brick_motor import BrickMotor
+from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
-from tuisim.core.drive import Records, mm_per_degree
-from tuisim.core.motor_laws import drive_of, motor_of
-from tuisim.core.motors import MotorState, top_speed_dps
+from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Records, mm_per_degree
+from tuisim.core.motors import Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise
+from tuisim.core.profile import MotorLaw
 from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
 
@@ -33,6 +36,44 @@ FEW_TICKS = 3
 def stall_ticks(tick_hz: int) -> int:
     """Return the number of ticks without motion after which a running motor is stalled."""
     return STALL_MS * tick_hz // 1000 + 1
+
+
+WEIGHT_DPS2 = 5000.0
+"""Change of speed per second, times the robot's weight."""
+
+
+def weight_step(spec: RunSpec) -> float:
+    """Return the largest change of a motor's speed in one tick, in degrees per second; 0 is unlimited."""
+    return WEIGHT_DPS2 / spec.robot.weight / spec.profile.tick_hz if spec.robot.weight else 0.0
+
+
+def motor_of(spec: RunSpec, kind: str) -> Motor:
+    """Return a motor in its initial state.
+
+    Args:
+        spec: Robot, world and profile.
+        kind: One of `MOTOR_KINDS`.
+    """
+    profile, step, fastest_dps = spec.profile, weight_step(spec), top_speed_dps(kind, spec.profile)
+    match profile.motor_law:
+        case MotorLaw.BRICK:
+            return BrickMotor(profile.tick_hz, step, fastest_dps)
+        case MotorLaw.NBEV3DEVSIM:
+            return BrowserMotor(profile.tick_hz, step, fastest_dps)
+        case _:
+            assert_never(profile.motor_law)
+
+
+def drive_of(spec: RunSpec) -> Drive:
+    """Return the drive of a run's robot, at its initial pose."""
+    robot, start, early = spec.robot, spec.world.start, 0.5 if spec.profile.halfway_heading else 0.0
+    match spec.profile.motor_law:
+        case MotorLaw.BRICK:
+            return BrickDrive(robot, start, early)
+        case MotorLaw.NBEV3DEVSIM:
+            return BrowserDrive(robot, start, early)
+        case _:
+            assert_never(spec.profile.motor_law)
 
 
 class Motion:

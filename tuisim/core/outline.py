@@ -9,8 +9,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tuisim.core.parts import TouchSpec
-from tuisim.core.spec import RobotSpec, UltrasonicSpec
+from tuisim.core.spec import RobotSpec, TouchSpec, UltrasonicSpec
 
 SENSOR_HOUSING_MM = 15.0
 """A sensor's housing extends this far from its centre, to every side."""

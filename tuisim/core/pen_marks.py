@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from itertools import islice
 
 from tuisim.core.css_colors import css_rgb
-from tuisim.core.field import Field
+from tuisim.core.field import Field, disc_weights
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, RunSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
-from tuisim.core.weights import disc_weights
 
 _BLOCK_PX = 32
 """Side of the square blocks for which it is tracked whether they contain any mark."""

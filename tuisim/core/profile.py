@@ -17,7 +17,7 @@ NS_PER_S = 1_000_000_000
 
 
 class MotorLaw(StrEnum):
-    """How motors obey commands and move, and how the library drives them; see `motor_laws`."""
+    """How motors obey commands and move, and how the library drives them."""
 
     BRICK = "brick"
     """Moves end exactly at their goal or time, as on the real brick."""

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NoReturn
 
 from tuisim import protocol
 from tuisim.config.mat_cache import open_field
-from tuisim.core.extra_motors import FurtherMotors, Turn, simulation_of
 from tuisim.core.profile import NS_PER_S
+from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
 from tuisim.runs.brick_state import motors_row
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
 from tuisim.runs.side_files import hold

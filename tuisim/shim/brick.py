@@ -1,19 +1,34 @@
-"""Builds the brick of a robot: the simulated devices and their ports."""
+"""Builds the brick of a robot: the simulated devices and their ports.
+
+Mode and device of a port can be set as far as they match the connected device. A setting that
+would disconnect or exchange the device is refused with a message that names it.
+"""
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.motors import Motor
-from tuisim.core.parts import InfraredSpec, TouchSpec
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
-from tuisim.shim.devices import Brick, SimDevice
+from tuisim.core.sensors import mounted
+from tuisim.core.spec import (
+    INPUT_PORTS,
+    OUTPUT_PORTS,
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    RobotSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+from tuisim.errors import NotSimulated
+from tuisim.shim.devices import Brick, SimDevice, refuse
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
-from tuisim.shim.motor import BrowserTacho, TachoMotor
-from tuisim.shim.ports import MOTOR_CLASS, PORT_CLASS, SENSOR_CLASS, all_ports
+from tuisim.shim.motor import KINDS, BrowserTacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.shim.sensors.color import ColorDevice, LegoSensor
 from tuisim.shim.sensors.others import GyroDevice, infrared_sensor, touch_sensor, ultrasonic_sensor
@@ -27,6 +42,119 @@ DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor
     InfraredSpec: lambda session, spec, _others: infrared_sensor(session, spec),
 }
 """Factories of sensor devices, by class of spec: they take the session, the spec and the sensors made before."""
+
+
+PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
+"""Classes of devices, by their kernel names."""
+AUTO = "auto"
+"""The mode in which a port detects the connected device by itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class PortKind:
+    """Common properties of the input or the output ports."""
+
+    driver_name: str
+    modes: tuple[str, ...]
+    empty: str
+    """The status while nothing is connected."""
+
+
+INPUT = PortKind(
+    "ev3-input-port",
+    (AUTO, "nxt-analog", "nxt-color", "nxt-i2c", "other-i2c", "ev3-analog", "ev3-uart", "other-uart", "raw"),
+    "no-sensor",
+)
+OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "raw"), "no-motor")
+
+
+@dataclass(frozen=True, slots=True)
+class Plugged:
+    """The device that is connected to a port."""
+
+    driver_name: str
+    mode: str
+    """The port mode it needs."""
+
+
+def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
+    """Return the devices on the robot's ports, by short name such as `in1`."""
+    found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in robot.motors}
+    for kind, sensor in mounted(robot):
+        found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
+    return found
+
+
+class LegoPort:
+    """One port.
+
+    Args:
+        session: Clock and simulation.
+        port: Short name, such as `in1`.
+        plugged: The connected device.
+    """
+
+    def __init__(self, session: Session, port: str, plugged: Plugged | None) -> None:
+        self._session, self._port, self._plugged = session, port, plugged
+        self._kind = INPUT if port in INPUT_PORTS else OUTPUT
+        self._mode = AUTO
+
+    def device(self) -> SimDevice:
+        """Return the device that the library reads and writes."""
+        return SimDevice(
+            self._session,
+            {
+                "address": lambda: f"ev3-ports:{self._port}",
+                "driver_name": lambda: self._kind.driver_name,
+                "modes": lambda: " ".join(self._kind.modes),
+                "mode": lambda: self._mode,
+                "status": self._status,
+            },
+            {"mode": self._set_mode, "set_device": self._set_device},
+        )
+
+    def _status(self) -> str:
+        if self._mode != AUTO:
+            return self._mode
+        return self._plugged.mode if self._plugged else self._kind.empty
+
+    def _set_mode(self, text: str) -> None:
+        if text not in self._kind.modes:
+            raise refuse(text)
+        self._session.command()
+        if self._plugged is not None and text not in (AUTO, self._plugged.mode):
+            raise NotSimulated(
+                f"ev3dev2.port.LegoPort.mode: {text!r} would disconnect {self._plugged.driver_name} from {self._port}",
+                f"{AUTO} or {self._plugged.mode}",
+            )
+        self._mode = text
+
+    def _set_device(self, text: str) -> None:
+        self._session.command()
+        if self._mode in (AUTO, "raw"):
+            raise OSError(errno.EOPNOTSUPP, "set_device")
+        if self._plugged is None or text != self._plugged.driver_name:
+            there = self._plugged.driver_name if self._plugged else "nothing"
+            raise NotSimulated(
+                f"ev3dev2.port.LegoPort.set_device: {there} is plugged into {self._port}, not {text}",
+                "a robot file says what is on which port",
+            )
+
+
+def all_ports(session: Session) -> list[SimDevice]:
+    """Return the brick's ports, inputs first."""
+    plugged = plugged_in(session.sim.spec.robot)
+    return [LegoPort(session, port, plugged.get(port)).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]
+
+
+def ports_hint(session: Session, class_name: str) -> str:
+    """Return which devices are on which ports, as a hint for a failed look-up; empty for other classes."""
+    if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
+        return ""
+    ports = OUTPUT_PORTS if class_name == MOTOR_CLASS else INPUT_PORTS
+    plugged = plugged_in(session.sim.spec.robot)
+    parts = [f"{port} {plugged[port].driver_name}" for port in sorted(plugged) if port in ports]
+    return f"This robot has: {', '.join(parts) or 'nothing of the kind'}."
 
 
 def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:

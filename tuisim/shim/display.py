@@ -1,4 +1,4 @@
-"""The display: the frame buffer into which the library copies its image."""
+"""The screen, and the frame buffer into which the library copies its image."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import Any
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
 from tuisim.runs.records import Stream
 from tuisim.shim.fonts import plain_font
-from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
 
 BITS_A_PIXEL = 32
@@ -22,6 +21,29 @@ TRUE_COLOR = 2
 """The kernel's visual type for red, green and blue pixels."""
 NO_FILE = -1
 """Replaces the descriptor of the device file."""
+
+
+class Screen:
+    """Records the contents of the brick's screen, images and text, each time they change.
+
+    Args:
+        session: Receives the rows.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._shown: tuple[str, Stream] | None = None
+
+    def show(self, row: str, stream: Stream) -> None:
+        """Show an image or a text; unchanged contents are not recorded again.
+
+        Args:
+            row: In the format of `runs.brick_state`.
+            stream: `Stream.DISPLAY` or `Stream.CONSOLE`.
+        """
+        if (row, stream) != self._shown:
+            self._shown = (row, stream)
+            self._session.show(row, stream)
 
 
 class FrameBuffer(mmap.mmap):

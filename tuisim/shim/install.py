@@ -8,16 +8,14 @@ import types
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from tuisim.shim.brick import build_brick
+from tuisim.shim.brick import build_brick, ports_hint
 from tuisim.shim.buttons import evdev_module, patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
-from tuisim.shim.display import patch_display_module
+from tuisim.shim.display import Screen, patch_display_module
 from tuisim.shim.fonts import patch_fonts_module, quiet_pillow
 from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
-from tuisim.shim.ports import ports_hint
 from tuisim.shim.robolab import glue_module, patch_lego_module
-from tuisim.shim.screen import Screen
 from tuisim.shim.session import Session
 from tuisim.shim.shell.commands import Shell
 from tuisim.shim.shell.processes import Replace, System, finish_asyncio

@@ -10,7 +10,7 @@ from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tuisim.app.panels.instrumentation import Instrumentation, lines
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.core.geometry import Pose
-from tuisim.core.parts import MotorSpec
+from tuisim.core.spec import MotorSpec
 from tuisim.protocol import End
 
 EXTREME = moment(

@@ -12,8 +12,7 @@ from tuisim.app.render.scene import BEACON_CORE_RGB, BEACON_RGB, PenTrace, Scene
 from tuisim.charts.world_image import COLORED, Viewport, draw_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
-from tuisim.core.parts import BeaconSpec, InfraredSpec, TouchSpec
-from tuisim.core.spec import Obstacle, PenSpec, RobotSpec
+from tuisim.core.spec import BeaconSpec, InfraredSpec, Obstacle, PenSpec, RobotSpec, TouchSpec
 
 MAT = np.full((1143, 2362, 3), 255, np.uint8)
 VIEW = whole_field(160, 78)

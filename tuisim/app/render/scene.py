@@ -14,8 +14,7 @@ from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, Viewport
 from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
-from tuisim.core.parts import BeaconSpec
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec, RobotSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, PenSpec, RobotSpec
 from tuisim.runs.arrays import FloatArray
 
 _GHOST_OPACITY = 0.75

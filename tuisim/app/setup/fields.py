@@ -16,12 +16,12 @@ from tuisim.app.form import reason, typed_number
 from tuisim.app.setup.next_run import NextRun, with_arguments, with_profile, with_robot, with_robot_edited, with_values
 from tuisim.config.options import MAX_PEN_MM, MIN_PEN_MM, number, pen_color
 from tuisim.config.robots import ROBOTS
-from tuisim.core.parts import MOTOR_KINDS
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import (
     BACKGROUND_FITS,
     INPUT_PORTS,
     MAX_RAYS,
+    MOTOR_KINDS,
     MOUNTS,
     OUTPUT_PORTS,
     ROBOT_WEIGHTS,

@@ -1,9 +1,8 @@
 """Sensors: one file for each kind, and the table of kinds.
 
-To add a sensor: write its frozen spec (`core.parts`), add its place on the robot (`MOUNTS` in
-`core.spec`), write its file, pure functions from an `Instant` to values, and add a line to
-`SENSORS`; its device is a line in `DEVICES` of the shim. Robot files, settings, breakpoints, the
-telemetry frame, the panels and the contract test walk these tables.
+To add a sensor: write its frozen spec and add its place on the robot (`MOUNTS` in `core.spec`), write its file,
+pure functions from an `Instant` to values, and add a line to `SENSORS`; its device is a line in `DEVICES` of the shim.
+Robot files, settings, breakpoints, the telemetry frame, the panels and the contract test walk these tables.
 """
 
 from __future__ import annotations
@@ -13,9 +12,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from tuisim.core.field import Field
-from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import color, gyro, infrared, touch, ultrasonic
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, RunSpec, SensorSpec, UltrasonicSpec
+from tuisim.core.spec import (
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    RobotSpec,
+    RunSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
 from tuisim.core.state import Instant
 
 

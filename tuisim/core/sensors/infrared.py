@@ -6,9 +6,8 @@ import math
 
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
-from tuisim.core.parts import REMOTE_CODES, InfraredSpec
 from tuisim.core.sensors.ultrasonic import first_hit_mm, surfaces
-from tuisim.core.spec import RunSpec, WorldSpec
+from tuisim.core.spec import REMOTE_CODES, InfraredSpec, RunSpec, WorldSpec
 from tuisim.core.state import Instant
 
 PROXIMITY_RANGE_MM = 700.0

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
-from tuisim.core.parts import TouchSpec
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, WorldSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, TouchSpec, WorldSpec
 from tuisim.core.state import Instant
 
 REACH_MM = 2.0

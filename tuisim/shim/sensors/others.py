@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tuisim.core.parts import InfraredSpec, TouchSpec
 from tuisim.core.sensors import SENSORS, gyro, infrared, touch, ultrasonic
-from tuisim.core.spec import GyroSpec, UltrasonicSpec
+from tuisim.core.spec import GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.shim.devices import Writer
 from tuisim.shim.sensors.color import LegoSensor, Mode
 from tuisim.shim.session import Session
