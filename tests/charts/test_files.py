@@ -11,11 +11,11 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.chart import View, chart_of
+from tuisim.analysis.report import default_name, report_of, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.charts.files import CHART_FORMATS, save_chart
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.log import Log
-from tuisim.report.report import default_name, report_of, write_report
 
 each_format = pytest.mark.parametrize("suffix", CHART_FORMATS)
 

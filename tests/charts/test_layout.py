@@ -15,7 +15,7 @@ from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.charts.files import image_of, svg_of
 from tuisim.charts.layout import COLORS, Rule, Stroke, laid_out
-from tuisim.charts.text import text_of
+from tuisim.charts.text_chart import text_of
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.commands.press import Press, parse_press, press_actions
+from tuisim.commands.run import Press, parse_press, press_actions
 from tuisim.errors import ConfigError
 from tuisim.protocol import BUTTONS, SetButtons, UserAction
 

@@ -12,9 +12,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import Command
-from tuisim.commands import progress
-from tuisim.commands.echo import echo, echo_error
-from tuisim.commands.progress import Progress, aside, tell
+from tuisim.commands.echo import Progress, aside, echo, echo_error, tell
 
 PATIENCE_S = 20.0
 
@@ -54,8 +52,8 @@ def show(monkeypatch: pytest.MonkeyPatch) -> Show:
         return made
 
     monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setattr(progress, "SHOWN_AFTER_S", 0.0)
-    monkeypatch.setattr(progress, "_QUIET_S", 0.0)
+    monkeypatch.setattr("tuisim.commands.echo.SHOWN_AFTER_S", 0.0)
+    monkeypatch.setattr("tuisim.commands.echo._QUIET_S", 0.0)
     return take
 
 
@@ -98,7 +96,7 @@ def test_stdout_that_goes_elsewhere_does_not_hide_the_bar(show: Show) -> None:
 NOBODY: dict[str, Callable[[pytest.MonkeyPatch, Terminal], Any]] = {
     "a pipe": lambda patch, screen: patch.setattr(screen, "isatty", lambda: False),
     "a dumb terminal": lambda patch, _: patch.setenv("TERM", "dumb"),
-    "quick work": lambda patch, _: patch.setattr(progress, "SHOWN_AFTER_S", 60.0),
+    "quick work": lambda patch, _: patch.setattr("tuisim.commands.echo.SHOWN_AFTER_S", 60.0),
 }
 
 
@@ -146,7 +144,7 @@ def test_commands_tell_how_far_they_are(
     for module in ("run", "runs", "log"):
         monkeypatch.setattr(f"tuisim.commands.{module}.Progress", Spy)
     monkeypatch.setattr("tuisim.commands.run.is_watched", lambda: True)
-    monkeypatch.setattr(progress, "is_watched", lambda: True)
+    monkeypatch.setattr("tuisim.commands.echo.is_watched", lambda: True)
     assert here(*words).returncode == 0
     missing = [one for one in told if not any(line.startswith(one) for line in heard)]
     assert not missing, heard

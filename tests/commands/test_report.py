@@ -14,8 +14,8 @@ import pytest
 from PIL import Image
 
 from tests.conftest import Command
+from tuisim.analysis.source import Note, notes_of_file, notes_of_run, write_notes
 from tuisim.cli import run_command
-from tuisim.logs.annotations import Note, notes_of_file, notes_of_run, write_notes
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
+from tuisim.analysis.source import Note, notes_of_file, write_notes
 from tuisim.app.debugger import Kept, keep
 from tuisim.app.editor.text_file import keep_draft
 from tuisim.app.setup.poses import save_pose
 from tuisim.core.geometry import Pose
-from tuisim.logs.annotations import Note, notes_of_file, write_notes
 
 
 @pytest.fixture

@@ -6,28 +6,23 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 from tuisim.analysis.events import Events
+from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
 from tuisim.analysis.table import Rows
 from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
 from tuisim.charts.axes import Limits
 from tuisim.errors import LogError, listed
-from tuisim.logs.annotations import Note, read_notes, write_notes
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
 from tuisim.logs.columns import is_numeric
 from tuisim.logs.derived import RECKONED, definition_of, derived, reckoned_series
+from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
 from tuisim.runs.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from tuisim.analysis.source import OpenedLog
-    from tuisim.logs.log import Log
 
 _LEAST_SPAN = 1e-9
 """Smallest visible fraction of the whole time."""

@@ -51,7 +51,7 @@ def _png(chart: Chart, size: Size) -> bytes:
 
 
 def _text(chart: Chart, size: Size) -> bytes:
-    from tuisim.charts.text import text_of
+    from tuisim.charts.text_chart import text_of
 
     return f"{text_of(chart, *size).plain}\n".encode()
 

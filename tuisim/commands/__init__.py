@@ -1,4 +1,1 @@
-"""The shell commands: one file per command, imported when the command is called.
-
-Each has `add_arguments(parser)` and `execute(arguments) -> exit code`.
-"""
+"""The shell commands, imported when they are called."""

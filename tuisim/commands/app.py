@@ -13,8 +13,7 @@ import click
 from tuisim import __version__
 from tuisim.commands.listings import names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
-from tuisim.config.command_line import Arguments, Value, argument, command, option
-from tuisim.config.shared_options import shared_options
+from tuisim.config.command_line import Arguments, Value, argument, command, option, shared_options
 from tuisim.errors import ConfigError
 
 VERSION = "%(prog)s %(version)s"
@@ -99,21 +98,16 @@ def analyse(**given: Any) -> int:
     """
     from tuisim.commands.logs.sources import asked
 
-    arguments = Arguments(**given)
-    what = asked(arguments)
+    request = asked(Arguments(**given))
     if not sys.stdout.isatty():
         raise ConfigError("the analyser needs a terminal", "without one, use `tuisim log`")
-    from tuisim.analysis.source import LogRequest
     from tuisim.app.analyser.app import run_analyser
     from tuisim.logs.reader import STDIN
 
-    if what.file == STDIN:
+    if request.file == STDIN:
         _keys_from_terminal()
-    wanted = LogRequest(
-        what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
-    )
     with _drawing_on_stdout():
-        return run_analyser(wanted)
+        return run_analyser(request)
 
 
 def _keys_from_terminal() -> None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import cast
 
-from tuisim.commands.progress import Progress
+from tuisim.commands.echo import Progress
 from tuisim.config.command_line import Arguments, Command, Group, GroupedOption, Value, argument, choice, option
 from tuisim.logs.export import LISTED
 from tuisim.logs.units import SECONDS
@@ -52,6 +52,7 @@ OPTIONS: Mapping[str, GroupedOption] = {
 
 _TABLE = ("variable", "telemetry", "json", "out")
 _FRAME = ("telemetry", "json", "out")
+_PAGE = ("variable", "telemetry", "page")
 _CHART = ("facets", "marks", "from", "to", "against", "size", "variable", "telemetry", "chart")
 
 
@@ -74,23 +75,19 @@ class Subcommand:
 
 
 SUBCOMMANDS: Mapping[str, Subcommand] = {
-    "summary": Subcommand("Print count, min, max, mean, std and quantiles of each variable", "figures:summary"),
-    "bands": Subcommand("Find plateaus: level, name, times, width", "figures:bands"),
-    "events": Subcommand("Find where a variable crosses --at", "figures:events", ("at", "hysteresis", *_TABLE)),
-    "derive": Subcommand("Compute the derivative, in units per second", "signals:derive"),
-    "integrate": Subcommand("Compute the integral, in units times seconds", "signals:integrate", ("between", *_TABLE)),
-    "average": Subcommand("Compute a centred rolling mean of --width samples", "signals:average", ("width", *_TABLE)),
-    "resample": Subcommand("Resample all every --period seconds", "signals:even", ("period", "between", *_TABLE)),
-    "calc": Subcommand("Evaluate --expression over the columns", "signals:calculate", ("expression", *_FRAME)),
-    "reckon": Subcommand("Compute dead reckoning from the wheel encoders, and its error", "signals:reckon", _FRAME),
-    "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "diff:diff", ("json",), "RUN RUN"),
-    "export": Subcommand("Write the log in another format", "signals:export", ("variable", "telemetry", "out")),
+    "summary": Subcommand("Print count, min, max, mean, std and quantiles of each variable", "tables:summary"),
+    "bands": Subcommand("Find plateaus: level, name, times, width", "tables:bands"),
+    "events": Subcommand("Find where a variable crosses --at", "tables:events", ("at", "hysteresis", *_TABLE)),
+    "derive": Subcommand("Compute the derivative, in units per second", "tables:derive"),
+    "integrate": Subcommand("Compute the integral, in units times seconds", "tables:integrate", ("between", *_TABLE)),
+    "average": Subcommand("Compute a centred rolling mean of --width samples", "tables:average", ("width", *_TABLE)),
+    "resample": Subcommand("Resample all every --period seconds", "tables:even", ("period", "between", *_TABLE)),
+    "calc": Subcommand("Evaluate --expression over the columns", "tables:calculate", ("expression", *_FRAME)),
+    "reckon": Subcommand("Compute dead reckoning from the wheel encoders, and its error", "tables:reckon", _FRAME),
+    "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"),
+    "export": Subcommand("Write the log in another format", "tables:export", ("variable", "telemetry", "out")),
     "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),
-    "report": Subcommand(
-        "Write program, world, chart and bands on one page",
-        "documents:report",
-        ("variable", "telemetry", "page"),
-    ),
+    "report": Subcommand("Write program, world, chart and bands on one page", "documents:report", _PAGE),
 }
 """The subcommands of `tuisim log`, by name."""
 

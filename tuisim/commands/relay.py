@@ -9,9 +9,8 @@ from itertools import groupby
 from types import FrameType
 from typing import Self, TextIO
 
-from tuisim.commands.echo import echo_error
+from tuisim.commands.echo import aside, echo_error, tell
 from tuisim.commands.exit_status import EXIT_BROKEN_PIPE
-from tuisim.commands.progress import aside, tell
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream, line_of

@@ -167,7 +167,7 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tupl
     if words or arguments.world or (wrong := sorted(chosen.keys() - _OF_THE_APP)):
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
         raise ConfigError(f"a stored run has its own program and world: remove {what}", "name one", key="--run")
-    stored = RunStore().load_run(Path(run) if "/" in run else run)
+    stored = RunStore().load_run(run)
     opened = replace(stored.program, python_path=(), working_directory="")
     return stored, Prepared(opened, settings_of(chosen), stored.spec)
 

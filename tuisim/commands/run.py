@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints, parse_watch
 from tuisim.commands import exit_status
-from tuisim.commands.echo import echo_error
+from tuisim.commands.echo import Progress, echo_error, is_watched, tell
 from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
-from tuisim.commands.press import parse_press, press_actions
-from tuisim.commands.progress import Progress, is_watched, tell
 from tuisim.commands.relay import Follower, Interrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
-from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
+from tuisim.config.command_line import Arguments, Value, argument, choice, command, option, shared_options
 from tuisim.config.options import APP, PANEL, number
-from tuisim.config.shared_options import shared_options
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.profile import NS_PER_S
-from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted
+from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted, nearest
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
-from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
+from tuisim.protocol import BUTTONS, Inspect, Inspected, Message, Paused, Resume, SetButtons, UserAction
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -32,6 +30,65 @@ MAX_TIME_LIMIT_S = 1e6
 DEFAULT_TIME_LIMIT_S = 600.0
 MOST_CHARACTERS = 200
 GO, STOP = "go", "stop"
+PRESS = "--press"
+DEFAULT_PRESS_S = 0.1
+"""The default duration of a press."""
+MAX_PRESS_S = 1e6
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """One button, held for a while; times in simulated seconds."""
+
+    button: str
+    """One of `BUTTONS`."""
+    from_s: float
+    until_s: float
+
+
+def parse_press(text: str) -> Press:
+    """Parse a press such as `enter@1.0-1.5` or `enter@1`.
+
+    Raises:
+        ConfigError: there is no such button, or the times are wrong.
+    """
+    name, at, times = text.partition("@")
+    if not at:
+        raise ConfigError(f"must be BUTTON@FROM or BUTTON@FROM-UNTIL, got {text!r}", "such as enter@1.5", key=PRESS)
+    if name not in BUTTONS:
+        raise ConfigError(f"the brick has no button {name!r}", nearest(name, BUTTONS), key=PRESS)
+    seconds = number(0.0, MAX_PRESS_S)
+    # A leading minus is a sign; `number` rejects negative times.
+    begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
+    from_s = seconds(begin, PRESS)
+    until_s = seconds(end, PRESS) if to else from_s + DEFAULT_PRESS_S
+    if until_s <= from_s:
+        raise ConfigError(f"{text!r} ends before it begins", "BUTTON@FROM-UNTIL, in simulated seconds", key=PRESS)
+    return Press(name, from_s, until_s)
+
+
+def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[UserAction, ...]:
+    """Return the changes of the button states, ordered by tick.
+
+    Args:
+        presses: Presses; they may overlap.
+        tick_hz: Ticks per second; a press lasts at least one tick.
+    """
+    held = []
+    for press in presses:
+        first = round(press.from_s * tick_hz)
+        held.append((press.button, first, max(first + 1, round(press.until_s * tick_hz))))
+    changes: list[UserAction] = []
+    before: tuple[str, ...] = ()
+    for tick in sorted({tick for _, first, last in held for tick in (first, last)}):
+        down = {button for button, first, last in held if first <= tick < last}
+        pressed = tuple(button for button in BUTTONS if button in down)
+        if pressed != before:
+            changes.append(UserAction(tick, SetButtons(pressed)))
+            before = pressed
+    return tuple(changes)
+
+
 _limit = number(0.001, MAX_TIME_LIMIT_S)
 _REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
 _OPTIONS = (

@@ -11,14 +11,13 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tuisim.commands.echo import echo, echo_error, echo_json, echo_json_head, echo_lines, table
+from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_json_head, echo_lines, table, tell
 from tuisim.commands.exit_status import describe, last_state
-from tuisim.commands.logs.diff import diff_text
-from tuisim.commands.progress import Progress, tell
 from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
 from tuisim.errors import ConfigError, LogError, counted
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Unended
+from tuisim.runs.diff import RunDiff, recording_in_words, setup_in_words
 from tuisim.runs.frames import damage_note
 from tuisim.runs.handle import ASK_AGAIN_S
 from tuisim.runs.records import OutputRow, Stream, line_of
@@ -41,7 +40,7 @@ _runs = argument("words", "RUN…", lambda: ("last",), nargs=-1)
 
 
 def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
-    return [store.load_run(Path(word) if "/" in word else word) for word in words]
+    return [store.load_run(word) for word in words]
 
 
 def _needed(words: Sequence[str], action: str) -> Sequence[str]:
@@ -193,6 +192,17 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
     else:
         echo_lines(diff_text(found))
     return 0 if found.same else 1
+
+
+def diff_text(found: RunDiff) -> str:
+    """Return a comparison as readable text."""
+    recording, setup = recording_in_words(found), setup_in_words(found)
+    pairs = (*recording, *setup) if found.same else (*setup, *recording)
+    lines = [f"{label}: {words}" if label else words for label, words in pairs]
+    if found.divergence and not found.same:
+        rows = [[f"{at:.2f}", f"{mm:.3f}", f"{deg:.3f}"] for at, mm, deg in found.divergence.table]
+        lines.append(table(("SECONDS", "APART MM", "HEADING °"), rows))
+    return "\n".join(lines)
 
 
 @command(

@@ -22,8 +22,9 @@ from tuisim.core.spec import (
     RobotSpec,
 )
 from tuisim.errors import ConfigError
+from tuisim.source import PRELUDE_TEXTS
 
-PRELOADS = ("none", "imports", "preloaded")
+PRELOADS = tuple(PRELUDE_TEXTS)
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
 MAX_POSITION_MM = 10_000
 MAX_ANGLE_DEG = 36_000

@@ -12,11 +12,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tuisim.config.command_line import parse_words
 from tuisim.config.folders import programs_folder
-from tuisim.config.preludes import PRELUDE_TEXTS, PRELUDES
-from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError, nearest
-from tuisim.source import Program, decode_source, source_lines
+from tuisim.source import PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
 

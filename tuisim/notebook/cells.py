@@ -10,11 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.preludes import PRELUDES
 from tuisim.config.program_file import ProgramSource, beside
 from tuisim.errors import ConfigError, nearest
 from tuisim.notebook.magic_line import lasting_after, parse_line
-from tuisim.source import Program, source_lines
+from tuisim.source import PRELUDES, Program, source_lines
 
 MAX_NOTEBOOK_BYTES = 64 << 20
 SUFFIX = ".ipynb"

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tuisim.errors import ConfigError
+from tuisim.notebook import eds
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,14 +81,10 @@ class Lab:
 
     def data(self) -> pd.DataFrame:
         """Return the samples of all runs since the log was cleared."""
-        from tuisim.notebook import eds
-
         return eds.get_dataframe_from_datalog(self._runs)
 
     def image_data(self) -> pd.DataFrame:
         """Return the pixel arrays that were logged since the log was cleared."""
-        from tuisim.notebook import eds
-
         return eds.get_image_data_from_datalog(self._runs)
 
     # The world

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tuisim.config.command_line import Command, Value, help_of, option, parse
+from tuisim.config.command_line import Command, Value, help_of, option, parse, shared_options
 from tuisim.config.options import number
-from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError
 
 MIN_REFRESH_S, MAX_REFRESH_S = 0.02, 60.0

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from IPython.core.interactiveshell import InteractiveShell
 
-from tuisim.config.preludes import PRELUDES
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds
 from tuisim.notebook.lab import Lab, roboSim
+from tuisim.source import PRELUDE_TEXTS, PRELUDES
 
 if TYPE_CHECKING:
     from tuisim.config.command_line import Arguments, Command, Value
@@ -55,7 +55,6 @@ def _lab(shell: InteractiveShell, name: str | None) -> Lab:
 
 def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
     def act(line: str, cell: str | None) -> str | None:
-        from tuisim.config.preludes import PRELUDE_TEXTS
         from tuisim.notebook.magic_line import parse_line
 
         words = parse_line(line, magic)

@@ -7,7 +7,7 @@ import types
 from collections.abc import Iterator
 from typing import Any, NoReturn
 
-from tuisim.config.preludes import PRELUDE_TEXTS
+from tuisim.source import PRELUDE_TEXTS
 
 
 class MissingPart:

@@ -7,11 +7,10 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tuisim.analysis.model import Model
-from tuisim.analysis.source import LogRequest, OpenedLog
+from tuisim.analysis.source import LogRequest, Note, OpenedLog, notes_of_file, read_notes, write_notes
 from tuisim.analysis.table import conditions_of
 from tuisim.app.analyser.panes import pane_lines
 from tuisim.errors import LogError
-from tuisim.logs.annotations import Note, notes_of_file, read_notes, write_notes
 from tuisim.logs.columns import Layout, guess_columns
 from tuisim.logs.log import Log
 

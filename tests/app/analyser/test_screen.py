@@ -14,7 +14,7 @@ from textual.widgets import Input
 
 from tests.app.app_help import LOGS, program, ready, until
 from tuisim.analysis.model import Model
-from tuisim.analysis.source import LogRequest
+from tuisim.analysis.source import NOTES_FILE, LogRequest, read_notes
 from tuisim.app.analyser.actions.table import ACTIONS
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import AppSettings, LabApp
@@ -23,7 +23,6 @@ from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program
 from tuisim.core.spec import NoiseSpec
 from tuisim.errors import LogError
-from tuisim.logs.annotations import NOTES_FILE, read_notes
 from tuisim.logs.reader import read_log
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun

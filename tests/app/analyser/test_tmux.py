@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.terminals import Terminal
-from tuisim.logs.annotations import read_notes
+from tuisim.analysis.source import read_notes
 
 pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
 

@@ -8,20 +8,17 @@ import shutil
 import sys
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tuisim.analysis.chart import View, chart_of
-from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.model import Model
+from tuisim.analysis.report import check_report, default_name, write_report
+from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import CHART_FORMATS, Size, format_of, save_chart
 from tuisim.commands.echo import echo, echo_chart, echo_error
 from tuisim.commands.logs.sources import asked, names_of, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError, LogError, listed
-from tuisim.report.report import check_report, default_name, write_report
-
-if TYPE_CHECKING:
-    from tuisim.analysis.model import Model
-    from tuisim.logs.log import Log
+from tuisim.logs.log import Log
 
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 _LEAST_COLUMNS, _ROWS = 20, (12, 32)
@@ -74,9 +71,6 @@ def _size(text: str, least: Size, most: Size) -> Size:
 
 def _model(log: Log, arguments: Arguments) -> Model:
     """Return the model of a log with the chosen variables and time range."""
-    from tuisim.analysis.model import Model
-    from tuisim.analysis.source import LogRequest, OpenedLog
-
     model = Model(OpenedLog(LogRequest(), log))
     if arguments.variable and not arguments.against:
         names = names_of(log, arguments)
@@ -110,7 +104,7 @@ def _show(model: Model, view: View, size: Size | None) -> None:
     """Print the chart, in colour if the terminal supports it."""
     from rich.console import Console
 
-    from tuisim.charts.text import text_of
+    from tuisim.charts.text_chart import text_of
 
     terminal = shutil.get_terminal_size()
     width, height = size or (max(terminal.columns, _LEAST_COLUMNS), min(max(terminal.lines - 2, _ROWS[0]), _ROWS[1]))
@@ -136,17 +130,14 @@ def report(arguments: Arguments) -> int:
         raise ConfigError("which log?", "a file, `-`, or a stored run such as `last`", key="report")
     if arguments.out:
         check_report(Path(arguments.out))
-    what = asked(arguments)
-    if arguments.telemetry and len(what.runs) > 1:
-        raise ConfigError("takes one run", f"got {len(what.runs)}", key="--telemetry")
-    if what.runs and (arguments.time is not None or arguments.value):
+    request = asked(arguments)
+    if arguments.telemetry and len(request.runs) > 1:
+        raise ConfigError("takes one run", f"got {len(request.runs)}", key="--telemetry")
+    if request.runs and (arguments.time is not None or arguments.value):
         raise ConfigError("are for files only", "the columns of a run are fixed", key="--time and --value")
-    wanted = LogRequest(
-        what.file, what.runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
-    )
-    *_, subject = opening(wanted)
-    names = names_of(subject.log, arguments) if arguments.variable else ()
-    target = Path(arguments.out or default_name(subject))
-    write_report(subject, target, names)
+    *_, source = opening(request)
+    names = names_of(source.log, arguments) if arguments.variable else ()
+    target = Path(arguments.out or default_name(source))
+    write_report(source, target, names)
     echo(str(target))
     return 0

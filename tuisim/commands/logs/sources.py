@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.commands.echo import echo_error
-from tuisim.commands.progress import tell
+from tuisim.analysis.source import LogRequest
+from tuisim.commands.echo import echo_error, tell
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError, LogError, listed
 from tuisim.logs.columns import choose_columns, time_in_words
@@ -27,17 +26,8 @@ def is_file(word: str) -> bool:
     return word == STDIN or bool(path.suffix)
 
 
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """The log to open: a file, or runs."""
-
-    file: str
-    """Empty for runs."""
-    runs: tuple[str, ...]
-
-
-def asked(arguments: Arguments) -> Asked:
-    """Return the file or the runs that the arguments name.
+def asked(arguments: Arguments) -> LogRequest:
+    """Return the file or the runs that the arguments name, with the columns to use.
 
     Raises:
         ConfigError: a file together with another log.
@@ -46,7 +36,8 @@ def asked(arguments: Arguments) -> Asked:
     files = [word for word in words if is_file(word)]
     if files and len(words) > 1:
         raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
-    return Asked(files[0] if files else "", () if files else tuple(words))
+    file, runs = (files[0], ()) if files else ("", tuple(words))
+    return LogRequest(file, runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit)
 
 
 def open_sources(arguments: Arguments) -> Iterator[Log]:

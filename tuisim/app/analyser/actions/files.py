@@ -107,7 +107,7 @@ def chart(screen: LogScreen) -> None:
 
 def report(screen: LogScreen) -> None:
     """Ask for the file to write the report to."""
-    from tuisim.report.report import check_report, default_name
+    from tuisim.analysis.report import check_report, default_name
 
     subject = screen.model.subject
     names = [trace.name for trace in screen.model.traces.ticked()]
@@ -120,8 +120,8 @@ def report(screen: LogScreen) -> None:
 
 
 def _write_report(subject: OpenedLog, target: Path, names: Sequence[str]) -> None:
+    from tuisim.analysis.report import write_report
     from tuisim.logs.plateaus import plateaus, plateaus_aside
-    from tuisim.report.report import write_report
 
     worker = get_current_worker()
     aside = partial(plateaus_aside, stopped=lambda: worker.is_cancelled)

@@ -1,0 +1,290 @@
+"""The tables of `tuisim log`: figures and signals computed from a log, as text, as JSON, or in a file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tuisim.analysis.events import crossings
+from tuisim.commands.echo import CsvOut, echo_json, echo_lines, table
+from tuisim.commands.logs.sources import names_of, open_sources, the_source
+from tuisim.commands.runs import diff_text
+from tuisim.config.command_line import Arguments
+from tuisim.errors import ConfigError
+from tuisim.logs.arrow import numbers_of, unique_names
+from tuisim.logs.bands import band_report, in_words
+from tuisim.logs.columns import is_numeric
+from tuisim.logs.derived import reckoned_series
+from tuisim.logs.export import check_target, export_frame, export_log
+from tuisim.logs.expressions import evaluate
+from tuisim.logs.log import Log, LogTable, Series
+from tuisim.logs.signals import (
+    QUANTILES,
+    Between,
+    derivative,
+    even_moments,
+    integral,
+    known_at,
+    moving_average,
+    summary_of,
+)
+from tuisim.runs.arrays import FloatArray
+from tuisim.runs.diff import diff_runs
+from tuisim.runs.store import RunStore
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ANALYSIS_FORMAT = 1
+_QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
+
+
+def summary(arguments: Arguments) -> int:
+    """Print count, min, max, mean, std and quantiles of every variable."""
+    rows: list[dict[str, Any]] = []
+    for log in open_sources(arguments):
+        for name in names_of(log, arguments):
+            series = log.series(name)
+            figures = asdict(summary_of(series.values))
+            quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
+            times_s = series.time_s
+            span = {"first_s": float(times_s.min()), "last_s": float(times_s.max())}
+            rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
+    number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), ".4g")
+    show_rows(rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number})
+    return 0
+
+
+def bands(arguments: Arguments) -> int:
+    """Print the plateaus of every variable: level, name, times, width."""
+    rows: list[dict[str, Any]] = []
+    notes = []
+    for log in open_sources(arguments):
+        for name in names_of(log, arguments):
+            report = band_report(log, name)
+            rows += [{"log": log.title, **asdict(band)} for band in report.bands]
+            notes.append(in_words(report))
+    formats = {
+        "variable": "", "number": "", "start_s": ".2f", "stop_s": ".2f", "samples": "", "level": ".2f",
+        "true_level": ".2f", "spread": ".2f", "grey": "", "width_mm": ".0f",
+    }  # fmt: skip
+    show_rows(rows, arguments, formats)
+    if not arguments.json and not arguments.out:
+        echo_lines("\n".join(notes))
+    return 0
+
+
+def events(arguments: Arguments) -> int:
+    """Print where each variable crosses the threshold."""
+    if arguments.at is None:
+        raise ConfigError("at which threshold?", "such as --at 50", key="events")
+    rows: list[dict[str, Any]] = []
+    for log in open_sources(arguments):
+        for name in names_of(log, arguments):
+            series = log.series(name)
+            for found in crossings(series.time_s, series.values, arguments.at, arguments.hysteresis):
+                direction = "rises" if found.rising else "falls"
+                row = int(series.rows[found.at])
+                rows.append({"log": log.title, "variable": name, "time_s": found.time_s, "crossing": direction,
+                             "value": found.value, "row": row})  # fmt: skip
+    show_rows(rows, arguments, {"variable": "", "time_s": ".3f", "crossing": "", "value": ".4g", "row": ""})
+    return 0
+
+
+def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:
+    """Output a long frame with one more column, computed per variable."""
+    import pandas as pd
+
+    log = the_source(arguments)
+    parts = []
+    for name in names_of(log, arguments):
+        series = log.series(name)
+        columns = {"time": series.time_s, "variable": name, "value": series.values, column: change(series)}
+        parts.append(pd.DataFrame(columns))
+    show_frame(pd.concat(parts, ignore_index=True), arguments)
+    return 0
+
+
+def derive(arguments: Arguments) -> int:
+    """Output the derivative of each variable, in units per second."""
+    return _each(arguments, "derivative", lambda series: derivative(series.time_s, series.values))
+
+
+def integrate(arguments: Arguments) -> int:
+    """Output the integral of each variable, in units times seconds."""
+    return _each(arguments, "integral", lambda s: integral(s.time_s, s.values, arguments.between))
+
+
+def average(arguments: Arguments) -> int:
+    """Output the centred rolling mean of each variable."""
+    return _each(arguments, "average", lambda series: moving_average(series.values, arguments.width))
+
+
+def even(arguments: Arguments) -> int:
+    """Output every variable resampled at a fixed period, one column each."""
+    log = the_source(arguments)
+    if arguments.period is None:
+        raise ConfigError("which period?", "such as --period 0.1", key="resample")
+    all_series = [log.series(name) for name in names_of(log, arguments)]
+    start = min(float(series.time_s.min()) for series in all_series)
+    stop = max(float(series.time_s.max()) for series in all_series)
+    moments = even_moments(start, stop, arguments.period)
+    show_frame(_sampled_at(moments, all_series, arguments.between), arguments)
+    return 0
+
+
+def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD) -> pd.DataFrame:
+    """Return the values of each series at given times: one column each, with unique names."""
+    import pandas as pd
+
+    names = unique_names(["time", *(series.name for series in all_series)])
+    columns = [moments_s, *(known_at(series.time_s, series.values, moments_s, between) for series in all_series)]
+    return pd.DataFrame(dict(zip(names, columns, strict=True)))
+
+
+def calculate(arguments: Arguments) -> int:
+    """Output the log with a column computed from an expression."""
+    if not arguments.expression:
+        raise ConfigError("which expression?", "such as --expression '(left + right) / 2'", key="calc")
+    log = the_source(arguments)
+    frame = wide_frame(log)
+    columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
+    result = unique_names([*columns, "result"])[-1]
+    show_frame(frame.assign(**{result: evaluate(arguments.expression, columns)}), arguments)
+    return 0
+
+
+def wide_frame(log: Log) -> pd.DataFrame:
+    """Return a log in wide format: one column per variable; rows of a long log are forward-filled."""
+    import pandas as pd
+
+    if not log.layout.variable:
+        numeric = [n for n in log.table.column_names if is_numeric(log.table.schema.field(n).type)]
+        return pd.DataFrame({name: numbers_of(log.table.column(name)) for name in numeric})
+    series = [one for one in map(log.series, log.names) if len(one.rows)]
+    moments = np.unique(np.concatenate([one.time_s for one in series]))
+    return _sampled_at(moments, series)
+
+
+def reckon(arguments: Arguments) -> int:
+    """Output the pose by dead reckoning from the wheel encoders, and its error."""
+    arguments.telemetry = True
+    log = the_source(arguments)
+    computed = {series.name: series.values for series in reckoned_series(log)}
+    frame = log.table.select(["time", "x_mm", "y_mm", "heading_deg"]).to_pandas()
+    show_frame(frame.assign(**computed), arguments)
+    return 0
+
+
+def export(arguments: Arguments) -> int:
+    """Write the log, or some of its variables, in another format."""
+    if not arguments.out:
+        raise ConfigError("to which file?", "such as --out log.parquet", key="export")
+    check_target(arguments.out)
+    log = the_source(arguments)
+    export_log(log, _chosen_part(log, arguments), arguments.out)
+    return 0
+
+
+def _chosen_part(log: Log, arguments: Arguments) -> LogTable:
+    """Return the rows of the chosen variables; of a wide log, their columns and those that are not variables."""
+    if not arguments.variable:
+        return log.table
+    names = names_of(log, arguments)
+    rows = np.unique(np.concatenate([log.series(name).rows for name in names]))
+    part = log.table if len(rows) == log.rows else log.table.take(rows)
+    if log.layout.variable:
+        return part
+    wanted = {name.partition(" #")[0] for name in names}
+    return part.select([name for name in part.column_names if name in wanted or name not in log.layout.values])
+
+
+def diff(arguments: Arguments) -> int:
+    """Print where two stored runs differ; return 0 if they are the same, else 1.
+
+    Raises:
+        ConfigError: not two runs.
+        LogError: no such run, or a damaged one.
+    """
+    words = arguments.words
+    if len(words) != 2:
+        raise ConfigError("takes two runs", f"got {len(words)}", key="diff")
+    store = RunStore()
+    found = diff_runs(*map(store.load_run, words))
+    if arguments.json:
+        echo_json(found.to_plain())
+    else:
+        echo_lines(diff_text(found))
+    return 0 if found.same else 1
+
+
+# Output
+
+
+def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Arguments, formats: Mapping[str, str]) -> None:
+    """Print or write rows that all have the same keys.
+
+    Args:
+        rows: Values by column.
+        arguments: `json` and `out` select the format.
+        formats: Columns of the table, and their format specs, such as `.2f`.
+    """
+    if arguments.out:
+        import pandas as pd
+
+        write_frame(pd.DataFrame(list(rows), columns=list(rows[0]) if rows else list(formats)), arguments)
+    elif arguments.json:
+        echo_json([{name: _plain(value) for name, value in row.items()} for row in rows])
+    else:
+        heads = [name.upper().replace("_", " ") for name in formats]
+        echo_lines(table(heads, [[_written(row[name], how) for name, how in formats.items()] for row in rows]))
+
+
+def show_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
+    """Output a frame: to a file, as JSON lines, or as CSV on stdout."""
+    if arguments.out:
+        write_frame(frame, arguments)
+    elif arguments.json:
+        _print_json(frame)
+    else:
+        frame.to_csv(CsvOut(), index=False, lineterminator="\n")
+
+
+def _print_json(frame: pd.DataFrame) -> None:
+    """Print each row as a JSON object with numbers in full precision, which `DataFrame.to_json` does not keep."""
+    names = [str(name) for name in frame.columns]
+    for cells in zip(*(frame[name].tolist() for name in frame.columns), strict=True):
+        echo_json({name: _plain(cell) for name, cell in zip(names, cells, strict=True)})
+
+
+def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
+    """Write a frame to the file `out`; the suffix selects the format."""
+    check_target(arguments.out)
+    metadata = {"format": ANALYSIS_FORMAT, "table": arguments.action, "columns": list(frame.columns)}
+    export_frame(frame, arguments.out, metadata)
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+class _Number(float):
+    """A float with a format spec of its own, for tables."""
+
+    def __new__(cls, value: float, how: str) -> _Number:
+        number = super().__new__(cls, value)
+        number.how = how
+        return number
+
+    how: str
+
+    def __str__(self) -> str:
+        return "" if math.isnan(self) else format(float(self), self.how)
+
+
+def _written(value: Any, how: str) -> Any:
+    return _Number(value, how) if how and isinstance(value, float) else value

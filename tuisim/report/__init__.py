@@ -1,1 +1,0 @@
-"""Reports: a run or a log on one page."""
