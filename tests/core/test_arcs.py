@@ -31,5 +31,5 @@ def test_arc(left_dps: float, right_dps: float, profile: str, ticks: int) -> Non
     first = math.radians(START.heading_deg)
     x_mm = START.x_mm + radius_mm * (math.sin(first + turn) - math.sin(first))
     y_mm = START.y_mm - radius_mm * (math.cos(first + turn) - math.cos(first))
-    assert (sim.x_mm, sim.y_mm) == pytest.approx((x_mm, y_mm), abs=0.05)
-    assert sim.heading_deg == pytest.approx(START.heading_deg + math.degrees(turn), abs=1e-6)
+    assert (sim.pose.x_mm, sim.pose.y_mm) == pytest.approx((x_mm, y_mm), abs=0.05)
+    assert sim.pose.heading_deg == pytest.approx(START.heading_deg + math.degrees(turn), abs=1e-6)

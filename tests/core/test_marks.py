@@ -43,7 +43,7 @@ def drawn(white: Field, pen: PenSpec) -> tuple[Simulation, PenMarks]:
 
 def test_a_line_is_as_wide_as_the_pen_and_has_its_colour(white: Field) -> None:
     sim, marks = drawn(white, PenSpec(color="#00ff00", width_mm=6.0, down=True))
-    middle = int(500 + (sim.x_mm - 500) / 2)
+    middle = int(500 + (sim.pose.x_mm - 500) / 2)
     rows = sorted(row for col, row in marks.field.marks if col == middle)
     assert rows == list(range(FIELD_HEIGHT_MM - 503, FIELD_HEIGHT_MM - 497))
     assert set(marks.field.marks.values()) == {(0, 255, 0)}

@@ -104,7 +104,7 @@ def test_driving_deeper_stalls_the_motors() -> None:
 def test_other_walls_stop_a_robot_that_is_inside_one() -> None:
     sim = simulation(WorldSpec(solid=True, start=Pose(900.0, 60.0, 0.0)))
     told(sim, 900.0, 900.0, 500)
-    assert sim.x_mm + 45 == pytest.approx(2362, abs=CLEAR_MM)
+    assert sim.pose.x_mm + 45 == pytest.approx(2362, abs=CLEAR_MM)
 
 
 @pytest.mark.parametrize("place", PLACES)

@@ -94,7 +94,7 @@ def test_further_motors_go_the_same_way_however_the_ticks_are_divided(chunk: int
         if sim.changed:
             ends.append(sim.tick)
     assert (arm.position_deg, arm.mode, other.mode, ends) == (123.0, 0, 0, [55, 77])
-    assert (sim.x_mm, sim.heading_deg) == pytest.approx(_alone(), abs=0.0)
+    assert (sim.pose.x_mm, sim.pose.heading_deg) == pytest.approx(_alone(), abs=0.0)
 
 
 def _alone() -> tuple[float, float]:
@@ -102,7 +102,7 @@ def _alone() -> tuple[float, float]:
     sim = simulation_of(RUN, MemorySink())
     sim.left.run(300.0)
     sim.advance(300)
-    return sim.x_mm, sim.heading_deg
+    return sim.pose.x_mm, sim.pose.heading_deg
 
 
 BOX = replace(WORLD, obstacles=(Obstacle(600.0, 400.0, 100.0, 200.0),))

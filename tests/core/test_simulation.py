@@ -26,7 +26,7 @@ def test_position_moves_end_exactly(speed: float, backwards: bool) -> None:
         motor.run_to(goal, speed, backwards)
     sim.advance(1000, until_change=True)
     assert sim.left.position_deg == goal
-    assert abs(sim.x_mm) == pytest.approx(math.pi * 56, abs=1e-9)
+    assert abs(sim.pose.x_mm) == pytest.approx(math.pi * 56, abs=1e-9)
     assert sim.left.moving_dps == 0
 
 
@@ -36,7 +36,7 @@ def test_seed_experiment_is_at_its_place_at_tick_162() -> None:
     for motor in (sim.left, sim.right):
         motor.run(525.0)
     sim.advance(162)
-    assert sim.x_mm == pytest.approx(1459.50, abs=0.01)
+    assert sim.pose.x_mm == pytest.approx(1459.50, abs=0.01)
 
 
 def script(sim: Simulation, step: int) -> bytes:
@@ -49,7 +49,7 @@ def script(sim: Simulation, step: int) -> bytes:
     sim.left.run(300.0)
     sim.right.run(-420.0)
     advance(50)
-    sim.left.run_until(1000.0, sim.end_tick_after(sim.due_ns(sim.tick), NS_PER_S))
+    sim.left.run_until(1000.0, sim.ticks_at(sim.due_ns(sim.tick) + NS_PER_S))
     advance(120)
     sim.left.run_to(sim.left.position_deg - 500, 400.0, backwards=True)
     sim.right.run_to(sim.right.position_deg + 333, 250.0, backwards=False)
@@ -88,11 +88,11 @@ def test_braking_down_the_ramp(profile: ProfileSpec) -> None:
     for motor in (sim.left, sim.right):
         motor.run(525.0)
     sim.advance(profile.tick_hz * 2)
-    before = sim.x_mm
+    before = sim.pose.x_mm
     for motor in (sim.left, sim.right):
         motor.run(0.0)
     sim.advance(profile.tick_hz * 3)
-    assert sim.x_mm - before == pytest.approx(76.0, abs=5.0)
+    assert sim.pose.x_mm - before == pytest.approx(76.0, abs=5.0)
     assert sim.left.moving_dps == 0
 
 
@@ -103,7 +103,7 @@ def test_seeds_give_different_noise_and_the_same_seed_the_same() -> None:
         sim.left.run(500.0)
         sim.right.run(500.0)
         sim.advance(300)
-        return sim.y_mm
+        return sim.pose.y_mm
 
     assert end(1) == end(1)
     assert end(1) != end(2)

@@ -31,7 +31,7 @@ def overlap_mm(sim: Simulation) -> float:
     deepest = max(
         max(-x, x - FIELD_WIDTH_MM, -y, y - FIELD_HEIGHT_MM) if sim.spec.world.walls else -math.inf for x, y in corners
     )
-    heading = math.radians(sim.heading_deg)
+    heading = math.radians(sim.pose.heading_deg)
     axes = [(1.0, 0.0), (0.0, 1.0), (math.cos(heading), math.sin(heading)), (-math.sin(heading), math.cos(heading))]
     for o in sim.spec.world.obstacles:
         box = [(o.x_mm + i * o.width_mm, o.y_mm + j * o.height_mm) for i in (0, 1) for j in (0, 1)]
@@ -51,7 +51,7 @@ def test_a_wall_stops_the_robot_where_its_front_touches(speed: float, profile: s
     for motor in (sim.left, sim.right):
         motor.run(speed)
     sim.advance(sim.spec.profile.tick_hz * 30)
-    assert sim.x_mm + 45 == pytest.approx(FIELD_WIDTH_MM, abs=0.001)
+    assert sim.pose.x_mm + 45 == pytest.approx(FIELD_WIDTH_MM, abs=0.001)
     assert sim.left.blocked_ticks >= sim.stall_ticks
 
 
@@ -61,7 +61,7 @@ def test_a_thin_post_is_not_passed_at_full_speed() -> None:
     for motor in (sim.left, sim.right):
         motor.run(1050.0)
     sim.advance(300)
-    assert sim.x_mm + 45 == pytest.approx(1000.0, abs=0.001)
+    assert sim.pose.x_mm + 45 == pytest.approx(1000.0, abs=0.001)
 
 
 @pytest.mark.parametrize("left_dps", [-300.0, 0.0], ids=["on the spot", "round one wheel"])
@@ -69,7 +69,7 @@ def test_a_thin_post_is_not_passed_at_full_speed() -> None:
 def test_a_turn_pushes_the_robot_away_from_a_wall(left_dps: float, x_mm: float) -> None:
     sim = simulation(WorldSpec(start=Pose(x_mm, 571.0, 0.0), solid=True), profile="ev3")
     assert drive(sim, [("forever", left_dps, 300.0, 400)]) <= ALLOWED_MM
-    assert sim.heading_deg > 90.0
+    assert sim.pose.heading_deg > 90.0
     assert sim.left.blocked_ticks == 0
 
 
@@ -78,7 +78,7 @@ def test_without_solid_the_robot_drives_through() -> None:
     for motor in (sim.left, sim.right):
         motor.run(1050.0)
     sim.advance(1000)
-    assert sim.x_mm > FIELD_WIDTH_MM
+    assert sim.pose.x_mm > FIELD_WIDTH_MM
 
 
 def test_a_move_to_a_position_goes_on_once_the_way_is_clear() -> None:
@@ -99,7 +99,7 @@ def test_the_robot_can_leave_what_it_was_put_into() -> None:
     for motor in (sim.left, sim.right):
         motor.run(-500.0)
     sim.advance(300)
-    assert sim.x_mm < 700
+    assert sim.pose.x_mm < 700
 
 
 def test_grouping_of_ticks_does_not_matter_near_obstacles() -> None:

@@ -87,7 +87,7 @@ class Motion:
     __slots__ = (
         "_buffer", "_early", "_hz", "_left_dps", "_longest_mm", "_mm_per_deg", "_right_dps", "_room_end",
         "_sink", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "drive", "left", "line", "noise",
-        "pen_down", "right", "spec", "tick",
+        "pen_down", "right", "spec", "stall_ticks", "tick",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -95,6 +95,7 @@ class Motion:
         self._sink = sink
         self._hz = spec.profile.tick_hz
         self._tick_s = 1.0 / self._hz
+        self.stall_ticks = stall_ticks(self._hz)
         self._mm_per_deg = mm_per_degree(spec.robot)
         self._spacing_mm = spec.robot.wheel_spacing_mm
         self._early = 0.5 if spec.profile.halfway_heading else 0.0
@@ -124,26 +125,6 @@ class Motion:
         """Number of records the buffer has space for."""
         TICK_RECORD.pack_into(self._buffer, 64, *self._fields())
         sink.publish(1)
-
-    @property
-    def x_mm(self) -> float:
-        """Position along x."""
-        return self.drive.x_mm
-
-    @property
-    def y_mm(self) -> float:
-        """Position along y."""
-        return self.drive.y_mm
-
-    @property
-    def heading_deg(self) -> float:
-        """Heading, not wrapped."""
-        return self.drive.heading_deg
-
-    @property
-    def gyro_zero_deg(self) -> float:
-        """Heading at which the gyro reads 0."""
-        return self.drive.gyro_zero_deg
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
         """Run ticks.
@@ -265,11 +246,6 @@ class Motion:
             if motor.blocked_ticks == self.stall_ticks:
                 self.changed = True
         return left_deg * part, right_deg * part, aside_mm
-
-    @property
-    def stall_ticks(self) -> int:
-        """Number of blocked ticks after which a motor is stalled."""
-        return stall_ticks(self._hz)
 
     def _fields(self) -> tuple[float, ...]:
         """Return the record of the current tick."""

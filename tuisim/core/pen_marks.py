@@ -65,12 +65,8 @@ class MarkedField(Field):
         return bytes(drawn_on)
 
 
-@dataclass(frozen=True, slots=True)
-class _PenPoint:
-    tick: int
-    x_mm: float
-    y_mm: float
-    actions: int
+_Point = tuple[float, float]
+"""x and y in mm."""
 
 
 class PenMarks:
@@ -88,7 +84,8 @@ class PenMarks:
         """The mat with everything drawn up to now."""
         self.records = 0
         """Number of tick records processed."""
-        self._last: _PenPoint | None = None
+        self._last: _Point | None = None
+        self._last_actions = 0
 
     def field_of_first(self, count: int) -> MarkedField:
         """Return the mat with only the first `count` marks, as it was at that time."""
@@ -103,22 +100,21 @@ class PenMarks:
         Args:
             records: The next tick records, with the fields of `state.TICK_RECORD`.
         """
-        for tick, _, x_mm, y_mm, heading_deg, *_, flags, actions in records:
+        for _, _, x_mm, y_mm, heading_deg, *_, flags, actions in records:
             self.records += 1
             if not int(flags) & FLAG_PEN_DOWN:
                 self._last = None
                 continue
-            pen_x, pen_y = world_point(Pose(x_mm, y_mm, heading_deg), self._pen.x_mm, self._pen.y_mm)
-            point = _PenPoint(int(tick), pen_x, pen_y, int(actions))
+            point = world_point(Pose(x_mm, y_mm, heading_deg), self._pen.x_mm, self._pen.y_mm)
             # A robot that was moved by hand draws no line.
-            last = self._last if self._last is not None and self._last.actions == point.actions else point
-            if last is point or (last.x_mm, last.y_mm) != (pen_x, pen_y):
+            last = self._last if self._last is not None and self._last_actions == actions else point
+            if last is point or last != point:
                 self._stroke(last, point)
-            self._last = point
+            self._last, self._last_actions = point, int(actions)
 
-    def _stroke(self, start: _PenPoint, end: _PenPoint) -> None:
+    def _stroke(self, start: _Point, end: _Point) -> None:
         radius = self._pen.width_mm / 2
-        x0, y0, x1, y1 = start.x_mm, FIELD_HEIGHT_MM - start.y_mm, end.x_mm, FIELD_HEIGHT_MM - end.y_mm
+        x0, y0, x1, y1 = start[0], FIELD_HEIGHT_MM - start[1], end[0], FIELD_HEIGHT_MM - end[1]
         dx, dy = x1 - x0, y1 - y0
         squared = dx * dx + dy * dy
         field = self.field

@@ -16,6 +16,11 @@ MS = 1_000_000
 NS_PER_S = 1_000_000_000
 
 
+def due_ns(tick: int, tick_hz: int) -> int:
+    """Return when a tick is due, in ns from the start: ceil(tick · 10⁹ / tick_hz)."""
+    return -(-tick * NS_PER_S // tick_hz)
+
+
 class MotorLaw(StrEnum):
     """How motors obey commands and move, and how the library drives them."""
 
@@ -32,7 +37,7 @@ class ProfileSpec:
     name: str
     title: str
     tick_hz: int
-    """Ticks per second: tick k is due at ceil(k * 10^9 / tick_hz) ns."""
+    """Ticks per second; see `due_ns`."""
 
     color_read_ns: int = 10 * MS
     color_code_read_ns: int = 20 * MS

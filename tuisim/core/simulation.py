@@ -30,7 +30,7 @@ class Simulation(Motion):
     # Reading
 
     def due_ns(self, tick: int) -> int:
-        """Return when a tick is due, in ns from the start: ceil(tick · 10⁹ / f)."""
+        """Return when a tick is due, in ns from the start: `profile.due_ns`, inlined."""
         return -(-tick * NS_PER_S // self._hz)
 
     def ticks_at(self, time_ns: int) -> int:
@@ -54,7 +54,7 @@ class Simulation(Motion):
             left_speed_dps=left,
             right_speed_dps=right,
             turn_rate_dps=turn_rate_dps(left, right, self.spec.robot),
-            gyro_zero_deg=self.gyro_zero_deg,
+            gyro_zero_deg=self.drive.gyro_zero_deg,
             noise=self.noise,
             seed=self.spec.seed,
         )
@@ -67,17 +67,13 @@ class Simulation(Motion):
 
     def place(self, pose: Pose) -> None:
         """Set the robot's pose; the gyro keeps its angle."""
-        drive, before_deg = self.drive, self.heading_deg
+        drive, before_deg = self.drive, self.drive.heading_deg
         drive.put(pose)
         drive.gyro_zero_deg = float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
 
     def reset_gyro(self) -> None:
         """Make the current heading the gyro's 0."""
-        self.drive.gyro_zero_deg = float32(self.heading_deg)
-
-    def end_tick_after(self, now_ns: int, duration_ns: int) -> int:
-        """Return the tick in which a timed move that starts now ends."""
-        return self.ticks_at(now_ns + duration_ns)
+        self.drive.gyro_zero_deg = float32(self.drive.heading_deg)
 
     def rewrite_record(self) -> None:
         """Write the current tick's record again, after a change from outside."""

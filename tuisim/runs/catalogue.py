@@ -107,12 +107,7 @@ class Catalogue:
 
         A run that is already listed keeps its row and number.
         """
-
-        def insert(connection: sqlite3.Connection) -> int:
-            with _transaction(connection):
-                return _insert(connection, info)
-
-        return self._do(insert)
+        return self._write(lambda connection: _insert(connection, info))
 
     def update(self, run_id: str, **values: str | int | float | None) -> None:
         """Change columns of a run, by name; a run that is not listed is ignored.
@@ -130,22 +125,16 @@ class Catalogue:
             raise ValueError(f"no such column: {', '.join(sorted(unknown))}")
 
         def change(connection: sqlite3.Connection) -> None:
-            with _transaction(connection):
-                for run_id, values in changes:
-                    assignments = ", ".join(f'"{name}" = ?' for name in values)
-                    connection.execute(f"UPDATE runs SET {assignments} WHERE id = ?", (*values.values(), run_id))
+            for run_id, values in changes:
+                assignments = ", ".join(f'"{name}" = ?' for name in values)
+                connection.execute(f"UPDATE runs SET {assignments} WHERE id = ?", (*values.values(), run_id))
 
-        self._do(change)
+        self._write(change)
 
     def remove(self, run_ids: Iterable[str]) -> None:
         """Remove runs from the catalogue."""
         ids = [(run_id,) for run_id in run_ids]
-
-        def delete(connection: sqlite3.Connection) -> None:
-            with _transaction(connection):
-                connection.executemany("DELETE FROM runs WHERE id = ?", ids)
-
-        self._do(delete)
+        self._write(lambda connection: connection.executemany("DELETE FROM runs WHERE id = ?", ids))
 
     def rows(self) -> list[RunInfo]:
         """Return all rows, oldest first."""
@@ -156,6 +145,13 @@ class Catalogue:
             with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
                 self._fill(connection)
                 return _all_rows(connection)
+
+    def _write(self, operation: Callable[[sqlite3.Connection], _Result]) -> _Result:
+        def write(connection: sqlite3.Connection) -> _Result:
+            with _transaction(connection):
+                return operation(connection)
+
+        return self._do(write)
 
     def _do(self, operation: Callable[[sqlite3.Connection], _Result]) -> _Result:
         try:

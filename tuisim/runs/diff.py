@@ -207,11 +207,7 @@ def _shown(row: OutputRow) -> str:
 
 def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
     for row in _written(run, until):
-        yield (
-            row,
-            _shown(row),
-            row.time_ns / 1e9,
-        )
+        yield row, _shown(row), row.time_ns / 1e9
 
 
 def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:

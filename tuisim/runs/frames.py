@@ -19,7 +19,7 @@ from tuisim.core.sensors.color import columns as color_columns
 from tuisim.core.sensors.color import disc_pixels_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
 from tuisim.protocol import SetNoise, UserAction
-from tuisim.runs.records import TELEMETRY_FILE
+from tuisim.runs.records import TELEMETRY_FILE, TICK_FIELDS
 from tuisim.runs.run_folder import StoredRun, noise_at, open_mat
 from tuisim.runs.samples import samples_of
 from tuisim.runs.views import TickRecord, instant_of
@@ -30,24 +30,15 @@ if TYPE_CHECKING:
 
     Array = np.ndarray[Any, Any]
 
-SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", "x_mm", "y_mm", "heading_deg", "line")
+_POSE = ("x_mm", "y_mm", "heading_deg")
+SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, "line")
 """Columns of the samples frame, in order."""
 
-MOTION_COLUMNS = (
-    "x_mm",
-    "y_mm",
-    "heading_deg",
-    "left_position_deg",
-    "right_position_deg",
-    "left_speed_dps",
-    "right_speed_dps",
-)
+MOTION_COLUMNS = tuple(name for name, _ in TICK_FIELDS[2:9])
 """Columns of the telemetry frame that are copied from the recording."""
 
 _MOST = 1e15
 """Larger values, in mm or degrees, count as damage: no motion gets this far."""
-
-_POSE = ("x_mm", "y_mm", "heading_deg")
 
 
 def samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:

@@ -17,6 +17,7 @@ from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints
 from tuisim.config.mat_cache import FieldFiles
+from tuisim.core.profile import due_ns
 from tuisim.core.spec import RunSpec
 from tuisim.errors import HostError, LogError
 from tuisim.protocol import (
@@ -214,7 +215,7 @@ class RunHandle:
             return None
         last = self.telemetry.last()
         tick = last.tick if last else 0
-        time_ns = -(-tick * 1_000_000_000 // self.spec.profile.tick_hz)
+        time_ns = due_ns(tick, self.spec.profile.tick_hz)
         line = stuck_line(self.folder, self.program.path or self.program.name)
         if self._stop_at is not None:
             where = f" in line {line}, where it was stuck" if line else ""

@@ -14,7 +14,7 @@ from tuisim.atomic import replacing
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
-from tuisim.core.profile import NS_PER_S, MotorLaw, law_of_earlier
+from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
 from tuisim.errors import ConfigError, LogError, TuisimError
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
@@ -74,7 +74,7 @@ class StoredRun:
         if self.end is not None:
             return self.end.time_ns / NS_PER_S
         last = self.telemetry.last()
-        return -(-last.tick * NS_PER_S // self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
+        return due_ns(last.tick, self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
 
     def noise_at(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a telemetry record."""
@@ -106,12 +106,8 @@ def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -
     offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2
     for action in reversed(actions[: max(0, due + offset)]):
         if isinstance(action.command, SetNoise):
-            return _noise_of(action.command)
+            return NoiseSpec(int(action.command.light), int(action.command.motor))
     return spec.world.noise
-
-
-def _noise_of(command: SetNoise) -> NoiseSpec:
-    return NoiseSpec(int(command.light), int(command.motor))
 
 
 def run_document(data: Mapping[str, Any]) -> bytes:
@@ -248,7 +244,9 @@ def mat_files(run: StoredRun) -> FieldFiles:
     """
     try:
         made_on = None if run.field is None else FieldFiles.from_plain(run.field)
-        if made_on is not None and _all_there(made_on):
+        if made_on is not None and all(
+            path.is_file() for path in (made_on.pixels, *(path for _, path in made_on.sums))
+        ):
             return made_on
         found = field_files(run.spec)
         # The file names are derived from the contents of the image.
@@ -264,7 +262,3 @@ def mat_files(run: StoredRun) -> FieldFiles:
 
 def _no_mat(run: StoredRun, error: ConfigError) -> LogError:
     return LogError(f"the mat of the run: {error.message}", error.hint, file=str(run.folder))
-
-
-def _all_there(files: FieldFiles) -> bool:
-    return all(path.is_file() for path in (files.pixels, *(path for _, path in files.sums)))

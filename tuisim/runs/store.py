@@ -22,7 +22,7 @@ from typing import Any
 
 from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
-from tuisim.core.profile import NS_PER_S
+from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, Ended, Unended
@@ -118,7 +118,7 @@ class RunStore:
         now = datetime.now(UTC)
         created = now.isoformat(timespec="milliseconds")
         run_id, folder = self._new_folder(now)
-        info = _info_of(run_id, created, program, spec)
+        info = RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
         try:
             number = self._catalogue.add(info)
             write_run_file(
@@ -243,8 +243,8 @@ class RunStore:
         rows = self._catalogue.rows()
         listed = {row.id for row in rows}
         gone = {row.id for row in rows if row.id not in there and not self.folder(row.id).is_dir()}
-        strangers = [self._info_in(self.folder(name)) for name in sorted(there - listed) if not name.startswith(".")]
-        found = [info for info in strangers if info is not None]
+        strangers = (self.folder(name) for name in sorted(there - listed) if not name.startswith("."))
+        found = list(filter(None, map(self._info_in, strangers)))
         if gone or found:
             try:
                 self._catalogue.remove(gone)
@@ -304,10 +304,7 @@ class RunStore:
             write_run_file(folder, {**read_run_file(folder), **changes})
 
     def _scan(self) -> Iterator[RunInfo]:
-        for folder in sorted(self._runs.glob("[!.]*")):
-            info = self._info_in(folder)
-            if info is not None:
-                yield info
+        return filter(None, map(self._info_in, sorted(self._runs.glob("[!.]*"))))
 
     def _info_in(self, folder: Path) -> RunInfo | None:
         """Return the catalogue row of a folder; None if it holds no run (yet)."""
@@ -316,12 +313,12 @@ class RunStore:
         if not (folder / RUN_FILE).exists():
             return None
         try:
-            data = read_run_file(folder)
-            return _info_from(run_id, data)
+            return _info_from(run_id, read_run_file(folder))
         except LogError as error:
-            return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=error.message)
+            summary = error.message
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
-            return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=f"{RUN_FILE} is damaged: {error!r}")
+            summary = f"{RUN_FILE} is damaged: {error!r}"
+        return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=summary)
 
     def _completed(self, info: RunInfo, most_bytes: int) -> tuple[RunInfo, dict[str, Any], int]:
         """Add the data that is missing in the catalogue.
@@ -416,10 +413,6 @@ def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
     raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
 
 
-def _info_of(run_id: str, created: str, program: Program, spec: RunSpec) -> RunInfo:
-    return RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
-
-
 def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     """Return the catalogue row of a run file; raises KeyError, TypeError or ValueError for invalid contents."""
     spec, end = data["spec"], data["end"]
@@ -465,7 +458,7 @@ def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
         tick_hz = int(read_run_file(folder)["spec"]["profile"]["tick_hz"])
     except (LogError, KeyError, TypeError):
         return replace(info, ticks=last.tick)
-    return replace(info, ticks=last.tick, time_s=-(-last.tick * NS_PER_S // tick_hz) / NS_PER_S)
+    return replace(info, ticks=last.tick, time_s=due_ns(last.tick, tick_hz) / NS_PER_S)
 
 
 def pack_later(folder: Path) -> None:

@@ -8,10 +8,12 @@ contents are needed. Data that has been read stays valid, whatever happens to th
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
@@ -82,58 +84,64 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
     )
 
 
-class _Recording:
+class _View(ABC):
     """A recording as far as it has been written, copied incrementally; or unpacked.
 
     It is not mapped: truncating a mapped file would kill its reader.
 
     Args:
-        path: The file.
-        magic: First bytes of the file.
-        record_bytes: Size of a record; 1 if it varies.
+        folder: The run folder.
+        may_be_damaged: Whether an invalid file is treated as empty, as `note` reports.
+
+    Raises:
+        LogError: by every method, if the file is invalid or of another version and `may_be_damaged` is false.
     """
 
-    def __init__(self, path: Path, magic: bytes, record_bytes: int, may_be_damaged: bool) -> None:
-        self._path = path
+    _name: ClassVar[str]
+    _magic: ClassVar[bytes]
+    _record_bytes: ClassVar[int]
+    """Size of a record; 1 if it varies."""
+
+    def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
+        self._path = folder / self._name
         self._may_be_damaged = may_be_damaged
-        self.damage = ""
+        self._damage = ""
         """Why nothing of the file can be read; empty if it can."""
-        self._magic = magic
-        self._record_bytes = record_bytes
         self._copy = bytearray()
         """Starts like the file, with spare capacity."""
         self._published = self._there = 0
         self._unpacked = False
-        self.packed: Packed | None = None
+        self._packed: Packed | None = None
         """The packed form, while only its header has been read."""
 
-    def look(self) -> tuple[memoryview, int, int]:
-        """Return the recording, its published length, and the length that exists."""
-        published, there = self.extent()
-        if self.packed is not None:
-            self._copy, self.packed, self._unpacked = bytearray(self.packed.recording()), None, True
-        return memoryview(self._copy).toreadonly(), published, there
+    @property
+    def note(self) -> str:
+        """A description of what is missing in a truncated file, or empty."""
+        there = self._extent()
+        if self._damage or self._published == there:
+            return self._damage
+        return f"{self._path.name} was cut off: {self._lost(self._published - there)}"
 
-    def extent(self) -> tuple[int, int]:
-        """Return the published length, and the length that exists."""
-        if self.packed is None and not self._unpacked:
+    @abstractmethod
+    def _lost(self, count: int) -> str:
+        """Return in words that `count` records, or bytes, are lost."""
+
+    def _look(self) -> tuple[memoryview, int]:
+        """Return the recording, and the length that exists."""
+        there = self._extent()
+        if self._packed is not None:
+            self._copy, self._packed, self._unpacked = bytearray(self._packed.recording()), None, True
+        return memoryview(self._copy).toreadonly(), there
+
+    def _extent(self) -> int:
+        """Return the length that exists, after a look at what has been published since."""
+        if self._packed is None and not self._unpacked:
             self._read_on()
-        return self._published, self._there
+        return self._there
 
-    def note(self, lost: Callable[[int, int], str]) -> str:
-        """Return a description of what is missing, or empty.
-
-        Args:
-            lost: Returns the description if the file was cut off, from what is lost and what was published.
-        """
-        published, there = self.extent()
-        if self.damage or published == there:
-            return self.damage
-        return f"{self._path.name} was cut off: {lost(published - there, published)}"
-
-    def known(self, count: int) -> memoryview | None:
+    def _known(self, count: int) -> memoryview | None:
         """Return the recording if `count` records that can no longer change have been read, else None."""
-        if self.packed is not None or (count >= self._there and not self._unpacked):
+        if self._packed is not None or (count >= self._there and not self._unpacked):
             return None
         return memoryview(self._copy).toreadonly() if count <= self._there else None
 
@@ -143,9 +151,9 @@ class _Recording:
                 self._read_from(handle.fileno())
         except FileNotFoundError:
             # Searched in this order, a recording that is being packed is always found.
-            self.packed = find_packed(self._path)
-            if self.packed is not None:
-                self._published = self._there = self.packed.length
+            self._packed = find_packed(self._path)
+            if self._packed is not None:
+                self._published = self._there = self._packed.length
         except OSError as error:
             raise LogError(f"cannot be read: {error.strerror or error}", file=str(self._path)) from error
 
@@ -159,7 +167,7 @@ class _Recording:
         except LogError as error:
             if not self._may_be_damaged:
                 raise
-            self.damage = f"{error.message}: nothing of it can be read"
+            self._damage = f"{error.message}: nothing of it can be read"
             return
         room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
         # The last record may have been rewritten.
@@ -195,36 +203,25 @@ def _read_into(fd: int, place: memoryview, at: int) -> int:
     return done
 
 
-class TelemetryView:
-    """The tick records of a run.
+class TelemetryView(_View):
+    """The tick records of a run."""
 
-    Args:
-        folder: The run folder.
-        may_be_damaged: Whether an invalid file is treated as empty, as `note` reports.
-
-    Raises:
-        LogError: by every method, if the file is invalid or of another version and `may_be_damaged` is false.
-    """
-
-    def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
-        self._file = _Recording(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, may_be_damaged)
+    _name, _magic, _record_bytes = TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size
 
     @property
     def count(self) -> int:
         """Number of complete records; record k is that of tick k."""
-        return self._file.extent()[1]
+        return self._extent()
 
-    @property
-    def note(self) -> str:
-        """A description of what is missing in a truncated file, or empty."""
-        return self._file.note(lambda lost, of: f"the last {lost} of {of} records {'is' if lost == 1 else 'are'} lost")
+    def _lost(self, count: int) -> str:
+        return f"the last {count} of {self._published} records {'is' if count == 1 else 'are'} lost"
 
     def last(self) -> TickRecord | None:
         """Return the newest record; None if there is none."""
         count = self.count
         if not count:
             return None
-        packed = self._file.packed
+        packed = self._packed
         # The packed form provides its last record without being unpacked.
         return self.record(count - 1) if packed is None else TickRecord(*TICK_RECORD.unpack(packed.last_record))
 
@@ -234,9 +231,9 @@ class TelemetryView:
         Raises:
             IndexError: the record does not exist (yet).
         """
-        data = self._file.known(index + 1) if index >= 0 else None
+        data = self._known(index + 1) if index >= 0 else None
         if data is None:
-            data, _, count = self._file.look()
+            data, count = self._look()
             if not 0 <= index < count:
                 raise IndexError(f"no telemetry record {index}, there are {count}")
         return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + index * TICK_RECORD.size))
@@ -249,48 +246,32 @@ class TelemetryView:
         import numpy as np
 
         kind = np.dtype(list(TICK_FIELDS))
-        data, _, count = self._file.look()
+        data, count = self._look()
         if not count:
             return np.empty(0, kind)
         return np.frombuffer(data, kind, count, HEADER_BYTES)
 
 
-class OutputView:
-    """The rows of a run: printed, spoken, answers to input(), brick state.
+class OutputView(_View):
+    """The rows of a run: printed, spoken, answers to input(), brick state."""
 
-    Args:
-        folder: The run folder.
-        may_be_damaged: Whether an invalid file is treated as empty, as `note` reports.
-
-    Raises:
-        LogError: by every method, if the file is invalid or of another version and `may_be_damaged` is false.
-    """
-
-    def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
-        self._file = _Recording(folder / OUTPUT_FILE, OUTPUT_MAGIC, 1, may_be_damaged)
-        self._seen = 0
+    _name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
+    _seen = 0
 
     @property
     def length(self) -> int:
         """Number of bytes of rows."""
-        return self._file.extent()[1]
+        return self._extent()
 
-    @property
-    def note(self) -> str:
-        """A description of what is missing in a truncated file, or empty."""
-        return self._file.note(lambda lost, _: f"its last {counted(lost, 'byte is', 'bytes are')} lost")
+    def _lost(self, count: int) -> str:
+        return f"its last {counted(count, 'byte is', 'bytes are')} lost"
 
     def new_rows(self, limit: int | None = None) -> list[OutputRow]:
         """Return the rows since the last call, at most `limit`; the others follow with the next call."""
         rows: list[OutputRow] = []
-        data, _, end = self._file.look()
-        if limit == 0:
-            return rows
-        for row, after in output_rows(data, self._seen, end):
+        for row, after in islice(self.rows_from(self._seen), limit):
             rows.append(row)
             self._seen = after
-            if len(rows) == limit:
-                break
         return rows
 
     def all_rows(self) -> list[OutputRow]:
@@ -303,16 +284,13 @@ class OutputView:
         Args:
             position: 0, or one that was yielded before.
         """
-        data, _, end = self._file.look()
+        data, end = self._look()
         yield from output_rows(data, position, end)
 
     def raw_rows(self) -> Iterator[tuple[int, bytes]]:
         """Yield stream and text of each row, the text as bytes of the file."""
-        data, _, end = self._file.look()
-        return raw_rows(data, end)
+        return raw_rows(*self._look())
 
     def rows(self) -> Iterator[OutputRow]:
         """Yield the rows of `all_rows` one by one: a run may print a million lines."""
-        data, _, end = self._file.look()
-        for row, _ in output_rows(data, 0, end):
-            yield row
+        return (row for row, _ in self.rows_from(0))

@@ -169,7 +169,7 @@ class TachoMotor:
             motor.run(float(speed))
         elif text == "run-timed":
             sim = self._session.sim
-            motor.run_until(float(speed), sim.end_tick_after(self._session.now, self._numbers["time_sp"] * MS))
+            motor.run_until(float(speed), sim.ticks_at(self._session.now + self._numbers["time_sp"] * MS))
         elif text == "run-to-rel-pos":
             self._run_relative(float(speed))
             return
