@@ -14,7 +14,7 @@ goes to stderr, to a notice in the app, and to the notebook.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 MOST_LISTED = 20
 
@@ -44,7 +44,12 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
     names = list(allowed)
     by_lower = {known.lower(): known for known in names}
     close = [by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, 3, 0.5)]
-    return f"did you mean {' or '.join(close)}?" if close else f"one of {', '.join(names)}"
+    return did_you_mean(close) or f"one of {', '.join(names)}"
+
+
+def did_you_mean(close: Sequence[str]) -> str:
+    """Return the hint that names what the user may have meant; empty if there is nothing."""
+    return f"did you mean {' or '.join(close)}?" if close else ""
 
 
 def printable(text: str) -> str:

@@ -71,18 +71,18 @@ def test_mat_has_its_start_pose(name: str) -> None:
 
 
 def test_only_one_mat_brings_obstacles() -> None:
-    boxes = {name: mat.obstacles for name, mat in mats.backgrounds().items() if mat.obstacles}
+    boxes = {name: mat.obstacles for name, mat in mats.catalogue().items() if mat.obstacles}
     corners = ((46, 388), (479, 704), (852, 388), (1374, 388), (1758, 900), (2126, 388))
     assert boxes == {"Obstacles_Test": tuple(Obstacle(x, y, 150, 150) for x, y in corners)}
 
 
 def test_only_radial_grey_moves_sensors() -> None:
-    moved = {name: mat.sensor_x_mm for name, mat in mats.backgrounds().items() if mat.sensor_x_mm}
+    moved = {name: mat.sensor_x_mm for name, mat in mats.catalogue().items() if mat.sensor_x_mm}
     assert moved == {"Radial_grey": {"left": -60.0, "right": 60.0}}
 
 
 def test_every_mat_is_listed_in_order() -> None:
-    assert [name for name in mats.backgrounds() if name in STARTS] == list(STARTS)
+    assert [name for name in mats.catalogue() if name in STARTS] == list(STARTS)
 
 
 @pytest.mark.parametrize(
@@ -243,14 +243,14 @@ def test_obstacles_and_sensors_are_read(given: Path) -> None:
 def test_a_wrong_catalogue_is_explained(text: str, message: str, given: Path) -> None:
     catalog(given, text)
     with pytest.raises(BackgroundError, match=message) as caught:
-        mats.backgrounds()
+        mats.catalogue()
     assert "catalog.toml" in str(caught.value)
 
 
 def test_a_missing_catalogue_is_told(given: Path) -> None:
     (given / "backgrounds" / "catalog.toml").unlink()
     with pytest.raises(BackgroundError, match=r"catalog\.toml: cannot be read"):
-        mats.backgrounds()
+        mats.catalogue()
 
 
 def test_a_missing_picture_is_told(given: Path) -> None:

@@ -9,14 +9,11 @@ import numpy as np
 from tuisim.analysis.model import Model
 from tuisim.analysis.traces import DISTANCE, LogTrace, held
 from tuisim.charts.axes import Limits, column_of, value_limits
-from tuisim.charts.canvas import seen_points
+from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
 from tuisim.charts.layout import Chart, Line, with_unit
 from tuisim.charts.traces import LARGEST, min_max
 from tuisim.errors import LogError, printable
 from tuisim.runs.arrays import FloatArray
-
-_DOTS_X, _DOTS_Y = 2, 4
-"""Parts of a character cell that `seen_points` distinguishes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +89,7 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
     if not good.any():
         raise LogError(f"no sample has both {names[0]} and {names[1]}", file=model.log.title)
     limits = [value_limits(float(values[good].min()), float(values[good].max())) for values in (xs, ys)]
-    cells = max(columns // _DOTS_X, 1), max(rows // _DOTS_Y, 1)
+    cells = max(columns // DOTS_X, 1), max(rows // DOTS_Y, 1)
     xs, ys = seen_points(xs[good], ys[good], limits, *cells)
     title, x_label = printable(model.log.title), with_unit(names[0])
     return Chart(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)

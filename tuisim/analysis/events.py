@@ -5,17 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.core.comparison import NUMBER, Operator, comparison_form, comparison_in
 from tuisim.errors import LogError, listed
+from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import known_in_order
 from tuisim.runs.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from tuisim.logs.log import Log, Series
 
 
 @dataclass(frozen=True, slots=True)

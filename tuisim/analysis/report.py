@@ -16,7 +16,7 @@ from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
 from tuisim.charts.layout import Chart, Span, laid_out
 from tuisim.charts.world_image import world_at_end, world_view
-from tuisim.core.geometry import shown_heading_deg
+from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
@@ -26,12 +26,11 @@ from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.signals import QUANTILES
 from tuisim.protocol import SetNoise
 from tuisim.runs.arrays import FloatArray
+from tuisim.runs.run_folder import StoredRun
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from PIL.Image import Image
-
-    from tuisim.runs.run_folder import StoredRun
 
 Search = Callable[[FloatArray], list[Plateau]]
 SUFFIXES = (".html", ".htm")
@@ -291,20 +290,6 @@ def _time_s(run: StoredRun) -> str:
     return f"{last.tick / run.spec.profile.tick_hz:.3f} s, tick {last.tick}" if last else ""
 
 
-def _pose(x_mm: float, y_mm: float, heading_deg: float) -> str:
-    return f"x {x_mm:.2f} mm, y {y_mm:.2f} mm, heading {shown_heading_deg(heading_deg):.2f}°"
-
-
-def _start_pose(run: StoredRun) -> str:
-    start = run.spec.world.start
-    return _pose(start.x_mm, start.y_mm, start.heading_deg)
-
-
-def _end_pose(run: StoredRun) -> str:
-    last = run.telemetry.last()
-    return _pose(last.x_mm, last.y_mm, last.heading_deg) if last else ""
-
-
 def _noise(run: StoredRun) -> str:
     noise = run.spec.world.noise
     changed = any(isinstance(action.command, SetNoise) for action in run.actions)
@@ -324,9 +309,9 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "robot": lambda run: run.spec.robot.name,
     "seed": lambda run: str(run.spec.seed),
     "noise": _noise,
-    "start": _start_pose,
+    "start": lambda run: pose_in_words(run.spec.world.start),
     "end": _end,
-    "end pose": _end_pose,
+    "end pose": lambda run: pose_in_words(last.pose) if (last := run.telemetry.last()) else "",
     "simulated time": _time_s,
     "user actions": lambda run: str(len(run.actions)) if run.actions else "",
     "tags": lambda run: ", ".join(run.tags),

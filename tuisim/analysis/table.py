@@ -5,17 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.core.comparison import Comparison, Operator, comparison_form, comparison_in
 from tuisim.errors import LogError, listed
 from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
-
-if TYPE_CHECKING:
-    from tuisim.logs.log import Log, LogTable
-    from tuisim.runs.arrays import IntArray
+from tuisim.logs.log import Log, LogTable
+from tuisim.runs.arrays import IntArray
 
 AT_ONCE = 200_000
 """Number of rows that are processed within some hundredths of a second."""

@@ -101,10 +101,15 @@ def _runs(line: str, columns: int) -> list[TextRun]:
     return runs
 
 
-_AXIS, _WORDS = Style(color="#a8a8a8"), Style(color="#d8dee6")
+AXIS, PLAIN = Style(color="#a8a8a8"), Style(color="#d8dee6")
 _HERE = Style(color="#000000", bgcolor="#ffffff", bold=True)
-_DOTS_X, _DOTS_Y = 2, 4
+DOTS_X, DOTS_Y = 2, 4
 """Dots of a braille character."""
+
+
+def styled(rgb: Rgb | None) -> Style:
+    """Return the style of a text in a colour, `PLAIN` without one."""
+    return Style(color=Color.from_rgb(*rgb)) if rgb else PLAIN
 
 
 def seen_points(
@@ -118,9 +123,9 @@ def seen_points(
         columns, rows: Size of the canvas in characters.
     """
     (left, right), (low, high) = limits
-    across = np.floor((xs - left) / (right - left) * (_DOTS_X * columns - 1)).astype(np.int64)
-    up = np.floor((ys - low) / (high - low) * (_DOTS_Y * rows - 1)).astype(np.int64)
-    dots = across * (_DOTS_Y * rows) + up
+    across = np.floor((xs - left) / (right - left) * (DOTS_X * columns - 1)).astype(np.int64)
+    up = np.floor((ys - low) / (high - low) * (DOTS_Y * rows - 1)).astype(np.int64)
+    dots = across * (DOTS_Y * rows) + up
     moved = np.flatnonzero(np.diff(dots, prepend=dots[:1] - 1))
     if len(moved) > len(np.unique(dots)) * 4:
         # The path moves to and fro so often that no line is discernible: draw each dot once.
@@ -149,9 +154,9 @@ def xy_lines(
         width, height: Size in characters.
     """
     good = np.isfinite(xs) & np.isfinite(ys)
-    title: list[Run] = [(f"{names[1]} against {names[0]}", _WORDS)]
+    title: list[Run] = [(f"{names[1]} against {names[0]}", PLAIN)]
     if not good.any():
-        return [title, [("no point has both", _AXIS)]]
+        return [title, [("no point has both", AXIS)]]
     x_limits, y_limits = (axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys))
     rows = max(height - 3, 1)
     labels = axes.row_labels(y_limits, rows)
@@ -163,15 +168,15 @@ def xy_lines(
     lines = [title]
     for row in range(rows):
         text = labels.get(row, "")
-        inside = [(part, Style(color=Color.from_rgb(*color)) if color else _WORDS) for part, color in drawn[row]]
-        lines.append([(text.rjust(left - 1) + ("┤" if text else "│"), _AXIS), *inside])
+        inside = [(part, styled(color)) for part, color in drawn[row]]
+        lines.append([(text.rjust(left - 1) + ("┤" if text else "│"), AXIS), *inside])
     if here is not None and good[here]:
         title.append((f"   {names[0]} {xs[here]:.5g}  {names[1]} {ys[here]:.5g}", Style(bold=True)))
         column = axes.column_of(float(xs[here]), x_limits, columns)
         row = int((y_limits[1] - ys[here]) / (y_limits[1] - y_limits[0]) * (rows - 0.25))
         _put(lines[1 + min(max(row, 0), rows - 1)], left + column)
     line, below = axes.time_axis(x_limits, columns, "")
-    return [*lines, [(" " * (left - 1) + "└" + line, _AXIS)], [(" " * left + below, _AXIS)]]
+    return [*lines, [(" " * (left - 1) + "└" + line, AXIS)], [(" " * left + below, AXIS)]]
 
 
 def _put(line: list[Run], column: int) -> None:

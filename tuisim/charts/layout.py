@@ -266,6 +266,11 @@ def _with_two_scales(lines: Sequence[Line]) -> bool:
 
 def _limits(lines: Sequence[Line], zoomed: bool) -> Limits:
     ends = [(line.name, float(line.ys.min()), float(line.ys.max())) for line in lines if len(line.ys)]
+    return limits_of(ends, zoomed)
+
+
+def limits_of(ends: Sequence[tuple[str, float, float]], zoomed: bool) -> Limits:
+    """Return the limits of a vertical scale, from name, least and greatest value of each variable."""
     if not ends:
         return 0.0, 1.0
     from_zero = not zoomed and any(units.begins_at_zero(*one) for one in ends)

@@ -5,21 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from rich.color import Color
 from rich.style import Style
 from rich.text import Text
 
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
-from tuisim.charts.canvas import BRAILLE, Curve, TextRun, canvas, xy_lines
-from tuisim.charts.layout import COLORS, Chart, Line, color_of
+from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
+from tuisim.charts.layout import COLORS, Chart, Line, color_of, limits_of
 from tuisim.charts.text_runs import Run, cut
 from tuisim.charts.traces import Trace, Traces
 from tuisim.errors import printable
-from tuisim.logs.units import begins_at_zero
 
-_AXIS = Style(color="#a8a8a8")
-_PLAIN = Style(color="#d8dee6")
 _CURSOR = Style(color="#ffffff", bgcolor="#44505e")
 _STRONG = Style(color="#ffffff", bold=True)
 
@@ -113,8 +109,8 @@ class ChartPainter:
         lines += [scales.framed(row, _with_cursors(self._canvas[row], at)) for row in range(rows)]
         line, below = axes.time_axis(x_limits, columns, state.unit)
         if with_line:
-            lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), _AXIS)])
-        lines.append([(" " * left + below, _AXIS)])
+            lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), AXIS)])
+        lines.append([(" " * left + below, AXIS)])
         return ChartPicture([*lines, *values][:height], boxes, left, top, columns, rows, x_limits)
 
     def _draw(
@@ -164,10 +160,10 @@ class _Scales:
 
     def framed(self, row: int, inside: list[Run]) -> list[Run]:
         text = self.left_labels.get(row, "")
-        line = [(text.rjust(self.left_width - 1) + ("┤" if text else "│"), _AXIS), *inside]
+        line = [(text.rjust(self.left_width - 1) + ("┤" if text else "│"), AXIS), *inside]
         if self.right:
             text = self.right_labels.get(row, "")
-            line.append((("├" if text else "│") + text.ljust(self.right_width - 1), _AXIS))
+            line.append((("├" if text else "│") + text.ljust(self.right_width - 1), AXIS))
         return line
 
 
@@ -179,16 +175,7 @@ def _time_limits(end_s: float, grows: bool) -> Limits:
 
 def _limits(traces: Sequence[Trace], zoomed: bool) -> Limits:
     ends = [(trace.name, float(trace.values.min()), float(trace.values.max())) for trace in traces]
-    from_zero = not zoomed and any(begins_at_zero(*one) for one in ends)
-    return axes.value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
-
-
-def _color(trace: Trace) -> Style:
-    return Style(color=Color.from_rgb(*trace.rgb))
-
-
-def _styled(rgb: tuple[int, int, int] | None) -> Style:
-    return Style(color=Color.from_rgb(*rgb)) if rgb else _PLAIN
+    return limits_of(ends, zoomed)
 
 
 def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
@@ -200,10 +187,10 @@ def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
         for inside in (column - at for column in columns):
             if 0 <= inside < len(text):
                 mark = text[inside]
-                line.append((text[done:inside], _styled(rgb)))
-                line.append((mark if mark != " " else "│", _styled(rgb) + _CURSOR if mark != " " else _CURSOR))
+                line.append((text[done:inside], styled(rgb)))
+                line.append((mark if mark != " " else "│", styled(rgb) + _CURSOR if mark != " " else _CURSOR))
                 done = inside + 1
-        line.append((text[done:], _styled(rgb)))
+        line.append((text[done:], styled(rgb)))
         at += len(text)
     return [run for run in line if run[0]]
 
@@ -229,7 +216,7 @@ def _tick_boxes(
         runs, column = [], 0
         for text, trace in line:
             if column:
-                runs.append(("  ", _PLAIN))
+                runs.append(("  ", PLAIN))
                 column += 2
             boxes.append(Box(row, column, column + len(text), trace.name))
             runs += _box_runs(text, trace, trace.name == state.selected, state.grey)
@@ -240,12 +227,12 @@ def _tick_boxes(
         # More lines above, below, or both; two columns are reserved for the arrow.
         space = width - 1 - sum(len(text) for text, _ in made[-1])
         arrow = "↕" if all(hidden) else "↓" if hidden[0] else "↑"
-        made[-1].append((" " * max(space, 0) + arrow, _AXIS))
+        made[-1].append((" " * max(space, 0) + arrow, AXIS))
     return [line for line in made if line], tuple(boxes)
 
 
 def _box_runs(text: str, trace: Trace, selected: bool, grey: bool) -> list[Run]:
-    color = _color(trace) if trace.on else _AXIS
+    color = styled(trace.rgb) if trace.on else AXIS
     if grey and trace.on:
         text = text.replace("[x]", f"[{trace.mark}]", 1)
     return [(text, color + Style(reverse=True) if selected else color)]
@@ -261,9 +248,9 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
         more = len(drawn) - at - 1
         need = 2 + len(trace.name) + 1 + len(text)
         if used + need + (4 if more else 0) > width:
-            line.append((f" +{more + 1}"[: max(width - used, 0)], _AXIS))
+            line.append((f" +{more + 1}"[: max(width - used, 0)], AXIS))
             break
-        line += [("  ", _PLAIN), (f"{trace.name} ", _color(trace)), (text, _STRONG)]
+        line += [("  ", PLAIN), (f"{trace.name} ", styled(trace.rgb)), (text, _STRONG)]
         used += need
     return line
 
@@ -277,7 +264,7 @@ def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
     widest = max(map(len, words))
     margin = " " * max((width - widest) // 2, 0)
     lines: list[list[Run]] = [[] for _ in range(above)]
-    return lines + [[(margin + text, _STRONG if "print" in text or "str(" in text else _PLAIN)] for text in words]
+    return lines + [[(margin + text, _STRONG if "print" in text or "str(" in text else PLAIN)] for text in words]
 
 
 LEAST_ROWS = 8

@@ -135,8 +135,7 @@ def min_max(
         Times and values, each shape (m,), m at most 2 * columns + 2; all points if there are no more.
     """
     low, high = x_limits
-    first = max(int(np.searchsorted(times_s, low, "left")) - 1, 0)
-    last = min(int(np.searchsorted(times_s, high, "right")) + 1, len(times_s))
+    first, last = _visible(times_s, x_limits)
     times_s, values = times_s[first:last], values[first:last]
     if len(times_s) <= 2 * columns:
         return times_s, values
@@ -145,13 +144,20 @@ def min_max(
     starts = starts[starts < len(times_s)]
     ends = np.concatenate((starts[1:], [len(times_s)])) - 1
     least, greatest = np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
-    rising = values[starts] <= values[ends]
-    reduced = np.empty(2 * len(starts))
-    reduced[0::2] = np.where(rising, least, greatest)
-    reduced[1::2] = np.where(rising, greatest, least)
-    when = np.empty(2 * len(starts))
-    when[0::2], when[1::2] = times_s[starts], times_s[ends]
-    return when, reduced
+    return _in_pairs(times_s[starts], times_s[ends]), _extremes(values[starts] <= values[ends], least, greatest)
+
+
+def _visible(times_s: FloatArray, x_limits: tuple[float, float]) -> tuple[int, int]:
+    first = max(int(np.searchsorted(times_s, x_limits[0], "left")) - 1, 0)
+    return first, min(int(np.searchsorted(times_s, x_limits[1], "right")) + 1, len(times_s))
+
+
+def _in_pairs(firsts: FloatArray, seconds: FloatArray) -> FloatArray:
+    return np.stack((firsts, seconds), axis=1).ravel().astype(np.float64, copy=False)
+
+
+def _extremes(rising: npt.NDArray[np.bool_], least: FloatArray, greatest: FloatArray) -> FloatArray:
+    return _in_pairs(np.where(rising, least, greatest), np.where(rising, greatest, least))
 
 
 _BLOCK = 16
@@ -198,8 +204,7 @@ class Pyramid:
             x_limits: First and last time shown; one point beyond each is kept.
             columns: Width of the chart, at least 1.
         """
-        first = max(int(np.searchsorted(self.times_s, x_limits[0], "left")) - 1, 0)
-        last = min(int(np.searchsorted(self.times_s, x_limits[1], "right")) + 1, len(self.times_s))
+        first, last = _visible(self.times_s, x_limits)
         level, size = -1, 1
         while (last - first) // (size * _BLOCK) >= _ENOUGH * columns:
             level, size = level + 1, size * _BLOCK
@@ -208,12 +213,9 @@ class Pyramid:
         least, greatest = self._levels[level]
         blocks = np.arange(first // size, (last - 1) // size + 1)
         starts, ends = blocks * size, np.minimum((blocks + 1) * size, len(self.times_s)) - 1
-        low, high = least[blocks], greatest[blocks]
         rising = self.values[starts] <= self.values[ends]
-        times_s, values = np.empty(2 * len(blocks)), np.empty(2 * len(blocks))
-        times_s[0::2], times_s[1::2] = self.times_s[starts], self.times_s[ends]
-        values[0::2], values[1::2] = np.where(rising, low, high), np.where(rising, high, low)
-        return times_s, values
+        values = _extremes(rising, least[blocks], greatest[blocks])
+        return _in_pairs(self.times_s[starts], self.times_s[ends]), values
 
     def _add_level(self) -> None:
         least, greatest = self._levels[-1] if self._levels else (self.values, self.values)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, assert_never
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
-from tuisim.core.geometry import shown_heading_deg
+from tuisim.core.geometry import Pose, pose_in_words
 from tuisim.errors import counted
 from tuisim.protocol import NO_ANSWER, End, Ended
 from tuisim.runs.records import Stream
@@ -39,8 +39,8 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         run: The run.
         most_bytes: `lines` and `samples` are None, not counted, if the output is longer than this.
     """
-    last = run.telemetry.last()
-    end = run.end
+    last, end = run.telemetry.last(), run.end
+    pose = last.pose if last else run.spec.world.start
     counts = counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
     return {
         "run": run.number,
@@ -56,9 +56,9 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "state": run.state,
         "tick": last.tick if last else 0,
         "time_s": run.time_s,
-        "x_mm": last.x_mm if last else run.spec.world.start.x_mm,
-        "y_mm": last.y_mm if last else run.spec.world.start.y_mm,
-        "heading_deg": last.heading_deg if last else run.spec.world.start.heading_deg,
+        "x_mm": pose.x_mm,
+        "y_mm": pose.y_mm,
+        "heading_deg": pose.heading_deg,
         "lines": counts.lines if counts else None,
         "samples": counts.samples if counts else None,
         "summary": end.summary if end else "",
@@ -72,11 +72,11 @@ def last_state(facts: dict[str, Any]) -> str:
     """Return the status line of a run, from the result of `describe`."""
     state = facts["state"].replace("_", " ")
     what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
+    pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
-        f"x {facts['x_mm']:.2f} mm, y {facts['y_mm']:.2f} mm, heading {shown_heading_deg(facts['heading_deg']):.2f}° · "
-        f"{samples}run {facts['run']}"
+        f"{pose_in_words(pose)} · {samples}run {facts['run']}"
     )
 
 

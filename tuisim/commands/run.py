@@ -16,7 +16,7 @@ from tuisim.commands.relay import Follower, Interrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.config.command_line import Arguments, Value, argument, choice, command, option, shared_options
 from tuisim.config.options import APP, PANEL, number
-from tuisim.core.geometry import shown_heading_deg
+from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted, nearest
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
@@ -218,11 +218,7 @@ class BreakpointReporter:
         value = f" ({paused.value})" if paused.value else ""
         thread = f", thread {paused.thread}" if len(inspected.threads) > 1 else ""
         last = self._handle.telemetry.last()
-        pose = (
-            f", x {last.x_mm:.2f} mm, y {last.y_mm:.2f} mm, heading {shown_heading_deg(last.heading_deg):.2f}°"
-            if last
-            else ""
-        )
+        pose = f", {pose_in_words(last.pose)}" if last else ""
         where = f"{name}:{paused.line}, {paused.time_ns / NS_PER_S:.3f} s, tick {paused.tick}{pose}{thread}"
         lines = [f"break {paused.detail}{value}: {where}"]
         if not paused.file and 0 < paused.line <= len(self._source):

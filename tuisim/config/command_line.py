@@ -19,7 +19,7 @@ from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
 from tuisim.config.options import OPTIONS, Option
-from tuisim.errors import ConfigError, nearest
+from tuisim.errors import ConfigError, did_you_mean, nearest
 
 ARGUMENTS_FOLLOW = "--"
 """Words after this one on the command line are passed to the program."""
@@ -110,8 +110,7 @@ def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
     if isinstance(error, click.NoSuchOption):
         names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
         near = [names[name] for name in get_close_matches(error.option_name.lstrip("-"), names, 2)]
-        hint = f"did you mean {' or '.join(near)}?" if near else see
-        return ConfigError(f"no such option: {error.option_name}", hint)
+        return ConfigError(f"no such option: {error.option_name}", did_you_mean(near) or see)
     text = error.message.rstrip(".")
     if isinstance(error, click.BadParameter) and error.param:
         return ConfigError(text, see, key=error.param.opts[0])

@@ -11,7 +11,7 @@ import os
 import re
 import reprlib
 import stat
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
@@ -20,7 +20,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.atomic import replacing
-from tuisim.errors import ConfigError, nearest
+from tuisim.errors import ConfigError, did_you_mean, nearest
 
 if TYPE_CHECKING:
     from msgspec import inspect as types
@@ -72,6 +72,24 @@ def means_file(word: str) -> bool:
     return os.sep in word or Path(word).suffix.lower() in FILE_SUFFIXES
 
 
+def read_named(
+    word: str, what: str, known: Iterable[str], error: type[ConfigError], key: str, kinds: Sequence[str] = FILE_SUFFIXES
+) -> tuple[Any, str, Location]:
+    """Read the file that a word names; return its data, the default name of the object in it, and its location.
+
+    Raises:
+        ConfigError: of the class `error`: the word is the name of nothing `known` and of no file, or `read_file`
+            cannot read it. `what` and `key` are what it should name, and the option to blame.
+    """
+    if not means_file(word):
+        allowed = f"{nearest(word, known)}; or a {' or '.join(kinds)} file"
+        raise error(f"no such {what} {word!r}", allowed, key=key)
+    path = Path(word).expanduser()
+    if len(kinds) == 1 and path.suffix.lower() not in kinds:
+        raise error(f"is not a {kinds[0]} file", "the suffix selects the format", file=str(path))
+    return read_file(path, error), name_of(path), Location(str(path), error)
+
+
 def name_of(path: Path) -> str:
     """Return the default name of the object in a file, from the file name."""
     return "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME] or "unnamed"
@@ -114,41 +132,66 @@ def read_file(path: Path, error: type[ConfigError]) -> Any:
     return parse_toml(text, shown_path, error)
 
 
-def _text(path: Path, error: type[ConfigError]) -> str:
+def read_bytes(
+    path: Path,
+    most_bytes: int,
+    error: type[ConfigError],
+    missing: str = "there is no such file",
+    folder: str = "is a folder, not a file",
+    hint: str = "",
+    neighbours: Callable[[Path], str] = lambda _: "",
+) -> bytes:
+    """Return the bytes of a regular file, one more than `most_bytes` if it is larger.
+
+    Args:
+        missing, folder: What is wrong if there is no such file, or a folder.
+        hint: What is allowed instead of a folder or a device.
+        neighbours: Returns the hint for a missing file.
+
+    Raises:
+        ConfigError: of the class `error`: it is missing, not a regular file, or cannot be read.
+    """
     file = str(path)
     try:
         mode = path.stat().st_mode
         if stat.S_ISDIR(mode):
-            raise error("is a folder, not a file", file=file)
+            raise error(folder, hint, file=file)
         # Reading from a device or a pipe may never end.
         if not stat.S_ISREG(mode):
-            raise error("is not a regular file", file=file)
+            raise error("is not a regular file", hint, file=file)
         with path.open("rb") as stream:
-            data = stream.read(MAX_FILE_BYTES + 1)
-    except FileNotFoundError:
-        raise error("there is no such file", _neighbours(path), file=file) from None
+            return stream.read(most_bytes + 1)
+    except (FileNotFoundError, NotADirectoryError):
+        raise error(missing, neighbours(path), file=file) from None
     except (OSError, ValueError) as reason:
         raise error(f"cannot be read: {getattr(reason, 'strerror', None) or reason}", file=file) from None
+
+
+def _text(path: Path, error: type[ConfigError]) -> str:
+    file = str(path)
+    data = read_bytes(path, MAX_FILE_BYTES, error, neighbours=_neighbours)
     if len(data) > MAX_FILE_BYTES:
         raise error("is too large", f"at most {MAX_FILE_BYTES:,} bytes".replace(",", " "), file=file)
     try:
-        text = data.decode("utf-8-sig")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as reason:
         line = data.count(b"\n", 0, reason.start) + 1
         raise error(f"line {line} is not UTF-8 text", "save it as UTF-8", file=file) from None
-    return text
 
 
 def _neighbours(path: Path) -> str:
-    """Return the hint for a missing file: files beside it with similar names."""
+    return did_you_mean(close_beside(path, FILE_SUFFIXES))
+
+
+def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
+    """Return the names of files beside a missing one that are like its name."""
     import difflib
 
     try:
-        beside = [other.name for other in path.parent.iterdir() if other.suffix.lower() in FILE_SUFFIXES]
+        beside = [other.name for other in path.parent.iterdir() if other.suffix.lower() in suffixes]
     except (OSError, ValueError):
-        return ""
-    close = difflib.get_close_matches(path.name, beside, 3)
-    return f"did you mean {' or '.join(close)}?" if close else ""
+        return []
+    return difflib.get_close_matches(path.name, beside, 3)
 
 
 def parse_toml(text: str, file: str, error: type[ConfigError]) -> Any:

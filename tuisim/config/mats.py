@@ -8,7 +8,7 @@ named after its file.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -79,15 +79,6 @@ def _background(name: str, data: object, file: Path) -> Background:
         original=entry.original,
         shipped=entry.shipped,
     )
-
-
-def backgrounds() -> Mapping[str, Background]:
-    """Return every mat whose image comes with tuisim by name, in the order of the catalogue.
-
-    Raises:
-        As `catalogue`.
-    """
-    return {name: mat for name, mat in catalogue().items() if mat.shipped}
 
 
 def catalogue() -> Mapping[str, Background]:
@@ -339,14 +330,10 @@ def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Backg
 
 def _of_path(path: str, known: Mapping[str, Background]) -> Background | None:
     """Return the user's mat with this image path, or ours if one of the user's replaces it."""
-    for mat in _own(known):
+    for mat in (mat for mat in known.values() if mat.is_own):
         if str(mat.image) == path:
             return mat
         ours = catalogue().get(mat.name)
         if ours is not None and ours.shipped and str(ours.image) == path:
             return ours
     return None
-
-
-def _own(known: Mapping[str, Background]) -> Iterator[Background]:
-    return (mat for mat in known.values() if mat.is_own)

@@ -11,7 +11,7 @@ from pathlib import Path
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.core.spec import Obstacle
-from tuisim.errors import ObstacleError, nearest
+from tuisim.errors import ObstacleError
 
 NO_OBSTACLES = "None"
 
@@ -41,12 +41,8 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
     """
     if word in OBSTACLES:
         return OBSTACLES[word]
-    if not files.means_file(word):
-        hint = f"{nearest(word, OBSTACLES)}; or a .toml or .json file"
-        raise ObstacleError(f"no such obstacles {word!r}", hint, key=key)
-    path = Path(word).expanduser()
-    data, at = files.read_file(path, ObstacleError), Location(str(path), ObstacleError)
-    return obstacles_from_sides(data, at) if path.suffix.lower() == ".json" else _from_table(data, at)
+    data, _, at = files.read_named(word, "obstacles", OBSTACLES, ObstacleError, key)
+    return (obstacles_from_sides if word.lower().endswith(".json") else _from_table)(data, at)
 
 
 def _from_table(data: object, at: Location) -> tuple[Obstacle, ...]:

@@ -6,10 +6,10 @@ To add an option: add a line to `OPTIONS`, and its field to `Settings`.
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec import (
@@ -23,6 +23,8 @@ from tuisim.core.spec import (
 )
 from tuisim.errors import ConfigError
 from tuisim.source import PRELUDE_TEXTS
+
+_Number = TypeVar("_Number", int, float)
 
 PRELOADS = tuple(PRELUDE_TEXTS)
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
@@ -118,30 +120,20 @@ class Option:
 
 def number(low: float, high: float) -> Callable[[str, str], float]:
     """Return a converter from the text after a flag to a number in a range; it raises ConfigError for other texts."""
-
-    def convert(text: str, flag: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not low <= value <= high:
-            raise ConfigError(f"must be a number from {low:g} to {high:g}, got {text!r}", key=flag)
-        return value
-
-    return convert
+    return _ranged(float, low, high, f"a number from {low:g} to {high:g}")
 
 
 def whole(low: int, high: int) -> Callable[[str, str], int]:
     """Return a converter from the text after a flag to an integer in a range; it raises ConfigError for other texts."""
+    return _ranged(int, low, high, f"a whole number from {low} to {high}")
 
-    def convert(text: str, flag: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = low - 1
-        if not low <= value <= high:
-            raise ConfigError(f"must be a whole number from {low} to {high}, got {text!r}", key=flag)
-        return value
+
+def _ranged(kind: Callable[[str], _Number], low: float, high: float, allowed: str) -> Callable[[str, str], _Number]:
+    def convert(text: str, flag: str) -> _Number:
+        with suppress(ValueError):
+            if low <= (value := kind(text)) <= high:
+                return value
+        raise ConfigError(f"must be {allowed}, got {text!r}", key=flag)
 
     return convert
 

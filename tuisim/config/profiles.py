@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import lru_cache
-from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
 from msgspec import Meta
 
-from tuisim.config.files import Location, Scalar, convert, means_file, name_of, one_of, read_file, table, toml_lines
+from tuisim.config.files import Location, Scalar, convert, one_of, read_named, table, toml_lines
 from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, ProfileSpec, law_of_earlier
-from tuisim.errors import ProfileError, nearest
+from tuisim.errors import ProfileError
 
 DEFAULT_PROFILE = "robolab"
 MAX_COST_MS = 60_000
@@ -65,13 +64,7 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
     """
     if word in PROFILES:
         return PROFILES[word]
-    if not means_file(word):
-        hint = f"{nearest(word, PROFILES)}; or a .toml file"
-        raise ProfileError(f"no such profile {word!r}", hint, key=key)
-    path = Path(word).expanduser()
-    if path.suffix.lower() != ".toml":
-        raise ProfileError("is not a .toml file", "the suffix selects the format", file=str(path))
-    return profile_from_table(read_file(path, ProfileError), name_of(path), Location(str(path), ProfileError))
+    return profile_from_table(*read_named(word, "profile", PROFILES, ProfileError, key, (".toml",)))
 
 
 def profile_from_table(data: object, name: str, at: Location) -> ProfileSpec:

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tuisim.config.command_line import parse_words
+from tuisim.config.files import close_beside, read_bytes
 from tuisim.config.folders import programs_folder
-from tuisim.errors import ConfigError, nearest
+from tuisim.errors import ConfigError, did_you_mean, nearest
 from tuisim.source import PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
@@ -208,24 +209,13 @@ def read_program(path: Path) -> ProgramSource:
     Raises:
         ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
     """
-    shown = str(path)
-    try:
-        if path.is_dir():
-            raise ConfigError("is a directory, not a program", "name a Python file", file=shown)
-        if not path.exists():
-            raise ConfigError("there is no such program", _neighbours(path), file=shown)
-        # Reading from a device or a pipe may never end.
-        if not path.is_file():
-            raise ConfigError("is not a regular file", "name a Python file", file=shown)
-        with path.open("rb") as file:
-            data = file.read(MAX_PROGRAM_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise ConfigError(f"cannot be read: {reason}", file=shown) from None
+    shown, hint = str(path), "name a Python file"
+    missing, folder = "there is no such program", "is a directory, not a program"
+    data = read_bytes(path, MAX_PROGRAM_BYTES, ConfigError, missing, folder, hint, _neighbours)
     if len(data) > MAX_PROGRAM_BYTES:
-        raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", "name a Python file", file=shown)
+        raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=shown)
     if path.suffix == ".ipynb":
-        raise ConfigError("is a notebook", "name a Python file", file=shown)
+        raise ConfigError("is a notebook", hint, file=shown)
     return program_of_text(_decode(data, shown), path, path.name)
 
 
@@ -255,13 +245,9 @@ def _neighbours(path: Path) -> str:
     """Return the hint for a missing file: similar names beside it, else similar examples, else how to list them."""
     import difflib
 
-    try:
-        beside = [other.name for other in path.parent.glob("*.py")]
-    except OSError:
-        beside = []
-    close = difflib.get_close_matches(path.name, beside, 3)
+    close = close_beside(path, (".py",))
     if not close and path.parent == Path():
         # A word without a folder may also be meant as an example, which needs no suffix.
         stems = [file.path.stem for file in programs()]
         close = [f"{stem}{path.suffix}" for stem in difflib.get_close_matches(path.stem, stems, 3)]
-    return f"did you mean {' or '.join(close)}?" if close else "see `tuisim programs` for examples"
+    return did_you_mean(close) or "see `tuisim programs` for examples"

@@ -30,7 +30,7 @@ from tuisim.core.spec import (
     TouchSpec,
     UltrasonicSpec,
 )
-from tuisim.errors import ConfigError, RobotError, nearest
+from tuisim.errors import ConfigError, RobotError
 
 
 def _sensor_pair(
@@ -129,13 +129,8 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
     """
     if word in ROBOTS:
         return RobotChoice(ROBOTS[word], own_places=False)
-    if not files.means_file(word):
-        hint = f"{nearest(word, ROBOTS)}; or a .toml or .json file"
-        raise RobotError(f"no such robot {word!r}", hint, key=key)
-    path = Path(word).expanduser()
-    data, at = files.read_file(path, RobotError), Location(str(path), RobotError)
-    read = robot_from_json if path.suffix.lower() == ".json" else robot_from_table
-    return read(data, files.name_of(path), at)
+    data, name, at = files.read_named(word, "robot", ROBOTS, RobotError, key)
+    return (robot_from_json if word.lower().endswith(".json") else robot_from_table)(data, name, at)
 
 
 def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:

@@ -23,6 +23,11 @@ def shown_heading_deg(heading_deg: float) -> float:
     return 180.0 - (180.0 - heading_deg) % 360.0
 
 
+def pose_in_words(pose: Pose) -> str:
+    """Return a pose as text, such as `x 1.00 mm, y 2.00 mm, heading 90.00°`."""
+    return f"x {pose.x_mm:.2f} mm, y {pose.y_mm:.2f} mm, heading {shown_heading_deg(pose.heading_deg):.2f}°"
+
+
 def world_point(pose: Pose, x_mm: float, y_mm: float) -> tuple[float, float]:
     """Return the world position of a point given in robot coordinates.
 

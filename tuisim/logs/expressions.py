@@ -12,6 +12,8 @@ import operator
 import re
 import sys
 from collections.abc import Callable, Mapping
+from functools import reduce
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -185,10 +187,7 @@ class _Evaluation:
                 return _UNARY[type(op)](self.value(operand))
             case ast.BoolOp(op=op, values=parts):
                 join = np.logical_and if isinstance(op, ast.And) else np.logical_or
-                value = self.value(parts[0])
-                for part in parts[1:]:
-                    value = join(value, self.value(part))
-                return value
+                return reduce(join, map(self.value, parts))
             case ast.Compare(left=left, ops=ops, comparators=others) if all(type(op) in _OPERATORS for op in ops):
                 return self._compared([left, *others], ops)
             case ast.IfExp(test=test, body=body, orelse=other):
@@ -199,10 +198,8 @@ class _Evaluation:
 
     def _compared(self, parts: list[ast.expr], ops: list[ast.cmpop]) -> Any:
         values = [self.value(part) for part in parts]
-        held: Any = True
-        for at, op in enumerate(ops):
-            held = np.logical_and(held, COMPARE[_OPERATORS[type(op)]](values[at], values[at + 1]))
-        return held
+        truths = (COMPARE[_OPERATORS[type(op)]](*pair) for op, pair in zip(ops, pairwise(values), strict=True))
+        return reduce(np.logical_and, truths, True)
 
     def _named(self, name: str) -> Any:
         if name in self._columns:

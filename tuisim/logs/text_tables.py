@@ -321,14 +321,9 @@ class CsvReader:
                 long.append(row)
             rows.append(cells[:width])
             numbers.append(row)
-        if short:
-            self._notes.add(
-                "row has too few cells: the rest is empty", "rows have too few cells: the rest is empty", short
-            )
-        if long:
-            self._notes.add(
-                "row has too many cells: the rest is skipped", "rows have too many cells: the rest is skipped", long
-            )
+        few, many = "too few cells: the rest is empty", "too many cells: the rest is skipped"
+        self._notes.add(f"row has {few}", f"rows have {few}", short)
+        self._notes.add(f"row has {many}", f"rows have {many}", long)
         return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
 
     def _records(self, block: Block) -> Iterator[tuple[int, list[str]]]:
@@ -464,10 +459,8 @@ class JsonReader:
                 found += [(row, one) for one in objects]
             else:
                 broken.append(row)
-        if broken:
-            self._notes.add(
-                "line is not a JSON object and was skipped", "lines are not JSON objects and were skipped", broken
-            )
+        skipped = "line is not a JSON object and was skipped", "lines are not JSON objects and were skipped"
+        self._notes.add(*skipped, broken)
         if not found:
             return None
         names = dict.fromkeys(name for _, cells in found for name in cells)
@@ -488,8 +481,7 @@ class JsonReader:
         if not self._kinds[name]:
             return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())
         wrong = [row for (row, _), cell in zip(found, cells, strict=True) if cell is not None and not _is_number(cell)]
-        if wrong:
-            self._notes.add(f"cell of {name!r} is not a number", f"cells of {name!r} are not numbers", wrong)
+        self._notes.add(f"cell of {name!r} is not a number", f"cells of {name!r} are not numbers", wrong)
         return pa.array(
             [_float(cell) if cell is not None and _is_number(cell) else None for cell in cells], pa.float64()
         )
@@ -532,29 +524,18 @@ class PrintedReader:
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the samples of a block; None if it has none. The time is empty where none was printed."""
-        rows, names, values, times, others = [], [], [], [], []
+        found, others = [], []
         for row, line in block.lines():
-            sample = parse_sample(line)
-            if sample is None:
+            if (sample := parse_sample(line)) is None:
                 others.append(row)
-                continue
-            name, value, time_s = sample
-            rows.append(row)
-            names.append(name)
-            values.append(value)
-            times.append(time_s)
-        if others:
-            self._notes.add("line is not a sample", "lines are not samples", others)
-        if not rows:
+            else:
+                found.append((row, *sample))
+        self._notes.add("line is not a sample", "lines are not samples", others)
+        if not found:
             return None
-        return pa.table(
-            {
-                "row": pa.array(rows, pa.float64()),
-                "variable": pa.array(names, pa.string()),
-                "value": pa.array(values, pa.float64()),
-                "time": pa.array(times, pa.float64()),
-            }
-        )
+        kinds = {"row": pa.float64(), "variable": pa.string(), "value": pa.float64(), "time": pa.float64()}
+        cells = zip(*found, strict=True)
+        return pa.table({name: pa.array(next(cells), kind) for name, kind in kinds.items()})
 
 
 def looks_printed(lines: list[str]) -> bool:

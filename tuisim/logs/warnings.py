@@ -29,11 +29,14 @@ class Notes:
             one: The problem, such as `cell is not a number`.
             many: The same in the plural.
             rows: Rows of the file, from 1; the first few are enough if `count` is given.
-            count: Number of occurrences.
+            count: Number of occurrences; without any, nothing is added.
         """
         found = list(rows)
+        count = len(found) if count is None else count
+        if not count:
+            return
         text = (one, many)
-        self._counts[text] = self._counts.get(text, 0) + (len(found) if count is None else count)
+        self._counts[text] = self._counts.get(text, 0) + count
         named = self._rows.setdefault(text, [])
         named += found[: ROWS_NAMED - len(named)]
 

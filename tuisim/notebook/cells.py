@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tuisim.config.files import read_bytes
 from tuisim.config.program_file import ProgramSource, beside
 from tuisim.errors import ConfigError, nearest
 from tuisim.notebook.magic_line import lasting_after, parse_line
@@ -74,14 +75,8 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 def _cells(path: Path) -> Iterator[tuple[str, str]]:
     """Yield (cell type, text)."""
-    shown = str(path)
-    try:
-        if not path.is_file():
-            raise ConfigError("there is no such notebook", file=shown)
-        with path.open("rb") as file:
-            data = file.read(MAX_NOTEBOOK_BYTES + 1)
-    except OSError as error:
-        raise ConfigError(f"cannot be read: {error.strerror or error}", file=shown) from None
+    shown, missing = str(path), "there is no such notebook"
+    data = read_bytes(path, MAX_NOTEBOOK_BYTES, ConfigError, missing, folder=missing)
     if len(data) > MAX_NOTEBOOK_BYTES:
         raise ConfigError(f"is larger than {MAX_NOTEBOOK_BYTES >> 20} MiB", file=shown)
     try:
