@@ -120,11 +120,7 @@ _WORDY = re.compile(r"(?:sensor\s+)?(\w+)\s+sensor(?:\s+(\w+)\s*(%)?)?")
 
 
 def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
-    """Return the breakpoint that a text describes.
-
-    Args:
-        text: Text in the language above.
-        robot: Robot for checking sensor names; None accepts any name.
+    """Return the breakpoint that a text describes; without a robot any name of a sensor is accepted.
 
     Raises:
         ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.

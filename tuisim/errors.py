@@ -27,13 +27,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def counted(count: int, one: str, many: str = "") -> str:
-    """Return how many there are of something, in words: `1 row`, `1,500 rows`.
-
-    Args:
-        count: How many.
-        one: What it is, in the singular.
-        many: In the plural, if an `s` does not make it.
-    """
+    """Return how many there are of something, in words: `1 row`, `1,500 rows`; `many` if the plural takes no `s`."""
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
@@ -87,8 +81,6 @@ class ConfigError(TuisimError):
     """A file, option or value that describes a run is wrong.
 
     Args:
-        message: What was wrong.
-        hint: What is allowed.
         file: The file that contains it, if any.
         key: The key or option, such as `ultrasonic.max_range_mm` or `-x`.
     """
@@ -116,12 +108,14 @@ class ProfileError(ConfigError):
     """No such profile, or an invalid one."""
 
 
+def _place(file: str, what: str, number: int) -> str:
+    return f"{file}, {what} {number}: " if number else f"{file}: " if file else ""
+
+
 class ProgramError(TuisimError):
     """The user's program failed.
 
     Args:
-        message: What happened.
-        hint: What to do next.
         file: The program's file.
         line: The line in it, from 1; 0 if unknown.
     """
@@ -129,8 +123,7 @@ class ProgramError(TuisimError):
     exit_code = 1
 
     def __init__(self, message: str, hint: str = "", *, file: str = "", line: int = 0) -> None:
-        where = f"{file}, line {line}: " if line else f"{file}: " if file else ""
-        super().__init__(where + message, hint)
+        super().__init__(_place(file, "line", line) + message, hint)
         self.file = file
         self.line = line
 
@@ -147,15 +140,12 @@ class LogError(TuisimError):
     """A log or a stored run cannot be read.
 
     Args:
-        message: What was wrong.
-        hint: What to do next.
         file: The file.
         row: The row in it, from 1; 0 if unknown.
     """
 
     def __init__(self, message: str, hint: str = "", *, file: str = "", row: int = 0) -> None:
-        where = f"{file}, row {row}: " if row else f"{file}: " if file else ""
-        super().__init__(where + message, hint)
+        super().__init__(_place(file, "row", row) + message, hint)
         self.file = file
         self.row = row
 

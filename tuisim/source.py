@@ -87,11 +87,7 @@ def source_lines(text: str) -> list[str]:
 
 
 def decode_source(data: bytes, shown: str) -> tuple[str, str]:
-    """Decode a program file; return its text and its encoding as Python names it.
-
-    Args:
-        data: The bytes of the file.
-        shown: The file's name, for the error.
+    """Decode a program file, by its name for the error; return its text and its encoding as Python names it.
 
     Raises:
         ConfigError: it is not text, or its encoding is not a text encoding.

@@ -17,13 +17,7 @@ from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDSTILL_DEG, STOPP
 
 
 def ramped(speed: float, target: float, step: float) -> float:
-    """Return the speed one tick later.
-
-    Args:
-        speed: Current speed.
-        target: Target speed.
-        step: Largest change in one tick; 0 for a motor without inertia.
-    """
+    """Return the speed one tick later; it changes at most by `step`, or at once if that is 0."""
     if step == 0.0:
         speed = target
     elif speed < target:

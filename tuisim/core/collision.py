@@ -121,13 +121,7 @@ class Solids:
         return self._free.any_mm - math.hypot(pose[0] - x, pose[1] - y) - turned
 
     def leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float) -> Leeway:
-        """Return how much of a tick's motion is possible.
-
-        Args:
-            pose: x and y in mm, heading in degrees.
-            forward_mm: Distance in this tick.
-            turn_deg: Turn in this tick, counter-clockwise.
-        """
+        """Return how much of the motion of a tick is possible; turns are counter-clockwise."""
         way = abs(forward_mm) + abs(math.radians(turn_deg)) * self.reach_mm
         if self.remaining_mm(pose) >= way:
             return UNHINDERED

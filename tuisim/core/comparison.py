@@ -66,12 +66,9 @@ class Comparison:
 
 
 def comparison_in(text: str, name: str = r".+?", value: str = r"\S+") -> Comparison | None:
-    """Return the comparison that a text is; None if it is none.
+    """Return the comparison `NAME OP VALUE` that a text is; None if it is none.
 
-    Args:
-        text: `NAME OP VALUE`.
-        name: Regular expression of allowed names.
-        value: Regular expression of allowed values.
+    `name` and `value` are regular expressions of what is allowed.
     """
     # Of several operators the first one counts after which everything is a value.
     found = re.fullmatch(rf"\s*(?P<name>{name})(?<![<>=!~])\s*(?P<sign>{_SIGNS})\s*(?P<value>{value})\s*", text)

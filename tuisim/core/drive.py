@@ -32,13 +32,7 @@ def mm_per_degree(robot: RobotSpec) -> float:
 
 
 def turn_rate_dps(left_dps: float, right_dps: float, robot: RobotSpec) -> float:
-    """Return the counter-clockwise rate of turn in degrees per second.
-
-    Args:
-        left_dps: Speed of the left wheel, degrees per second.
-        right_dps: Speed of the right wheel.
-        robot: Wheel diameter and spacing.
-    """
+    """Return the counter-clockwise rate of turn that results from the speeds of the wheels."""
     return (right_dps - left_dps) * robot.wheel_diameter_mm / (2.0 * robot.wheel_spacing_mm)
 
 
@@ -56,15 +50,7 @@ class Records(NamedTuple):
 
 
 def _fill(records: Records, at: int, left: EvenGlide, right: EvenGlide, zero_deg: float) -> None:
-    """Write what is the same in all records; the loops then pack only the positions, which is quicker.
-
-    Args:
-        records: The buffer and the common fields.
-        at: Offset of the first of the records to write.
-        left: The left wheel, whose speed is written.
-        right: The right wheel.
-        zero_deg: Heading at which the gyro reads 0.
-    """
+    """Write what is the same in all records from offset `at` on; the loops then pack only the positions, quickly."""
     left_dps, right_dps = left.roll_deg * records.tick_hz, right.roll_deg * records.tick_hz
     zeros = 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0
     common = TICK_RECORD.pack(*zeros, left_dps, right_dps, zero_deg, records.flags, records.actions)
@@ -132,10 +118,7 @@ def _glide_straight(
 class BrickDrive:
     """The drive of a brick.
 
-    Args:
-        robot: Wheel diameter and spacing.
-        start: Initial pose.
-        early: Fraction of a tick's turn that already applies to the motion of that tick.
+    `early` is the fraction of a tick's turn that already applies to the motion of that tick.
     """
 
     __slots__ = ("_early", "_mm_per_deg", "_spacing_mm", "gyro_zero_deg", "heading_deg", "x_mm", "y_mm")
@@ -201,10 +184,7 @@ class BrickDrive:
 class BrowserDrive:
     """The drive of the browser simulator: headings in radians, reduced by a whole turn when they exceed one.
 
-    Args:
-        robot: Wheel diameter and spacing.
-        start: Initial pose.
-        early: Fraction of a tick's turn that already applies to the motion of that tick.
+    `early` is as in `BrickDrive`.
     """
 
     __slots__ = (

@@ -46,12 +46,9 @@ class Field:
     corner at (col - d, row - d); shape (height + d, width + d, 3), flat."""
 
     def disc_sums(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
-        """Return the sums of red, green and blue over one disc.
+        """Return the sums of red, green and blue over a disc; the upper left corner of its box may be off the mat.
 
-        Args:
-            diameter: A key of `sums`.
-            col: Left column of its box; may be off the mat.
-            row: Top row of its box; may be off the mat.
+        `diameter` is a key of `sums`.
         """
         width = self.width_px + diameter
         col += diameter

@@ -48,12 +48,7 @@ def weight_step(spec: RunSpec) -> float:
 
 
 def motor_of(spec: RunSpec, kind: str) -> Motor:
-    """Return a motor in its initial state.
-
-    Args:
-        spec: Robot, world and profile.
-        kind: One of `MOTOR_KINDS`.
-    """
+    """Return a motor of one of `MOTOR_KINDS`, in its initial state."""
     profile, step, fastest_dps = spec.profile, weight_step(spec), top_speed_dps(kind, spec.profile)
     match profile.motor_law:
         case MotorLaw.BRICK:
@@ -127,15 +122,7 @@ class Motion:
         sink.publish(1)
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
-        """Run ticks.
-
-        Args:
-            ticks: Number of ticks.
-            until_change: Return early when a motor ends a move.
-
-        Returns:
-            Number of ticks that were run.
-        """
+        """Run ticks and return their number; with `until_change` they end early when a motor ends a move."""
         if ticks == 1:
             self.tick_once()
             return 1

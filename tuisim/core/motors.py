@@ -90,15 +90,7 @@ class Motor(Protocol):
         """Stop."""
 
     def step(self, tick: int, noise_dps: float) -> float:
-        """Run one tick of any kind.
-
-        Args:
-            tick: The current tick.
-            noise_dps: Added to the speed; 0 for no noise.
-
-        Returns:
-            Rotation of the wheel, in degrees.
-        """
+        """Run one tick of any kind with noise added to the speed, and return the rotation of the wheel, in degrees."""
 
     def quiet_ticks(self, tick: int) -> int:
         """Return for how many ticks after `tick` only the ramp changes this motor."""
@@ -113,10 +105,4 @@ class Motor(Protocol):
         """Return the state that `hold_back` needs to undo a tick."""
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
-        """Undo the rest of a tick in which an obstacle stopped the wheel.
-
-        Args:
-            before: State before the tick.
-            turned_deg: Rotation of the wheel in the tick.
-            part: Fraction of it that was possible, below 1.
-        """
+        """Undo the rest of a tick in which an obstacle stopped the wheel: only a part of it, below 1, was possible."""

@@ -70,12 +70,7 @@ _Point = tuple[float, float]
 
 
 class PenMarks:
-    """Draws the pen's trace, tick record by tick record.
-
-    Args:
-        field: The mat.
-        spec: The run; its robot's pen is used.
-    """
+    """Draws the pen's trace, tick record by tick record."""
 
     def __init__(self, field: Field, spec: RunSpec) -> None:
         self._pen = spec.robot.pen
@@ -95,11 +90,7 @@ class PenMarks:
         return MarkedField(field.width_px, field.height_px, field.pixels, field.sums, marks, blocks)
 
     def take_in(self, records: Iterable[tuple[float, ...]]) -> None:
-        """Continue the trace.
-
-        Args:
-            records: The next tick records, with the fields of `state.TICK_RECORD`.
-        """
+        """Continue the trace with the next tick records, which have the fields of `TICK_RECORD`."""
         for _, _, x_mm, y_mm, heading_deg, *_, flags, actions in records:
             self.records += 1
             if not int(flags) & FLAG_PEN_DOWN:

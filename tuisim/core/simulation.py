@@ -15,12 +15,7 @@ from tuisim.core.tick_record import TICK_RECORD, TickSink
 
 
 class Simulation(Motion):
-    """The world of one run.
-
-    Args:
-        spec: Robot, world, profile and seed.
-        sink: Receives one record per tick, starting with tick 0.
-    """
+    """The world of one run."""
 
     __slots__ = ()
 
@@ -90,12 +85,7 @@ REPORT_DEG = 0.25
 
 
 class FurtherMotors(Simulation):
-    """A simulation whose robot has motors besides its two wheel motors. They do not change the pose.
-
-    Args:
-        spec: Robot, world, profile and seed.
-        sink: Receives one record per tick, starting with tick 0.
-    """
+    """A simulation whose robot has motors besides its two wheel motors. They do not change the pose."""
 
     __slots__ = ("_reported", "_reported_tick", "on_turns", "others")
 

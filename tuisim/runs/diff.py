@@ -92,8 +92,6 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, unti
     """Compare two runs.
 
     Args:
-        first: One run.
-        second: The other.
         prefix: Whether the first run was cut off: anything in the second after its last record is ignored.
         until: Last tick to compare; None for all.
 
@@ -122,13 +120,7 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, unti
 
 
 def first_tick(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int) -> TickDifference | None:
-    """Return the first tick at which two recordings of the same tick rate differ; None if they are equal.
-
-    Args:
-        one: Records of the first run, as `TelemetryView.array` returns them.
-        two: Records of the second.
-        tick_hz: Ticks per second.
-    """
+    """Return the first tick at which two `TelemetryView.array` of one tick rate differ; None if they are equal."""
     import numpy as np
 
     count = min(len(one), len(two))

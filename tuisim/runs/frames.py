@@ -96,7 +96,6 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
     that spent the time, 0 for none.
 
     Args:
-        run: The run.
         field: The mat; by default that of the run.
 
     Raises:

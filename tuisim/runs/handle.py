@@ -389,13 +389,7 @@ def _python_path() -> tuple[str, ...]:
 
 
 def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:
-    """Start a program. Does not block.
-
-    Args:
-        program: The program.
-        spec: Robot, world, profile and seed.
-        options: Live or headless, limits, answers.
-        store: Where the run is stored; by default the user's store.
+    """Start a program, by default in the user's store. Does not block.
 
     Raises:
         BackgroundError: the mat does not exist.

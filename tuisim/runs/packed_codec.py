@@ -69,11 +69,7 @@ def planes(values: Column) -> bytes:
 
 
 class Source:
-    """A reader for bytes, from the beginning on.
-
-    Args:
-        data: The bytes.
-    """
+    """A reader for bytes, from the beginning on."""
 
     def __init__(self, data: bytes) -> None:
         self._data, self._at = data, 0
@@ -168,12 +164,7 @@ def _folded(records: Column, geometry: RobotGeometry) -> list[bytes]:
 
 
 def unfold_ticks(data: bytes, count: int, geometry: RobotGeometry) -> bytes:
-    """Return the original records.
-
-    Args:
-        data: What `fold_ticks` returned.
-        count: Number of records.
-        geometry: Geometry with which they were compressed.
+    """Return the original records, from the result of `fold_ticks` for the same geometry.
 
     Raises:
         ValueError: the bytes are damaged.
@@ -322,10 +313,7 @@ def _grown(growth: Numbers, rest: Numbers, jumps: Column, starts: Column) -> Num
 
 
 def fold_rows(data: bytes) -> bytes:
-    """Compress complete rows.
-
-    Args:
-        data: Rows as in an output file, without its header.
+    """Compress complete rows, as in an output file without its header.
 
     Raises:
         ValueError: the last row is incomplete.

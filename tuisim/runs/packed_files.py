@@ -80,10 +80,7 @@ class Packed:
 
 
 def find_packed(path: Path) -> Packed | None:
-    """Return the packed form of a recording; None if there is none.
-
-    Args:
-        path: Original path of the recording.
+    """Return the packed form of the recording that was at `path`; None if there is none.
 
     Raises:
         LogError: the file is damaged, of another version, or not a packed recording.
@@ -111,11 +108,7 @@ def find_packed(path: Path) -> Packed | None:
 
 
 def compact(folder: Path, spec: RunSpec) -> None:
-    """Pack the recordings of a finished run; packed ones are left unchanged.
-
-    Args:
-        folder: The run folder; no process writes its recordings any more.
-        spec: The specification of the run.
+    """Pack the recordings of a finished run, which no process writes any more; packed ones are left unchanged.
 
     Raises:
         LogError: a recording is damaged, or the folder cannot be written; nothing is lost.

@@ -99,12 +99,7 @@ def end_group(pid: int) -> None:
 
 
 def end_left_over(pid: int, marked: int) -> None:
-    """Kill all processes that an exited child has left behind.
-
-    Args:
-        pid: Process id of the child.
-        marked: Its mark; without one, processes in sessions of their own survive.
-    """
+    """Kill all processes that an exited child has left behind; without a mark not those in sessions of their own."""
     ended = {pid}
     try:
         while marked and (found := {one for one in _younger_than(pid) - ended if _has_mark(one, marked)}):

@@ -158,11 +158,7 @@ class _Level:
 
 
 class RowIndex:
-    """Tick and position of each row that has been read.
-
-    Args:
-        output: The rows; it may still grow.
-    """
+    """Tick and position of each row that has been read of an output, which may still grow."""
 
     def __init__(self, output: OutputView) -> None:
         self._output = output

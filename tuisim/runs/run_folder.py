@@ -94,13 +94,7 @@ def state_without_end(folder: Path) -> Unended:
 
 
 def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
-    """Return the noise at a tick: that of the spec, changed by the user's actions.
-
-    Args:
-        spec: The specification of the run.
-        actions: The user's actions, in order.
-        record: The telemetry record of the tick.
-    """
+    """Return the noise at the tick of a record: that of the spec, changed by the user's actions, which are in order."""
     # The record counts the actions modulo 65536; their ticks resolve the ambiguity.
     due = bisect_right(actions, record.tick, key=lambda action: action.tick)
     offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2

@@ -63,13 +63,7 @@ class TickRecord:
 
 
 def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
-    """Return the instant of a record, for the functions of `core.sensors`.
-
-    Args:
-        record: The telemetry record.
-        spec: The specification of the run.
-        noise: The noise at that tick, from `run_folder.noise_at`.
-    """
+    """Return the instant of a record with the noise at its tick, for the functions of `core.sensors`."""
     return Instant(
         tick=record.tick,
         pose=record.pose,
@@ -279,11 +273,7 @@ class OutputView(_View):
         return list(self.rows())
 
     def rows_from(self, position: int) -> Iterator[tuple[OutputRow, int]]:
-        """Yield the rows from a position on, each with the position after it.
-
-        Args:
-            position: 0, or one that was yielded before.
-        """
+        """Yield the rows from a position on, 0 or one that was yielded before, each with the position after it."""
         data, end = self._look()
         yield from output_rows(data, position, end)
 

@@ -86,13 +86,7 @@ def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
 
 
 class LegoPort:
-    """One port.
-
-    Args:
-        session: Clock and simulation.
-        port: Short name, such as `in1`.
-        plugged: The connected device.
-    """
+    """One port, by its short name such as `in1`, and what is connected to it."""
 
     def __init__(self, session: Session, port: str, plugged: Plugged | None) -> None:
         self._session, self._port, self._plugged = session, port, plugged

@@ -25,13 +25,7 @@ def round_half_up(number: float) -> int:
 
 
 def speak_as_browser(session: Session, motor: Any, brick: Brick) -> None:
-    """Patch `ev3dev2.motor` after its import.
-
-    Args:
-        session: Clock and simulation.
-        motor: The module.
-        brick: The devices.
-    """
+    """Patch `ev3dev2.motor` after its import."""
     _patch_properties(motor.Motor, brick)
     motor.Motor.wait = _wait(session, motor.__name__)
     _patch_moves(motor)

@@ -42,10 +42,6 @@ class InputEvent:
 class InputDevice:
     """The buttons as an input device of `evdev`.
 
-    Args:
-        session: Provides the buttons that are pressed.
-        path: Must be `DEVICE_PATH`.
-
     Raises:
         FileNotFoundError: `path` is another path.
     """

@@ -19,12 +19,7 @@ _PARTS = re.compile(r"\x1b\[\??([-\d;]*)([A-Za-z])|([^\x1b])|\x1b", re.DOTALL)
 
 
 class TextGrid:
-    """The subset of the Linux console that the library uses.
-
-    Args:
-        columns: Characters per row.
-        rows: Number of rows.
-    """
+    """The subset of the Linux console that the library uses, of so many characters per row."""
 
     def __init__(self, columns: int, rows: int) -> None:
         self.columns, self.rows = columns, rows
@@ -134,12 +129,7 @@ def font_size(name: str) -> tuple[int, int] | None:
 
 
 class Terminal:
-    """Prints the library's text on the screen and runs the screen commands.
-
-    Args:
-        session: The program's clock.
-        screen: Displays the text.
-    """
+    """Prints the library's text on the screen and runs the screen commands."""
 
     def __init__(self, session: Session, screen: Screen) -> None:
         self._session, self._screen = session, screen

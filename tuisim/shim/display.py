@@ -24,23 +24,14 @@ NO_FILE = -1
 
 
 class Screen:
-    """Records the contents of the brick's screen, images and text, each time they change.
-
-    Args:
-        session: Receives the rows.
-    """
+    """Records the contents of the brick's screen, images and text, each time they change."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
         self._shown: tuple[str, Stream] | None = None
 
     def show(self, row: str, stream: Stream) -> None:
-        """Show an image or a text; unchanged contents are not recorded again.
-
-        Args:
-            row: In the format of `runs.brick_state`.
-            stream: `Stream.DISPLAY` or `Stream.CONSOLE`.
-        """
+        """Show an image or a text, in the format of `runs.brick_state`; unchanged contents are not recorded again."""
         if (row, stream) != self._shown:
             self._shown = (row, stream)
             self._session.show(row, stream)
@@ -76,8 +67,7 @@ class FrameBuffer(mmap.mmap):
 def picture_of(pixels: bytes) -> bytes:
     """Return the image in the display's memory, one bit per pixel, in the format of `runs.brick_state`.
 
-    Args:
-        pixels: Four bytes per pixel; the display shows the green one.
+    Of the four bytes per pixel the display shows the green one.
     """
     from PIL import Image
 

@@ -33,21 +33,13 @@ STOP_POLL_NS = MS
 
 
 def led_name(name: str) -> str:
-    """Return the kernel's name of an LED, such as `led0:red:brick-status`.
-
-    Args:
-        name: One of `LED_NAMES`.
-    """
+    """Return the kernel's name, such as `led0:red:brick-status`, of an LED of `LED_NAMES`."""
     side, color = name.split()
     return f"led{('left', 'right').index(side)}:{color}:brick-status"
 
 
 class Lights:
-    """All LEDs, and the record of their changes.
-
-    Args:
-        session: Receives the rows.
-    """
+    """All LEDs, and the record of their changes."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
@@ -66,12 +58,7 @@ class Lights:
 
 
 class Light:
-    """One LED.
-
-    Args:
-        lights: Notified of each change.
-        green: Whether the LED is on when the program starts.
-    """
+    """One LED; a green one is on when the program starts."""
 
     def __init__(self, lights: Lights, green: bool) -> None:
         self._lights = lights

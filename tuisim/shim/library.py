@@ -137,19 +137,15 @@ def _matches(value: str, pattern: str | list[str]) -> bool:
 def _patch_device(device_class: Any, brick: Brick) -> None:
     devices = brick.by_path
 
-    def get_attr_int(self: Any, attribute: Any, name: str) -> tuple[Any, int]:
-        try:
-            value = devices[self._path].read(name)
-        except OSError as error:
-            self._raise_friendly_access_error(error, name, None)
-        return attribute, int(value)  # type: ignore[call-overload]
+    def getter(convert: Callable[[Any], object]) -> Callable[..., tuple[Any, object]]:
+        def get(self: Any, attribute: Any, name: str) -> tuple[Any, object]:
+            try:
+                value = devices[self._path].read(name)
+            except OSError as error:
+                self._raise_friendly_access_error(error, name, None)
+            return attribute, convert(value)
 
-    def get_attribute(self: Any, attribute: Any, name: str) -> tuple[Any, str]:
-        try:
-            value = devices[self._path].read(name)
-        except OSError as error:
-            self._raise_friendly_access_error(error, name, None)
-        return attribute, str(value)
+        return get
 
     def set_attribute(self: Any, attribute: Any, name: str, value: Any) -> Any:
         try:
@@ -167,9 +163,9 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
         return attribute
 
     for replacement, names in (
-        (get_attr_int, ("get_attr_int",)),
+        (getter(int), ("get_attr_int",)),
         (set_attr_int, ("set_attr_int",)),
-        (get_attribute, ("get_attr_string", "get_attr_line", "_get_attribute")),
+        (getter(str), ("get_attr_string", "get_attr_line", "_get_attribute")),
         (set_attribute, ("_set_attribute", "set_attr_string", "set_attr_raw")),
     ):
         for name in names:

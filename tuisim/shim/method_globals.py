@@ -12,12 +12,7 @@ from typing import Any
 
 
 def rebind(changed: type[Any], **names: object) -> None:
-    """Replace global names for all methods and properties of a class.
-
-    Args:
-        changed: The class to patch.
-        names: Replacements, by global name.
-    """
+    """Replace global names for all methods and properties of a class."""
     for name, part in list(vars(changed).items()):
         match part:
             case types.FunctionType():

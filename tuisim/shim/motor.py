@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import partial
 
@@ -38,25 +39,54 @@ KINDS = {
 """By `MotorSpec.kind`."""
 
 
-def _same(value: object) -> object:
-    return value
+class _Tacho(ABC):
+    """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
+
+    def __init__(self, session: Session, port: str, kind: str) -> None:
+        self._session, self._port, self._kind = session, port, KINDS[kind]
+        self._stop_action, self._polarity = "coast", "normal"
+
+    @abstractmethod
+    def device(self) -> SimDevice:
+        """Return the device that the library reads and writes."""
+
+    def _device(
+        self, readers: dict[str, Reader], writers: dict[str, Writer], numbers: dict[str, NumberWriter]
+    ) -> SimDevice:
+        """Return the device with these attributes and those that all motors have."""
+        common: dict[str, Reader] = {
+            "address": lambda: f"ev3-ports:{self._port}",
+            "driver_name": lambda: self._kind.driver_name,
+            "commands": lambda: " ".join(COMMANDS),
+            "stop_actions": lambda: " ".join(STOP_ACTIONS),
+            "count_per_rot": lambda: COUNT_PER_ROT,
+            "max_speed": lambda: self._kind.max_speed_dps,
+            "stop_action": lambda: self._stop_action,
+            "polarity": lambda: self._polarity,
+        }
+        writers |= {"stop_action": self._set_stop_action, "polarity": self._set_polarity, "command": self._command}
+        return SimDevice(self._session, common | readers, writers, None, numbers)
+
+    @abstractmethod
+    def _command(self, text: str) -> None: ...
+
+    def _set_stop_action(self, text: str) -> None:
+        if text not in STOP_ACTIONS:
+            raise refuse(text)
+        self._stop_action = text
+
+    def _set_polarity(self, text: str) -> None:
+        if text not in POLARITIES:
+            raise refuse(text)
+        self._polarity = text
 
 
-class TachoMotor:
-    """One motor on an output port.
-
-    Args:
-        session: Clock and simulation.
-        motor: The simulated motor.
-        port: Name of the port, such as `outB`.
-        kind: One of `KINDS`.
-    """
+class TachoMotor(_Tacho):
+    """One motor as the kernel driver exposes it."""
 
     def __init__(self, session: Session, motor: BrickMotor, port: str, kind: str = "large") -> None:
-        self._kind = KINDS[kind]
-        self._session = session
+        super().__init__(session, port, kind)
         self._motor = motor
-        self._port = port
         self._numbers: dict[str, int] = {}
         self._direct = False
         self._standstill_tick = 0
@@ -78,23 +108,12 @@ class TachoMotor:
 
     def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""
-        fixed = {
-            "address": f"ev3-ports:{self._port}",
-            "driver_name": self._kind.driver_name,
-            "commands": " ".join(COMMANDS),
-            "stop_actions": " ".join(STOP_ACTIONS),
-            "count_per_rot": COUNT_PER_ROT,
-            "max_speed": self._kind.max_speed_dps,
-        }
-        readers: dict[str, Reader] = {name: partial(_same, value) for name, value in fixed.items()}
-        readers |= {name: partial(self._numbers.__getitem__, name) for name in self._numbers}
+        readers: dict[str, Reader] = {name: partial(self._numbers.__getitem__, name) for name in self._numbers}
         readers |= {
             "position": lambda: round(self._motor.position_deg) * self._sign,
             "speed": self._speed,
             "duty_cycle": lambda: round(100 * self._speed() / self._kind.max_speed_dps),
             "state": self.state,
-            "stop_action": lambda: self._stop_action,
-            "polarity": lambda: self._polarity,
         }
         limits = dict.fromkeys(self._numbers, (0, MAX_SET_POINT))
         max_speed = self._kind.max_speed_dps
@@ -106,12 +125,7 @@ class TachoMotor:
             "ramp_down_sp": (0, MAX_RAMP_MS),
         }
         numbers = {name: self._number_writer(name, *limits[name]) for name in self._numbers}
-        writers = {
-            "command": self._command,
-            "stop_action": self._set_stop_action,
-            "polarity": self._set_polarity,
-        }
-        return SimDevice(self._session, readers, writers, None, {**numbers, "position": self._set_position})
+        return self._device(readers, {}, {**numbers, "position": self._set_position})
 
     def _number_writer(self, name: str, low: int, high: int) -> NumberWriter:
         numbers = self._numbers
@@ -146,15 +160,9 @@ class TachoMotor:
         self._motor.position_deg = float(value * self._sign)
         self._last_goal = None
 
-    def _set_stop_action(self, text: str) -> None:
-        if text not in STOP_ACTIONS:
-            raise refuse(text)
-        self._stop_action = text
-
     def _set_polarity(self, text: str) -> None:
-        if text not in POLARITIES:
-            raise refuse(text)
-        self._polarity, self._sign = text, -1 if text == "inversed" else 1
+        super()._set_polarity(text)
+        self._sign = -1 if text == "inversed" else 1
 
     def _command(self, text: str) -> None:
         if text not in COMMANDS:
@@ -260,32 +268,19 @@ def plain(value: float) -> float:
     return int(value) if value.is_integer() else value
 
 
-class BrowserTacho:
-    """One motor of the browser simulator on an output port: set points take effect at once, commands bypass the driver.
-
-    Args:
-        session: Clock and simulation.
-        motor: The simulated motor.
-        port: Name of the port, such as `outB`.
-        kind: One of `motor.KINDS`.
-    """
+class BrowserTacho(_Tacho):
+    """One motor of the browser simulator: set points take effect at once, commands bypass the driver."""
 
     def __init__(self, session: Session, motor: BrowserMotor, port: str, kind: str = "large") -> None:
-        self._session, self._motor, self._port, self._kind = session, motor, port, KINDS[kind]
+        super().__init__(session, port, kind)
+        self._motor = motor
         self._numbers = dict.fromkeys(WITHOUT_EFFECT, 0)
         self._position_sp, self._time_sp_s = 0, 0.0
-        self._stop_action, self._polarity = "coast", "normal"
 
     def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""
         motor = self._motor
         readers: dict[str, Reader] = {
-            "address": lambda: f"ev3-ports:{self._port}",
-            "driver_name": lambda: self._kind.driver_name,
-            "commands": lambda: " ".join(COMMANDS),
-            "stop_actions": lambda: " ".join(STOP_ACTIONS),
-            "count_per_rot": lambda: COUNT_PER_ROT,
-            "max_speed": lambda: self._kind.max_speed_dps,
             "position": lambda: plain(motor.position_deg),
             "speed": lambda: plain(motor.speed_dps),
             "duty_cycle": lambda: round(100 * motor.speed_dps / self._kind.max_speed_dps),
@@ -294,23 +289,15 @@ class BrowserTacho:
             "position_sp": lambda: self._position_sp,
             # As in the browser simulator.
             "time_sp": lambda: int(motor.speed_sp),
-            "stop_action": lambda: self._stop_action,
-            "polarity": lambda: self._polarity,
         }
         readers |= {name: partial(self._numbers.__getitem__, name) for name in WITHOUT_EFFECT}
-        writers: dict[str, Writer] = {
-            "command": self._command,
-            "stop_action": self._set_stop_action,
-            "polarity": self._set_polarity,
-            "time_sp": self._set_time,
-        }
         numbers: dict[str, NumberWriter] = {name: partial(self._numbers.__setitem__, name) for name in WITHOUT_EFFECT}
         numbers |= {
             "speed_sp": lambda value: setattr(motor, "speed_sp", float(value)),
             "position_sp": self._set_position_sp,
             "position": lambda value: setattr(motor, "position_deg", float(value)),
         }
-        return SimDevice(self._session, readers, writers, None, numbers)
+        return self._device(readers, {"time_sp": self._set_time}, numbers)
 
     def _command(self, text: str) -> None:
         motor = self._motor
@@ -342,12 +329,6 @@ class BrowserTacho:
         except ValueError:
             raise refuse(text) from None
 
-    def _set_stop_action(self, text: str) -> None:
-        if text not in STOP_ACTIONS:
-            raise refuse(text)
-        self._stop_action = text
-
     def _set_polarity(self, text: str) -> None:
-        if text not in POLARITIES:
-            raise refuse(text)
-        self._polarity, self._motor.roll_sign = text, -1.0 if text == "inversed" else 1.0
+        super()._set_polarity(text)
+        self._motor.roll_sign = -1.0 if text == "inversed" else 1.0

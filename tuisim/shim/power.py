@@ -28,11 +28,7 @@ S_PER_H = 3600
 
 
 class Battery:
-    """The battery of one run.
-
-    Args:
-        session: Clock and simulation.
-    """
+    """The battery of one run."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

@@ -22,14 +22,7 @@ from tuisim.shim.session import Session
 
 
 def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, colors: dict[str, ColorDevice]) -> None:
-    """Add the course's properties to `ev3dev2.sensor.lego`.
-
-    Args:
-        session: Clock and simulation.
-        module: The imported module.
-        brick: The devices.
-        colors: Colour sensors by device path.
-    """
+    """Add the course's properties to `ev3dev2.sensor.lego`; the colour sensors are given by device path."""
     lego: Any = module
     color_sensor = lego.ColorSensor
 

@@ -24,13 +24,7 @@ _KILLED, _TERMINATED = -9, -15
 
 
 class PlayedSound:
-    """Represents the process that plays a sound while the program continues.
-
-    Args:
-        session: The program's clock.
-        command: The command that plays it.
-        length_ns: Duration of the sound.
-    """
+    """Represents the process that plays a sound while the program continues."""
 
     stdin = stdout = stderr = None
     pid = NO_PID
@@ -119,11 +113,7 @@ class Mixer:
 
 
 class Loudspeaker:
-    """Passes sounds to the session.
-
-    Args:
-        session: The program's clock.
-    """
+    """Passes sounds to the session."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

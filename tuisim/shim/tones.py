@@ -154,12 +154,7 @@ def beep_heard(words: Sequence[str]) -> Heard:
 
 
 def file_heard(path: str, folder: str = "") -> Heard:
-    """Return the sound of a sound file.
-
-    Args:
-        path: The path that the program gave.
-        folder: Base of a relative path; by default the program's working directory.
-    """
+    """Return the sound of a sound file; the folder of a relative path is by default the program's working directory."""
     import wave
 
     place = os.path.join(folder, path)
@@ -174,12 +169,7 @@ def file_heard(path: str, folder: str = "") -> Heard:
 
 
 def speech_heard(text: str, words_a_minute: str = "") -> Heard:
-    """Return the sound of a spoken text.
-
-    Args:
-        text: The text.
-        words_a_minute: Argument for `espeak`; its default applies if that is not a number.
-    """
+    """Return the sound of a spoken text; the default of `espeak` applies if `words_a_minute` is not a number."""
     try:
         speed = min(max(int(words_a_minute), SLOWEST_WPM), FASTEST_WPM)
     except ValueError:

@@ -10,6 +10,8 @@ from typing import Any, NoReturn
 
 from tuisim.errors import NotSimulated
 
+_THREADS = "the simulated brick has one process; use threading"
+
 REFUSED: Mapping[str, Mapping[str, str]] = {
     "ev3dev2.control.GyroBalancer": {
         "GyroBalancer": "it balances on two wheels, and this robot cannot fall; to drive, use MoveTank or MoveSteering",
@@ -18,10 +20,10 @@ REFUSED: Mapping[str, Mapping[str, str]] = {
         "RobotWebServer": "a program has no network; for driving by hand use RemoteControlledTank or the buttons",
         "WebControlledTank": "a program has no network; for driving by hand use RemoteControlledTank or the buttons",
     },
+    "multiprocessing.shared_memory": {"SharedMemory": _THREADS},
 }
 """Classes that cannot be instantiated and their alternatives, by module."""
 
-_THREADS = "the simulated brick has one process; use threading"
 _IN_CONTEXT = (
     "Array", "Barrier", "BoundedSemaphore", "Condition", "Event", "JoinableQueue", "Lock", "Manager", "Pipe", "Pool",
     "Queue", "RLock", "RawArray", "RawValue", "Semaphore", "SimpleQueue", "Value",
@@ -54,11 +56,6 @@ def refuse_process(module: types.ModuleType) -> None:
     module.BaseProcess.__init__ = _refusal("multiprocessing.Process", _hint("Process"))
 
 
-def refuse_shared_memory(module: types.ModuleType) -> None:
-    """Refuse memory shared by processes; called after the import of `multiprocessing.shared_memory`."""
-    module.SharedMemory.__init__ = _refusal("multiprocessing.shared_memory.SharedMemory", _THREADS)
-
-
 def refuse_process_pool(module: types.ModuleType) -> None:
     """Refuse the process pool; called after the import of `concurrent.futures.process`."""
     name = "ProcessPoolExecutor"
@@ -84,7 +81,6 @@ PROCESSES = {
     "multiprocessing.context": refuse_contexts,
     "multiprocessing.pool": keep_thread_pool,
     "multiprocessing.process": refuse_process,
-    "multiprocessing.shared_memory": refuse_shared_memory,
 }
 """Functions that refuse the parts of a module that would start processes on this computer."""
 

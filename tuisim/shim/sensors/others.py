@@ -19,10 +19,7 @@ MAX_RATE_DPS = 440
 def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[LegoSensor]) -> LegoSensor:
     """Return an ultrasonic sensor.
 
-    Args:
-        session: Clock and simulation.
-        spec: The sensor.
-        others: The robot's sensors, including this one; it hears those that ping. More may be added later.
+    It hears those of the robot's sensors that ping; they include this one, and more may be added later.
     """
     sim = session.sim
     read, period = sim.spec.profile.ultrasonic_read_ns, sim.spec.profile.ultrasonic_period_ticks

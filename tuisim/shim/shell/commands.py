@@ -89,13 +89,7 @@ class Streams:
 
 
 class Shell:
-    """Runs lines of commands.
-
-    Args:
-        session: The program's clock.
-        terminal: The text screen.
-        mixer: The volume.
-    """
+    """Runs lines of commands."""
 
     def __init__(self, session: Session, terminal: Terminal, mixer: Mixer) -> None:
         self.session, self.terminal, self.mixer = session, terminal, mixer
@@ -176,8 +170,6 @@ class Running:
     """Commands that run in the background.
 
     Args:
-        session: The program's clock.
-        steps: The commands.
         several: Whether more follows the first sound, so that progress must not depend on calls of `poll`.
     """
 

@@ -24,11 +24,7 @@ EXIT_SHIFT = 8
 
 
 class OutPipe(io.RawIOBase):
-    """Output of a process; reading blocks until the process ends.
-
-    Args:
-        process: The process.
-    """
+    """Output of a process; reading blocks until the process ends."""
 
     def __init__(self, process: Process) -> None:
         self.process, self._data = process, bytearray()
@@ -60,11 +56,7 @@ class OutPipe(io.RawIOBase):
 
 
 class InPipe(io.RawIOBase):
-    """Input of a process; it is delivered when the pipe is closed.
-
-    Args:
-        process: The process.
-    """
+    """Input of a process; it is delivered when the pipe is closed."""
 
     def __init__(self, process: Process) -> None:
         self._process, self._data = process, bytearray()
@@ -208,12 +200,7 @@ class Process:
 
 
 class System:
-    """State shared by all processes of a run.
-
-    Args:
-        session: The program's clock.
-        shell: The brick's commands.
-    """
+    """State shared by all processes of a run."""
 
     def __init__(self, session: Session, shell: Shell) -> None:
         self.session, self.shell = session, shell

@@ -22,12 +22,7 @@ _UNKNOWN = {"$": "variables", "`": "commands in words", "(": "groups", ")": "gro
 
 
 class NotUnderstood(Exception):
-    """A command line that the brick's shell rejects.
-
-    Args:
-        message: The reason.
-        status: The shell's exit status.
-    """
+    """A command line that the brick's shell rejects, with the reason and the shell's exit status."""
 
     def __init__(self, message: str, status: int = NOT_THERE) -> None:
         super().__init__(message)
