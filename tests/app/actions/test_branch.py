@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
-from tests.app.app_help import notices, program, ready, screen_text, settings, until
+from tests.app.app_help import notices, program, ready, screen_text, settings, until, until_shown
 from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.runs import branch_root
@@ -121,7 +121,9 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         await until(pilot, lambda: "Run 1 ends here" in screen_text(app))
         await pilot.press("n")
         assert app.run_controller.timeline.at == at
-        await pilot.press("y", "y")
+        await pilot.press("y")
+        await until_shown(pilot, "Branch from")
+        await pilot.press("y")
         await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.PAUSED)
         assert app.run_controller.timeline.newest == at
         assert not app.run_controller.in_past
@@ -154,7 +156,9 @@ async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot, ticks=80)
         first = app.run_controller.run_id
-        await pilot.press("less_than_sign", "R", "r")
+        await pilot.press("less_than_sign", "R")
+        await until(pilot, lambda: len(app.screen_stack) == 2)
+        await pilot.press("r")
         await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.RUNNING)
         assert not app.run_controller.in_past
         await until(pilot, lambda: app.run_controller.timeline.newest > 5)
@@ -169,7 +173,9 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         first = app.run_controller.run_id
         app.run_controller.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
         to_tick(app.workspace, 80)
-        await pilot.press("y", "y")
+        await pilot.press("y")
+        await until_shown(pilot, "Branch from")
+        await pilot.press("y")
         await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: any("of the edited program: it differs" in n for n in notices(app)))
 
@@ -182,6 +188,7 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
         first = app.run_controller.run_id
         to_tick(app.workspace, 200)
         app.run_controller.set_noise(NoiseSpec(0, 0))
+        await until_shown(pilot, "Branch from 2.00 s?")
         await pilot.press("y")
         await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260)
         await stop(pilot, app)
