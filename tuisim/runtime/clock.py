@@ -67,7 +67,6 @@ def patch_time(session: Session) -> None:
 
 
 def _patch_calendar(wall: Callable[[], float]) -> None:
-    """Make formatting functions default to the simulated time."""
     localtime, gmtime, ctime = time.localtime, time.gmtime, time.ctime
     strftime, asctime = time.strftime, time.asctime
 

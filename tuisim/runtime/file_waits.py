@@ -124,7 +124,6 @@ class FileWaits:
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
     def _wait_for_socket(self, socket: Any, writes: bool) -> None:
-        """Block until the socket can be read or written; raise TimeoutError after its timeout."""
         timeout_s = socket.gettimeout()
         if timeout_s == 0.0:
             return
@@ -185,7 +184,6 @@ def _dont_wait() -> int:
 
 
 def _nanoseconds(timeout: Any, per_unit: int) -> int | None:
-    """Return a timeout in nanoseconds; None if there is none."""
     return None if timeout is None else round(timeout * per_unit)
 
 

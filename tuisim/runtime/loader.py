@@ -99,7 +99,6 @@ def point_at_prelude(error: BaseException) -> None:
 
 
 def _statement_of(name: str) -> ast.stmt | None:
-    """Return the statement of the whole prelude that defines a name; None if there is none."""
     for statement in ast.parse(PRELUDE_TEXTS["preloaded"]).body:
         match statement:
             case ast.ImportFrom(names=aliases):

@@ -159,7 +159,6 @@ class ProgramRunner:
         gc.collect()
 
     def _finish_streams(self) -> None:
-        """Write the text that the program printed without a newline."""
         for stream in (self.stdout, self.stderr):
             try:
                 stream.finish()
@@ -271,7 +270,6 @@ class ProgramRunner:
         self._thread_error(ignored.exc_type, ignored.exc_value, ignored.exc_traceback)
 
     def _write_error(self, text: str) -> None:
-        """Write an error message to standard error."""
         try:
             for line in text.rstrip("\n").split("\n"):
                 self._output.row(line, Stream.STDERR)

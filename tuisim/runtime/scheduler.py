@@ -133,7 +133,6 @@ class Scheduler:
             self._ready.appendleft(main)
 
     def _heed(self, me: ScheduledThread) -> None:
-        """Call the pending interrupt of this thread."""
         if me.interrupt is None:
             return
         call, me.interrupt = me.interrupt, None
@@ -154,7 +153,6 @@ class Scheduler:
                 queue.remove(me)
 
     def _sleep(self, me: ScheduledThread) -> None:
-        """Block until it is this thread's turn."""
         session = self._session
         me.free, session.free = session.free, 0
         me.struck = False

@@ -121,7 +121,6 @@ def patch_faulthandler() -> None:
 
 
 def _stacks_text(frame: types.FrameType, all_threads: bool) -> str:
-    """Return the stacks of the threads, the current one first, in the format of `faulthandler`."""
     if not all_threads:
         return _stack_text("Stack", frame)
     import threading

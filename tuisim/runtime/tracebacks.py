@@ -80,7 +80,6 @@ def _line_of(error: BaseException) -> int:
 
 
 def _summary(trace: traceback.TracebackException) -> str:
-    """Return type and message in one line."""
     only = source_lines("".join(trace.format_exception_only()).strip())
     # A syntax error starts with its location; of a message of several lines the first is the most useful.
     return only[-1] if only[0].startswith("File ") else only[0]
@@ -141,7 +140,6 @@ def _linked(trace: Trace) -> Trace | None:
 
 
 def _text_of(chain: list[Trace]) -> str:
-    """Return an error and its causes as Python prints them; of a long chain, only both ends."""
     left_out = len(chain) - 2 * MOST_LINKED
     if left_out <= 0:
         return "".join(chain[0].format())

@@ -29,7 +29,6 @@ class CodeLines:
 
 
 def _lines_of(code: types.CodeType) -> set[int]:
-    """Return the lines of a code object and of all functions and classes in it."""
     found: set[int] = set()
     left = [code]
     while left:

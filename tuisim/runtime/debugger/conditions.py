@@ -232,7 +232,6 @@ class Watcher:
         return self._motion(quantity)
 
     def _column(self, kind: SensorKind, sensor: Any, at: int) -> float:
-        """Return one telemetry value of a sensor."""
         sim = self._session.sim
         return kind.measure(sensor, sim.instant(), sim.spec, self._session.field)[at]
 

@@ -160,7 +160,6 @@ class Debugger:
         self._session.output.watch = self._after_row if self._watcher.rows else None
 
     def _trace(self, at_tick: bool) -> None:
-        """Switch tracing on or off as needed."""
         tracer, tick = self._tracer, self._session.sim.tick
         counting = self._trace_from is not None and tick >= self._trace_from
         line_goal = bool(self._line or self._step)
@@ -179,7 +178,6 @@ class Debugger:
             session.flags |= LIVE
 
     def _goal_ticks(self) -> list[int]:
-        """Return the ticks at which the debugger has to act."""
         goals = [] if self._instant is None else [self._instant[0]]
         return goals if self._trace_from is None or self._tracer.on else [*goals, self._trace_from]
 
@@ -224,7 +222,6 @@ class Debugger:
     # Lines and rows
 
     def _at_line(self, frame: types.FrameType, line: int) -> None:
-        """Check whether to pause at a line that is about to run."""
         session = self._session
         if session.flags & ATTENTION:
             session.checkpoint()
@@ -294,11 +291,6 @@ class Debugger:
             raise
 
     def _hold(self, moment: Paused) -> None:
-        """Pause; block until resumed.
-
-        Raises:
-            StopProgram: the run has to stop.
-        """
         session = self._session
         self._trace_from = None if self._tracer.on else self._trace_from
         session.steering.hold(session, moment)

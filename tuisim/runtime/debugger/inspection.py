@@ -173,7 +173,6 @@ class Looker:
         return {name: value for name, value in names.items() if prepared.get(name) != id(value)}
 
     def _marked(self, scope: tuple[str, ...], names: Names) -> tuple[Variable, ...]:
-        """Return variables, marked if their text has changed."""
         key = (scope[0], "\0".join(scope[1:]))
         before = self._seen.get(key)
         if names:

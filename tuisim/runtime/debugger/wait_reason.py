@@ -36,7 +36,6 @@ def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType
 
 
 def _frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
-    """Yield the frames between the innermost one and the program's code."""
     while frame is not None:
         file = frame.f_code.co_filename
         if file.startswith(PACKAGE_FOLDER) or _LIBRARY in file or _is_library(file):
@@ -94,7 +93,6 @@ def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameTy
 
 
 def _lock_owner(outer: list[types.FrameType]) -> str:
-    """Return the owner of the lock that is waited for."""
     names = [(os.path.basename(frame.f_code.co_filename), frame.f_code.co_qualname) for frame in outer]
     for file, name in names:
         if file == "queue.py":
@@ -115,7 +113,6 @@ def _button_note(names: dict[str, Any]) -> str:
 
 
 def _motors(session: Session) -> list[tuple[str, Motor]]:
-    """Return port and motor, in the order of the device folders."""
     sim = session.sim
     motors = zip(sim.spec.robot.motors, (sim.left, sim.right, *sim.others), strict=True)
     return sorted(((spec.port, motor) for spec, motor in motors), key=lambda one: one[0])
@@ -132,7 +129,6 @@ def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> s
 
 
 def _paths(owner: object) -> list[str]:
-    """Return the device folders of a motor or a set of motors of the library."""
     attributes = getattr(owner, "__dict__", {})
     if isinstance(path := attributes.get("_path"), str):
         return [path]
