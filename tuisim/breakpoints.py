@@ -292,7 +292,6 @@ def _number(text: str, written: str, least: float = -math.inf) -> float:
 
 
 def _common_text(rule: BreakRule, written: str) -> str:
-    """Return the normalized text of a rule."""
     match rule:
         case LineBreak(line=line, condition=condition):
             return f"{line} if {condition}" if condition else str(line)

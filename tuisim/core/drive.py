@@ -85,23 +85,19 @@ class Drive(Protocol):
     gyro_zero_deg: float
     """Heading at which the gyro reads 0."""
 
-    def put(self, pose: Pose) -> None:
-        """Set the robot's pose."""
+    def put(self, pose: Pose) -> None: ...
 
-    def roll(self, left_deg: float, right_deg: float) -> None:
-        """Move the robot by one tick's rotation of the wheels."""
+    def roll(self, left_deg: float, right_deg: float) -> None: ...
 
-    def glide(self, records: Records, left: Glide, right: Glide) -> None:
-        """Move the robot by several ticks and write a record for each."""
+    def glide(self, records: Records, left: Glide, right: Glide) -> None: ...
 
-    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
-        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
+    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]: ...
 
 
 def _glide_straight(
     drive: Drive, forward_mm: float, way: float, records: Records, left: EvenGlide, right: EvenGlide
 ) -> tuple[float, float]:
-    """Move the robot by equal steps in the direction `way`, in radians; see `Drive.glide_evenly`."""
+    """Move the robot by equal steps in the direction `way`, in radians; see `BrickDrive.glide_evenly`."""
     buffer, offsets, ticks, line, *_ = records
     _fill(records, offsets.start, left, right, drive.gyro_zero_deg)
     x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, POSITION_FIELDS.pack_into

@@ -200,7 +200,6 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -
 
 
 def _noises(records: Array, spec: RunSpec, actions: Sequence[UserAction]) -> list[NoiseSpec]:
-    """Return the noise at every tick."""
     import numpy as np
 
     if not any(isinstance(action.command, SetNoise) for action in actions):

@@ -30,8 +30,7 @@ from tuisim.shim.devices import Brick, SimDevice, refuse
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
 from tuisim.shim.motor import KINDS, BrowserTacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
-from tuisim.shim.sensors.color import ColorDevice, LegoSensor
-from tuisim.shim.sensors.others import GyroDevice, infrared_sensor, touch_sensor, ultrasonic_sensor
+from tuisim.shim.sensors import ColorDevice, GyroDevice, LegoSensor, infrared_sensor, touch_sensor, ultrasonic_sensor
 from tuisim.shim.session import Session
 
 DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor]] = {

@@ -92,6 +92,12 @@ def _wait(session: Session, library: str) -> Callable[..., bool]:
 
 
 def _patch_moves(motor: Any) -> None:
+    def start(one: Any, command: str, brake: bool, block: bool) -> None:
+        one._set_brake(brake)
+        getattr(one, command)()
+        if block:
+            _block(motor, one)
+
     def on_for_degrees(self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True) -> None:
         """Rotate the motor at `speed` for `degrees`."""
         native = self._speed_native_units(speed)
@@ -100,10 +106,7 @@ def _patch_moves(motor: Any) -> None:
             native = round_half_up(native)
         self.position_sp = round_half_up(-degrees if native < 0 else degrees)
         self.speed_sp = round_half_up(abs(native))
-        self._set_brake(brake)
-        self.run_to_rel_pos()
-        if block:
-            _block(motor, self)
+        start(self, "run_to_rel_pos", brake, block)
 
     def on_for_rotations(self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True) -> None:
         """Rotate the motor at `speed` for `rotations`."""
@@ -113,26 +116,17 @@ def _patch_moves(motor: Any) -> None:
         """Rotate the motor at `speed` for `seconds`."""
         _refuse_negative(seconds)
         self.speed_sp, self.time_sp = round_half_up(self._speed_native_units(speed)), seconds
-        self._set_brake(brake)
-        self.run_timed()
-        if block:
-            _block(motor, self)
+        start(self, "run_timed", brake, block)
 
     def on(self: Any, speed: Any, brake: bool = True, block: bool = False) -> None:
         """Rotate the motor at `speed` indefinitely."""
         self.speed_sp = round_half_up(self._speed_native_units(speed))
-        self._set_brake(brake)
-        self.run_forever()
-        if block:
-            _block(motor, self)
+        start(self, "run_forever", brake, block)
 
     def on_to_position(self: Any, speed: Any, position: float, brake: bool = True, block: bool = True) -> None:
         """Rotate the motor at `speed` to `position`."""
         self.speed_sp, self.position_sp = round_half_up(self._speed_native_units(speed)), position
-        self._set_brake(brake)
-        self.run_to_abs_pos()
-        if block:
-            _block(motor, self)
+        start(self, "run_to_abs_pos", brake, block)
 
     for method in (on, on_for_degrees, on_for_rotations, on_for_seconds, on_to_position):
         setattr(motor.Motor, method.__name__, method)
@@ -163,43 +157,44 @@ def _patch_sets(motor: Any) -> None:
 
 
 def _patch_pairs(motor: Any) -> None:
+    def motors_of(pair: Any) -> tuple[Any, Any]:
+        return pair.left_motor, pair.right_motor
+
+    def start(pair: Any, command: str, block: bool) -> None:
+        for one in motors_of(pair):
+            getattr(one, command)()
+        if block:
+            pair._block()
+
     def on_for_degrees(
         self: Any, left_speed: Any, right_speed: Any, degrees: float, brake: bool = True, block: bool = True
     ) -> None:
         """Rotate the motors for `degrees`; the slower one turns proportionally less."""
         speeds = [round_half_up(speed) for speed in self._unpack_speeds_to_native_units(left_speed, right_speed)]
         fastest = max(map(abs, speeds))
-        pair = (self.left_motor, self.right_motor)
-        for one, speed in zip(pair, speeds, strict=True):
+        for one, speed in zip(motors_of(self), speeds, strict=True):
             part = round_half_up(degrees if abs(speed) == fastest else abs(speed / fastest) * degrees)
             one.position_sp, one.speed_sp = -part if speed < 0 else part, abs(speed)
             one._set_brake(brake)
-        for one in pair:
-            one.run_to_rel_pos()
-        if block:
-            self._block()
+        start(self, "run_to_rel_pos", block)
 
     def on_for_seconds(
         self: Any, left_speed: Any, right_speed: Any, seconds: float, brake: bool = True, block: bool = True
     ) -> None:
         """Rotate the motors for `seconds`."""
         _refuse_negative(seconds)
-        pair = (self.left_motor, self.right_motor)
-        for one, speed in zip(pair, self._unpack_speeds_to_native_units(left_speed, right_speed), strict=True):
+        speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
+        for one, speed in zip(motors_of(self), speeds, strict=True):
             one.speed_sp, one.time_sp = round_half_up(speed), seconds
             one._set_brake(brake)
-        for one in pair:
-            one.run_timed()
-        if block:
-            self._block()
+        start(self, "run_timed", block)
 
     def on(self: Any, left_speed: Any, right_speed: Any) -> None:
         """Rotate the motors indefinitely."""
-        pair = (self.left_motor, self.right_motor)
-        for one, speed in zip(pair, self._unpack_speeds_to_native_units(left_speed, right_speed), strict=True):
+        speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
+        for one, speed in zip(motors_of(self), speeds, strict=True):
             one.speed_sp = round_half_up(speed)
-        for one in pair:
-            one.run_forever()
+        start(self, "run_forever", False)
 
     for method in (on, on_for_degrees, on_for_seconds):
         setattr(motor.MoveTank, method.__name__, method)

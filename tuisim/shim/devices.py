@@ -118,6 +118,11 @@ class Brick:
                 yield path[len(prefix) :]
 
 
+def plain(number: float) -> float:
+    """Return a whole number as int, so that it is shown without a decimal point."""
+    return int(number) if float(number).is_integer() else number
+
+
 def refuse(text: str) -> OSError:
     """Return the error of a driver that rejects a value."""
     return OSError(errno.EINVAL, f"invalid value {text!r}")

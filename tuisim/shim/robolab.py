@@ -15,9 +15,8 @@ from typing import Any
 
 from tuisim.core.profile import MotorLaw
 from tuisim.core.sensors.color import WHITE, percent
-from tuisim.shim.devices import Brick, free_of_charge
-from tuisim.shim.motor import plain
-from tuisim.shim.sensors.color import ColorDevice
+from tuisim.shim.devices import Brick, free_of_charge, plain
+from tuisim.shim.sensors import ColorDevice
 from tuisim.shim.session import Session
 
 

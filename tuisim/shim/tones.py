@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from tuisim.core.profile import MS
 from tuisim.errors import counted
+from tuisim.shim.devices import plain
 
 BEEP_HZ, BEEP_MS, REPEAT_PAUSE_MS = 440.0, 200.0, 100.0
 """Defaults of `beep`."""
@@ -61,7 +62,7 @@ class Heard:
     @property
     def tones_row(self) -> str:
         """The tones in the format of `protocol.Spoke`."""
-        rows = [[_plain(tone.frequency_hz), _plain(tone.length_ms), _plain(tone.pause_ms)] for tone in self.tones]
+        rows = [[plain(tone.frequency_hz), plain(tone.length_ms), plain(tone.pause_ms)] for tone in self.tones]
         return json.dumps(rows) if rows else ""
 
 
@@ -190,8 +191,3 @@ def _speech(text: str, words: list[str]) -> Heard:
 
 def _total_ns(tones: Sequence[Tone]) -> int:
     return round(sum(tone.total_ms for tone in tones) * MS)
-
-
-def _plain(number: float) -> float:
-    """Return a whole number as int, so that it is written without a decimal point."""
-    return int(number) if number == int(number) else number

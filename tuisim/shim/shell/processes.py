@@ -101,24 +101,20 @@ class Process:
         self.text_mode = self.universal_newlines = bool(encoding or errors or text or universal_newlines)
         self.encoding, self.errors = encoding, errors
         self.streams = Streams(given=None if stdin == pipe else _given(stdin))
-        self.stdout: IO[Any] | None = None
-        self.stderr: IO[Any] | None = None
-        if stdout == pipe:
-            outlet = OutPipe(self)
-            self.streams.output, self.stdout = outlet.take, self._opened(io.BufferedReader(outlet))
+        self.streams.output, self.stdout = self._outlet() if stdout == pipe else (_sink(stdout, own_output), None)
+        if stderr == system.module.STDOUT:
+            self.streams.errors, self.stderr = self.streams.output, None
         else:
-            self.streams.output = _sink(stdout, own_output)
-        if stderr == pipe:
-            outlet = OutPipe(self)
-            self.streams.errors, self.stderr = outlet.take, self._opened(io.BufferedReader(outlet))
-        else:
-            joined = stderr == system.module.STDOUT
-            self.streams.errors = self.streams.output if joined else _sink(stderr, own_errors)
+            self.streams.errors, self.stderr = self._outlet() if stderr == pipe else (_sink(stderr, own_errors), None)
         folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
         steps, several = _steps(system.shell, args, shell, self.streams, folder)
         self.running = Running(system.session, steps, several)
         self.stdin: IO[Any] | None = self._opened(io.BufferedWriter(InPipe(self))) if stdin == pipe else None
         system.processes[self.pid] = self
+
+    def _outlet(self) -> tuple[Sink, IO[Any] | None]:
+        outlet = OutPipe(self)
+        return outlet.take, self._opened(io.BufferedReader(outlet))
 
     def _opened(self, pipe: Any) -> Any:
         """Wrap a pipe for bytes or text, as the program requested."""
@@ -133,11 +129,9 @@ class Process:
         return f"<Popen: returncode: {self.returncode} args: {self.args!r}>"
 
     def __enter__(self) -> Process:
-        """Return itself."""
         return self
 
     def __exit__(self, *_error: object) -> None:
-        """Close the pipes and wait for the end."""
         for stream in (self.stdout, self.stderr, self.stdin):
             if stream is not None:
                 stream.close()

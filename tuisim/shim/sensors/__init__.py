@@ -1,1 +1,0 @@
-"""Sensors as the kernel driver exposes them."""
