@@ -61,8 +61,8 @@ def test_a_text_is_a_rule_and_back(text: str, rule: BreakRule, common: str) -> N
 
 
 WRONG = {
-    "": "says nothing",
-    "#": "says nothing",
+    "": "is empty",
+    "#": "is empty",
     "0": "count from 1",
     "hello": "is not a breakpoint",
     "12 if": "is not a breakpoint",

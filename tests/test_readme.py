@@ -60,7 +60,7 @@ def test_where_things_are_added_is_there() -> None:
             if "/" in word or "." in word:
                 assert (ROOT / "tuisim" / word).exists() or (ROOT / word).exists(), word
             else:
-                assert re.search(rf"^(class )?{word}\b", code, flags=re.MULTILINE), word
+                assert re.search(rf"^(class |def )?{word}\b", code, flags=re.MULTILINE), word
 
 
 def block(language: str, holding: str) -> str:

@@ -182,7 +182,7 @@ def _refuse(text: str, why: str, hint: str = ALLOWED) -> ConfigError:
 
 def _rule(text: str, robot: RobotSpec | None) -> BreakRule:
     if not text:
-        raise _refuse(text, "says nothing")
+        raise _refuse(text, "is empty")
     word, _, rest = text.partition(" ")
     rest = rest.strip()
     if found := _LINE.fullmatch(text):

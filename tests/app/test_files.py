@@ -146,7 +146,7 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
         await pilot.press("ctrl+s")
         assert app.screen.query_one(Input).value == "lab.toml"
         await pilot.press("enter")
-        await until(pilot, lambda: "is there already" in screen_text(app))
+        await until(pilot, lambda: "already exists" in screen_text(app))
         assert (folder / "lab.toml").read_text() == LAB
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)

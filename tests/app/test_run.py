@@ -61,7 +61,7 @@ async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
         app.screen.query_one(Input).value = str(target)
         await pilot.pause()
         await pilot.press("enter")
-        await until(pilot, lambda: "is there already" in screen_text(app))
+        await until(pilot, lambda: "already exists" in screen_text(app))
         assert target.read_text() == "mine"
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)

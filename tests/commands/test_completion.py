@@ -120,4 +120,4 @@ def test_every_command_is_found_under_its_own_name() -> None:
 
 def test_a_command_that_is_left_out_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["log"]) == 2
-    assert capsys.readouterr().err.startswith("tuisim: log: which command? (one of summary, bands, ")
+    assert capsys.readouterr().err.startswith("tuisim: log: no command given (one of summary, bands, ")

@@ -106,7 +106,7 @@ def test_a_pipe(tmp_path: Path) -> None:
 
 
 BAD = {
-    "no log": (("bands",), "which log?"),
+    "no log": (("bands",), "no log given"),
     "no subcommand": (("bnads", "last"), "did you mean bands"),
     "no such run": (("bands", "999"), "no run"),
     "no such file": (("bands", "x.csv"), "no such file"),
@@ -114,7 +114,7 @@ BAD = {
         ("bands", "last", "--width", "3"),
         "no such option: --width (see `tuisim log bands --help`)",
     ),
-    "no threshold": (("events", "{log}"), "at which threshold"),
+    "no threshold": (("events", "{log}"), "no threshold given"),
     "no such variable": (("summary", "{log}", "--variable", "up"), "no variable 'up'"),
     "no such column": (("summary", "{log}", "--time", "clock"), "no column 'clock'"),
     "an expression": (("calc", "{log}", "--expression", "left +"), "cannot read the expression"),

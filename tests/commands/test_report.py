@@ -192,7 +192,7 @@ def test_an_export_tells_of_its_runs(here: Command, tmp_path: Path, driven: Driv
 
 
 BAD = {
-    "no log": ((), "which log?"),
+    "no log": ((), "no log given"),
     "no such run": (("999",), "no run"),
     "no such file": (("x.csv",), "no such file"),
     "two files": (("a.csv", "b.csv"), "takes one file, or runs"),

@@ -151,7 +151,7 @@ def test_a_listing_counts_only_so_many_samples(make: Make, monkeypatch: pytest.M
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["runs", "rerun", "last"], "telemetry.bin was cut off: the last"),
+        (["runs", "rerun", "last"], "telemetry.bin was truncated: the last"),
         (["log", "summary", "last", "--telemetry"], "no ticks: its recording is empty or truncated"),
     ],
     ids=["rerun", "log of every tick"],

@@ -109,7 +109,7 @@ WRONG: dict[str, tuple[str, str]] = {
     "robot: long name": (f"name = '{'a' * 101}'", "name: must be at most 100 characters, got 101"),
     "robot: motor port": ("left_port = 'outE'", "left_port: no such port 'outE' (one of outA, outB"),
     "robot: motors": ("left_port = 'outC'", "right_port: both motors are on outC (give each its own port)"),
-    "robot: sensors": (EYE + "port = 'in3'", "right.port: two sensors are on in3 (give each its own port, or take"),
+    "robot: sensors": (EYE + "port = 'in3'", "right.port: two sensors are on in3 (give each its own port, or remove"),
     "robot: half a pixel": (EYE + "diameter_mm = 2.5", "color_sensors.left.diameter_mm: must be a whole number"),
     "robot: eye too far": (EYE + "x_mm = 501", "color_sensors.left.x_mm: must be from -500 to 500, got 501.0"),
     "robot: strategy": (EYE + "strategy = 'max'", "color_sensors.left.strategy: no such strategy 'max' (one of"),
@@ -186,7 +186,7 @@ WRONG: dict[str, tuple[str, str]] = {
     "world: argument": ("arguments = [5]", 'arguments[1]: must be text, got 5 (in quotes, such as "5")'),
     "world: beacon": ("[beacon]\nx_mm = 1", "beacon.y_mm: is missing"),
     "world: channel": ("[beacon]\nx_mm = 1\ny_mm = 1\nchannel = 5", "beacon.channel: must be a whole number from 1"),
-    "world: no button": ("[[remote]]\nbuttons = []", "remote[1].buttons: the sensor cannot tell no button (one or"),
+    "world: no button": ("[[remote]]\nbuttons = []", "remote[1].buttons: the sensor does not report no button (one or"),
     "world: button": ("[[remote]]\nbuttons = ['x']", "remote[1].buttons[1]: no such value 'x' (one of top_left"),
     "world: press ends": (
         "[[remote]]\nbuttons = ['beacon']\nfrom_s = 3\nuntil_s = 1", "remote[1].until_s: ends before it begins",

@@ -93,7 +93,7 @@ def test_a_cell_with_a_variable_of_the_notebook_is_skipped(here: Command, tmp_pa
     assert done.stdout.splitlines()[0] == "Colour: 100.0"
     assert [line.split()[:2] for line in done.stdout.splitlines()[2:]] == [["lesson.ipynb#2", "finished"]]
     notes = ["lesson.ipynb#1 is skipped: $_x is defined only in the notebook",
-             f"{lesson}, cell 3: only the notebook knows {{x + 300}}, which is left out"]  # fmt: skip
+             f"{lesson}, cell 3: {{x + 300}} is defined only in the notebook, and is ignored"]  # fmt: skip
     assert done.stderr.splitlines()[:2] == [f"tuisim: {note}" for note in notes]
 
 
@@ -146,17 +146,17 @@ def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
     ("content", "cell", "told"),
     [
         pytest.param(None, "", "there is no such notebook", id="missing"),
-        pytest.param("{", "", "is no notebook that can be read", id="torn"),
-        pytest.param('{"cells": [1]}', "", "is no notebook that can be read", id="not cells"),
+        pytest.param("{", "", "is not a readable notebook", id="torn"),
+        pytest.param('{"cells": [1]}', "", "is not a readable notebook", id="not cells"),
         pytest.param('{"cells": []}', "", "has no program cells", id="empty"),
         pytest.param(LESSON, "#4", "a number from 1 to 3", id="no such cell"),
         pytest.param(LESSON, "#x", "a number from 1 to 3", id="no number"),
-        pytest.param(VARIABLES, "#1", "only the notebook knows $_x (run the cell there", id="variable"),
+        pytest.param(VARIABLES, "#1", "$_x is defined only in the notebook (run the cell there", id="variable"),
         pytest.param([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such option", id="wrong switch"),
         pytest.param([("code", "%%sim_magic -b Nope\npass")], "", "bad.ipynb#1: -b: no such mat", id="wrong mat"),
         pytest.param([("code", "%%sim_magic_preload\npass")], "", "cell 1: no such magic %%sim", id="wrong magic"),
-        pytest.param('{"cells": ' + "[" * 100_000, "", "is no notebook that can be read", id="deep"),
-        pytest.param('{"cells": [{"cell_type": "code", "source": [1]}]}', "", "is no notebook", id="no text"),
+        pytest.param('{"cells": ' + "[" * 100_000, "", "is not a readable notebook", id="deep"),
+        pytest.param('{"cells": [{"cell_type": "code", "source": [1]}]}', "", "not a readable notebook", id="no text"),
     ],
 )
 def test_what_is_wrong_is_told(

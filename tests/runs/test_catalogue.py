@@ -154,6 +154,6 @@ def test_a_full_disk_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     (tmp_path / CATALOGUE_FILE).mkdir()
     monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=0))
     with pytest.raises(
-        LogError, match=r"no space left on device \(make room, or TUISIM_HOME may name another folder\)"
+        LogError, match=r"no space left on device \(free some space, or TUISIM_HOME may name another folder\)"
     ):
         Catalogue(tmp_path, lambda: ()).remove(["r"])

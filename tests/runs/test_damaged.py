@@ -177,12 +177,12 @@ CASES: dict[str, Case] = {
     "compressed and cut off": (
         "a.csv.gz",
         lambda: gzip.compress(CSV.encode() + ROWS.encode() * 400, 1)[:-40],
-        Read(-1, note="cut off"),
+        Read(-1, note="truncated"),
     ),
     "compressed rubbish": ("a.csv.gz", b"\x1f\x8b" + b"rubbish" * 9, "no rows"),
     "parquet": ("a.parquet", parquet, Read(1000, check=lambda log: values(log)[999] == 1998)),
     "parquet under another name": ("a.csv", parquet, Read(1000)),
-    "parquet cut off": ("a.parquet", lambda: parquet()[:-300], "cut off"),
+    "parquet cut off": ("a.parquet", lambda: parquet()[:-300], "truncated"),
     "parquet, only its magic": ("a.parquet", b"PAR1", "Parquet"),
     "parquet with a hole": (
         "a.parquet",
@@ -197,7 +197,7 @@ CASES: dict[str, Case] = {
     ),
     "arrow with two columns of one name": ("a.arrow", lambda: arrow(make=twice), Read(1000, ("red", "red (2)"))),
     "arrow": ("a.arrow", arrow, Read(1000, check=lambda log: values(log)[999] == 1998)),
-    "arrow cut off": ("a.arrow", lambda: arrow()[: len(arrow()) // 2], Read(-1, note="cut off")),
+    "arrow cut off": ("a.arrow", lambda: arrow()[: len(arrow()) // 2], Read(-1, note="truncated")),
     "arrow, only its magic": ("a.arrow", b"ARROW1\0\0", "Arrow"),
     "arrow without rows": ("a.arrow", lambda: arrow(0), "no rows"),
     "json lines": (

@@ -206,7 +206,7 @@ def test_mat_that_has_changed_is_not_taken_for_the_old_one(
 ) -> None:
     other = replace(grey, pixels=grey.pixels.with_name("other.rgb"))
     run = record(mat_spec(spec), field=other.to_plain()).end()
-    with pytest.raises(LogError, match="Grey_bands is not the one of the run any more"):
+    with pytest.raises(LogError, match="Grey_bands has changed since the run"):
         telemetry_frame(run)
 
 

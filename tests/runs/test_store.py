@@ -93,7 +93,7 @@ def test_start_of_several_ids_is_an_error(store: RunStore, spec: RunSpec) -> Non
 def test_store_without_runs(store: RunStore) -> None:
     assert store.runs() == []
     assert not store.home.exists()
-    with pytest.raises(LogError, match="none yet"):
+    with pytest.raises(LogError, match="no runs are stored"):
         store.find("last")
 
 
@@ -112,7 +112,7 @@ def test_home_is_the_user_data_folder_by_default(monkeypatch: pytest.MonkeyPatch
 def test_home_that_cannot_be_written_is_named(tmp_path: Path, spec: RunSpec) -> None:
     (tmp_path / "file").write_text("")
     store = RunStore(tmp_path / "file" / "home")
-    with pytest.raises(LogError, match=r"file/home: runs cannot be kept here.*TUISIM_HOME"):
+    with pytest.raises(LogError, match=r"file/home: runs cannot be stored here.*TUISIM_HOME"):
         store.new_run(PROGRAM, spec)
 
 
@@ -214,8 +214,8 @@ def test_torn_run_says_what_is_lost(record: Callable[..., Recorder], spec: RunSp
     assert [row.text for row in run.output.all_rows()] == ["a: 1"]
     assert len(run.actions) == 1
     assert run.notes == (
-        "output.bin was cut off: its last 1 byte is lost",
-        "actions.jsonl: the last line was torn and is left out",
+        "output.bin was truncated: its last 1 byte is lost",
+        "actions.jsonl: the last line is incomplete and is ignored",
     )
 
 

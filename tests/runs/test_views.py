@@ -165,7 +165,7 @@ def test_cut_off_telemetry_keeps_whole_records(tmp_path: Path) -> None:
     os.truncate(tmp_path / TELEMETRY_FILE, HEADER_BYTES + 7 * TICK_RECORD.size + 30)
     view = TelemetryView(tmp_path)
     assert view.array()["tick"].tolist() == list(range(7))
-    assert view.note == "telemetry.bin was cut off: the last 3 of 10 records are lost"
+    assert view.note == "telemetry.bin was truncated: the last 3 of 10 records are lost"
 
 
 def test_cut_off_output_keeps_whole_rows(tmp_path: Path) -> None:
@@ -176,7 +176,7 @@ def test_cut_off_output_keeps_whole_rows(tmp_path: Path) -> None:
     os.truncate(tmp_path / OUTPUT_FILE, (tmp_path / OUTPUT_FILE).stat().st_size - 4)
     view = OutputView(tmp_path)
     assert [row.tick for row in view.all_rows()] == [0, 1]
-    assert view.note == "output.bin was cut off: its last 4 bytes are lost"
+    assert view.note == "output.bin was truncated: its last 4 bytes are lost"
 
 
 def test_row_that_was_never_published_is_not_read(tmp_path: Path) -> None:

@@ -113,7 +113,7 @@ def _with_rows(subject: OpenedLog) -> tuple[OpenedLog, str]:
     if not subject.runs:
         raise LogError("no rows", "a report needs a log or a run", file=subject.log.title)
     *_, found = opening(LogRequest(runs=(subject.runs[0].id,), telemetry=True))
-    return found, "The program printed no samples: chart, bands and statistics are of what every tick recorded."
+    return found, "The program printed no samples: chart, bands and statistics use the telemetry."
 
 
 def _error(run: StoredRun) -> str:
@@ -127,7 +127,7 @@ def _world(run: StoredRun, *, many: bool) -> str:
         return paragraph(f"No picture: {error}", soft=True)
     mat = run.spec.world.background
     said = f"run {run.number}: " if many else ""
-    text = clean(f"{said}the mat {mat} and the robot where it stood at the end; its way in orange, from the ring")
+    text = clean(f"{said}the mat {mat} and the robot at its end pose; its path in orange, from the ring")
     size = f'width="{picture.width}" height="{picture.height}"'
     return f'<figure><img src="{_as_source(picture)}" {size} alt="{text}"><figcaption>{text}</figcaption></figure>'
 

@@ -217,7 +217,7 @@ class LabApp(PanelMessages):
         if not self.loader.mat_is_ready:
             self._run_when_ready = not paused
             self.loader.prepare_mat_again()
-            self.say("The mat is being prepared; the program starts at once after that")
+            self.say("Preparing the mat; the program starts right after that")
             return False
         if not self.document.apply():
             return False
@@ -511,12 +511,12 @@ class BrickHint:
     def started(self, program: str) -> None:
         """Check whether the text of a started program uses the brick's buttons."""
         if looks_at_buttons(program):
-            self._give("looks at the brick's buttons")
+            self._give("reads the brick's buttons")
 
     def shown(self, rows: Iterable[OutputRow]) -> None:
         """Check the rows that the program has written."""
         if not self._given and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in rows):
-            self._give("shows something on the brick")
+            self._give("uses the brick's display")
 
     def _give(self, what: str) -> None:
         if not self._given:

@@ -98,7 +98,7 @@ def branch_message(branch: Branch, now: Recording) -> str:
     hz = now.spec.profile.tick_hz
     if branch.edited:
         return f"{words}: it differs from {differs / hz:.2f} s on"
-    return f"{words}, but the program does not repeat itself: it differs from {differs / hz:.2f} s on"
+    return f"{words}, but the program is not deterministic: it differs from {differs / hz:.2f} s on"
 
 
 def action_words(action: protocol.Message | None) -> str:

@@ -71,7 +71,7 @@ def keep(program: str, kept: Kept) -> None:
         with replacing(file, owner_only=True) as handle:
             handle.write(json.dumps(data).encode("ascii"))
     except OSError as error:
-        raise ConfigError(f"breakpoints cannot be kept: {error.strerror or error}", file=str(file)) from None
+        raise ConfigError(f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)) from None
 
 
 def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
@@ -418,7 +418,7 @@ class AppDebugger:
         if runs:
             self.go_on(protocol.RunToLine(runs))
         else:
-            self._app.say("This line is not in the text that runs")
+            self._app.say("This line is not in the running text")
 
     def go_on(self, command: Message) -> None:
         """Send a command that continues the program until it pauses again."""
@@ -448,7 +448,7 @@ class AppDebugger:
         """Go back by a number of executed lines."""
         here, recording = self._here(), self._run_controller.timeline.recording
         if here is None or recording is None:
-            self._app.say("No run yet to look back on: R runs the program")
+            self._app.say("No run yet: R runs the program")
         elif self._replay_debugger.busy:
             self._more_back += count
         else:

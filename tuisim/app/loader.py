@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
     from tuisim.source import Program
 
-NOT_NOW = "Not during a run: S stops it"
+NOT_NOW = "Not available during a run: S stops it"
 
 
 class Loader:

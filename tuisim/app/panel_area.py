@@ -119,7 +119,7 @@ class PanelArea(Container):
         came = " and ".join(PANELS[panel].title for panel in asked if self.shown(panel))
         if gone and came:
             names = ", ".join(f"{info.title} ({info.key})" for info in gone)
-            self.app.notify(f"{came} takes the room of {names}")
+            self.app.notify(f"{came} replaces {names}")
 
     def maximize(self, panel: str) -> None:
         """Maximize one panel; an empty id restores the others."""

@@ -60,7 +60,7 @@ class PanelMessages(ActionHost, TerminalApp):
             case ProgramCommand.NEW | ProgramCommand.OPEN:
                 self.action_act(message.command.value)
             case ProgramCommand.NONE:
-                self.say("No program to edit: o opens one, ctrl+t begins a new one")
+                self.say("No program to edit: o opens one, ctrl+t creates one")
             case _:
                 assert_never(message.command)
 
@@ -129,9 +129,9 @@ class PanelMessages(ActionHost, TerminalApp):
         ):
             self.workspace.run_controller.press(message.buttons)
         elif self.workspace.run_controller.in_run:
-            self.notify("The brick's buttons work now, not in the past: end comes back", timeout=3)
+            self.notify("The brick's buttons work only in the present: end returns to it", timeout=3)
         else:
-            self.notify("The brick's buttons work while a program runs: R runs it", timeout=3)
+            self.notify("The brick's buttons work only while a program runs: R runs it", timeout=3)
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
         self.workspace.run_controller.set_noise(message.noise)

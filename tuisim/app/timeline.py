@@ -135,11 +135,11 @@ FORMS = (
     ("3.5", "a time in seconds"),
     ("tick 120", "a tick"),
     ("line 12", "the next time that line 12 runs"),
-    ("sample Colour", "the next sample of that name, or of any"),
-    ("sample Colour < 90", f"the next that matches: {spelled()}"),
-    ("print REGEX", "the next printed line that matches"),
-    ("start, end", "the first instant, and now"),
-    ("… back", "line, sample or print: the last one before"),
+    ("sample Colour", "the next sample with this name; `sample` alone: with any name"),
+    ("sample Colour < 90", f"the next sample that matches; operators: {spelled()}"),
+    ("print REGEX", "the next printed line that matches the regular expression"),
+    ("start, end", "the first and the latest instant"),
+    ("… back", "a line, sample or print, searched backwards"),
 )
 """The accepted forms, with what they mean."""
 
@@ -211,7 +211,7 @@ def find(text: str, timeline: Timeline) -> int:
         return _sample(search, wanted.name, wanted)
     if word == "print" and rest:
         return _printed(search, rest)
-    raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "where to?", _HINT)
+    raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT)
 
 
 def _within(tick: int, recording: Recording) -> int:

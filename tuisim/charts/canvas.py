@@ -156,7 +156,7 @@ def xy_lines(
     good = np.isfinite(xs) & np.isfinite(ys)
     title: list[Run] = [(f"{names[1]} against {names[0]}", PLAIN)]
     if not good.any():
-        return [title, [("no point has both", AXIS)]]
+        return [title, [("no sample has both", AXIS)]]
     x_limits, y_limits = (axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys))
     rows = max(height - 3, 1)
     labels = axes.row_labels(y_limits, rows)

@@ -259,7 +259,7 @@ def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
     """Return the placeholder for a chart without a canvas."""
     words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
     if some:
-        words = (*words, "", "↑ ↓ and space tick a trace") if width >= 26 else words
+        words = (*words, "", "↑ ↓ and space show a trace") if width >= 26 else words
     above = max((height - len(words)) // 2, 0)
     widest = max(map(len, words))
     margin = " " * max((width - widest) // 2, 0)

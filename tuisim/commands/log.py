@@ -32,7 +32,7 @@ OPTIONS: Mapping[str, GroupedOption] = {
     "between": choice("--between", ("hold", "linear"), default="hold", help="Interpolation between samples (hold)."),
     "width": option("--width", type=int, default=5, metavar="N", help="Window in samples, odd (5)."),
     "period": option("--period", type=float, metavar="S", help="Seconds between rows."),
-    "expression": option("--expression", default="", metavar="TEXT", help="Such as '(left + right) / 2', see README."),
+    "expression": option("--expression", default="", metavar="TEXT", help="Such as '(left + right) / 2'."),
     "facets": option("--facets", is_flag=True, help="Draw one chart per variable."),
     "marks": option("--marks", is_flag=True, help="Draw points instead of lines."),
     "from": option("--from", type=float, metavar="S", help="First second shown."),
@@ -81,7 +81,9 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
     "derive": Subcommand("Compute the derivative, in units per second", "tables:derive"),
     "integrate": Subcommand("Compute the integral, in units times seconds", "tables:integrate", ("between", *_TABLE)),
     "average": Subcommand("Compute a centred rolling mean of --width samples", "tables:average", ("width", *_TABLE)),
-    "resample": Subcommand("Resample all every --period seconds", "tables:even", ("period", "between", *_TABLE)),
+    "resample": Subcommand(
+        "Resample each variable every --period seconds", "tables:even", ("period", "between", *_TABLE)
+    ),
     "calc": Subcommand("Evaluate --expression over the columns", "tables:calculate", ("expression", *_FRAME)),
     "reckon": Subcommand("Compute dead reckoning from the wheel encoders, and its error", "tables:reckon", _FRAME),
     "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"),

@@ -144,7 +144,7 @@ def prepare_app(words: Sequence[str], arguments: Arguments) -> Prepared:
     world = _world(words, arguments)
     programs = [word for word in words if not means_world(word)]
     if len(programs) > 1:
-        raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens one")
+        raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens only one")
     word = programs[0] if programs else world.program if world else None
     if word is not None and is_notebook(word):
         return _of_cell(known_programs(word)[0].source, world, arguments)

@@ -45,7 +45,7 @@ def _load(store: RunStore, words: Sequence[str]) -> list[StoredRun]:
 
 def _needed(words: Sequence[str], action: str) -> Sequence[str]:
     if not words:
-        raise ConfigError("which run?", f"see `tuisim runs {action} --help`", key=action)
+        raise ConfigError("no run given", f"see `tuisim runs {action} --help`", key=action)
     return words
 
 
@@ -165,7 +165,7 @@ def _created_before(created: str, moment: datetime) -> bool:
 
 @command(_runs, AS_JSON, name="rerun")
 def rerun_runs(words: Sequence[str], as_json: bool) -> int:
-    """Run again, and compare with what is stored.
+    """Run again, and compare with the recording.
 
     Exit code: 0 if all are bit-identical, else 1.
     """
@@ -240,7 +240,7 @@ def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
 @command(
     argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
     option("--telemetry", metavar="FILE", type=Value(), help="Export the telemetry of a single run, one row per tick."),
-    help=f"Export samples, or the telemetry of one run.\n\nA FILE ends in {', '.join(EXPORTERS)}.",
+    help=f"Export samples of runs, or the telemetry of one run.\n\nA FILE ends in {', '.join(EXPORTERS)}.",
 )
 def export(words: Sequence[str], telemetry: str | None) -> int:
     """Export samples or telemetry of runs."""

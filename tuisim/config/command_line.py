@@ -270,7 +270,7 @@ class Group(click.Group):
         try:
             return super().invoke(ctx)
         except click.UsageError:
-            raise ConfigError("which command?", f"one of {', '.join(self.listing)}", key=self.name or "") from None
+            raise ConfigError("no command given", f"one of {', '.join(self.listing)}", key=self.name or "") from None
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """Return the matching subcommands, and what else the default subcommand may begin with."""

@@ -2,7 +2,7 @@
 
 Such a folder is `backgrounds` in TUISIM_HOME; `--mats` names another one, which is searched first. An image that is
 named like a mat of the catalogue, or like its file in the browser simulator, replaces ours; any other image is a mat
-named after its file.
+named after its file. To add a mat to the catalogue: see `backgrounds/mats.py` in the project.
 """
 
 from __future__ import annotations

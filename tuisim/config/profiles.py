@@ -10,7 +10,7 @@ from typing import Annotated, Any, get_type_hints
 from msgspec import Meta
 
 from tuisim.config.files import Location, Scalar, convert, one_of, read_named, table, toml_lines
-from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, ProfileSpec, law_of_earlier
+from tuisim.core.profile import EARLIER_KEYS, MS, PROFILES, MotorLaw, ProfileSpec, law_of_earlier
 from tuisim.errors import ProfileError
 
 DEFAULT_PROFILE = "robolab"
@@ -30,6 +30,11 @@ _ANY = (0, 1_000_000)
 _OLD = "measured on the old simulator"
 _NEW = "choice of this project"
 
+_LAW_SOURCES = {
+    MotorLaw.BRICK: "moves end at their target, as with the EV3 motor driver",
+    MotorLaw.NBEV3DEVSIM: _OLD,
+}
+
 SOURCES: Mapping[str, str] = {
     "tick_hz": f"{_NEW}: 100; {_OLD}: 30",
     "color_read_ns": f"{_OLD}: it waits before it takes the value",
@@ -39,7 +44,7 @@ SOURCES: Mapping[str, str] = {
     "attribute_read_ns": f"{_NEW}, so that polling takes time; {_OLD}: nothing",
     "clock_read_ns": f"{_NEW}, so that loops on the clock end; {_OLD}: nothing",
     "display_update_ns": f"{_NEW}, an estimate: 130 steps per pixel at the brick's 300 MHz; the old simulator has none",
-    "motor_law": f"brick: moves end at their target, as with the EV3 motor driver; nbev3devsim: {_OLD}",
+    "motor_law": "; ".join(f"{law}: {_LAW_SOURCES[law]}" for law in MotorLaw),
     "max_speed_dps": "EV3 motor driver table: large motor without a load",
     "reflected_max": "ev3dev2 library: 100; the course and the old simulator: 255",
     "ambient_percent": f"{_NEW}: a sensor close to the mat is in its own shadow; {_OLD}: always 0",

@@ -61,7 +61,7 @@ def outline_of(robot: RobotSpec) -> RobotOutline:
         wheel_width_mm=robot.wheel_width_mm,
         wheel_radius_mm=robot.wheel_diameter_mm / 2,
         pen_mm=(robot.pen.x_mm, robot.pen.y_mm),
-        color_sensors_mm=tuple((eye.x_mm, eye.y_mm, eye.diameter_mm / 2) for eye in robot.color_sensors),
+        color_sensors_mm=tuple((sensor.x_mm, sensor.y_mm, sensor.diameter_mm / 2) for sensor in robot.color_sensors),
         bumpers_mm=tuple((touch.x_mm, touch.y_mm, touch.width_mm / 2) for touch in robot.touch_sensors),
         other_sensors_mm=tuple(_other_sensors(robot)),
     )

@@ -2,12 +2,17 @@
 
 `robolab` follows the text of the course; `nbev3devsim` gives the results of the old
 simulator. A profile is only data: the code that reads it never checks its name.
+
+To add a rule: add a field with a default at the end of `ProfileSpec`, and its source to `SOURCES` in `config.profiles`.
+To add a motor law: add it to `MotorLaw`; write the class of its motor and, if wheels move differently, of its drive in
+`core.drive`; add a case to `motor_of` and `drive_of` in `core.motion`; write its device in `shim.motor`, with a case in
+`motor_device` in `shim.brick`; add its source to `config.profiles`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from enum import StrEnum
 from typing import Any
 
@@ -120,12 +125,17 @@ EARLIER_KEYS = frozenset(key for keys in _EARLIER_BRICK.values() for key in keys
 """Keys of stored profiles that `motor_law` has replaced."""
 
 
+_KEYS = fields(ProfileSpec)
+_LATER_DEFAULTS = {key.name: key.default for key in _KEYS[[key.name for key in _KEYS].index("mend_library") + 1 :]}
+"""Keys added since the first stored profiles; omitted at these values, so that exports do not change."""
+
+
 def profile_to_plain(profile: ProfileSpec) -> dict[str, Any]:
     """Return a profile as JSON data. The form for a brick never changes, so that its exports stay the same."""
     plain = asdict(profile)
-    if not profile.starts_in_own_folder:
-        # Runs from before this option have no such key.
-        del plain["starts_in_own_folder"]
+    for key, usual in _LATER_DEFAULTS.items():
+        if plain[key] == usual:
+            del plain[key]
     if profile.motor_law != MotorLaw.BRICK:
         return plain
     del plain["motor_law"]

@@ -127,7 +127,7 @@ class RemotePress:
     def __post_init__(self) -> None:
         if frozenset(self.buttons) not in REMOTE_CODES:
             raise ObstacleError(
-                f"the sensor cannot tell {', '.join(self.buttons) or 'no button'}",
+                f"the sensor does not report {', '.join(self.buttons) or 'no button'}",
                 f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
                 key="remote.buttons",
             )
@@ -356,7 +356,7 @@ class RobotSpec:
             if sensor.port in used:
                 raise RobotError(
                     f"two sensors are on {sensor.port}",
-                    "give each its own port, or take one away, such as `ultrasonic = false`",
+                    "give each its own port, or remove one, such as `ultrasonic = false`",
                     key=f"{sensor.name}.port",
                 )
             used.add(sensor.port)
@@ -432,8 +432,13 @@ class RunSpec:
     seed: int = 0
 
 
-_OMITTED_DEFAULTS: Mapping[str, Any] = {"extra_infrareds": (), "left_motor": "large", "right_motor": "large"}
-"""Fields of a robot that are omitted when they have these values, so that exports do not depend on the version."""
+_FIRST_MOUNTS = ("color_sensors", "ultrasonic", "gyro", "extra_ultrasonics", "touch_sensors", "infrared")
+_OMITTED_DEFAULTS: Mapping[str, Any] = {
+    **{mount.field: () if mount.many else None for mount in MOUNTS if mount.field not in _FIRST_MOUNTS},
+    "left_motor": "large",
+    "right_motor": "large",
+}
+"""Fields of a robot added since the first stored runs; omitted at these values, so that exports do not change."""
 
 
 def to_plain(spec: RunSpec) -> dict[str, Any]:

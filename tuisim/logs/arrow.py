@@ -145,7 +145,7 @@ def unique_names(names: Sequence[str], notes: Notes | None = None) -> list[str]:
 
 
 PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC = b"PAR1", b"ARROW1", b"\xff\xff\xff\xff"
-_CUT_OFF = "the file was cut off: read as far as it goes"
+_CUT_OFF = "the file is truncated: only the readable part was read"
 
 
 def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
@@ -168,7 +168,7 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     try:
         file = pq.ParquetFile(path)
     except (pa.ArrowException, OSError, ValueError) as error:
-        hint = "a Parquet file that was cut off cannot be read: its table of contents is at its end"
+        hint = "a truncated Parquet file cannot be read: its index is at its end"
         raise LogError(f"not a readable Parquet file: {_short(error)}", hint, file=str(path)) from error
     with file:
         count = file.metadata.num_row_groups

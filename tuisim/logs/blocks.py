@@ -146,7 +146,7 @@ class Readable(Protocol):
 
 _UNPACKED_BYTES = 1 << 18
 """Unpacked at once."""
-_CUT_OFF = "the compressed file was cut off or is damaged: read as far as it goes"
+_CUT_OFF = "the compressed file is truncated or damaged: only the readable part was read"
 
 _ERRORS = (zlib.error, OSError, EOFError, lzma.LZMAError, pa.ArrowException)
 
@@ -159,12 +159,12 @@ _FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
 }
 """Compressed formats by their first bytes: what opens a file in them."""
 _REFUSED = {
-    b"PK\x03\x04": "a ZIP archive, as a spreadsheet is, too",
+    b"PK\x03\x04": "a ZIP archive or a spreadsheet",
     b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",
     b"\xd0\xcf\x11\xe0": "an old Excel workbook",
     b"\x89HDF": "an HDF5 file",
     b"SQLite format 3": "an SQLite database",
-    b"\x1f\x9d": "a file of the old compress",
+    b"\x1f\x9d": "a compress (.Z) file",
 }
 """Formats that cannot be read, by their first bytes."""
 

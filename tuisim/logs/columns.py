@@ -290,7 +290,7 @@ def unread_time(table: pa.Table, layout: Layout) -> str:
 def time_in_words(layout: Layout) -> str:
     """Return a sentence on which column is the time."""
     if layout.time in (ROW, "row"):
-        return "no column is a time: the rows are counted"
+        return "no time column: row numbers are used"
     unit = UNIT_NAMES.get(layout.unit_s, f"{layout.unit_s:g} s")
     return f"time is the column {layout.time!r}, in {unit}{' since 1970' if layout.since_first else ''}"
 

@@ -226,6 +226,8 @@ class Exporter(NamedTuple):
     """One file format."""
 
     write: Callable[[pd.DataFrame, Metadata, BinaryIO], None]
+    contents: str
+    """What a file contains, for dialogs."""
     companion: bool = True
     """Whether the metadata goes into a file of its own, NAME.csv.json."""
 
@@ -262,13 +264,15 @@ def _write_arrow(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
     write_arrow(frame, metadata, handle)
 
 
+_TYPED = "all types, and the metadata of the runs"
+
 EXPORTERS: Mapping[str, Exporter] = {
-    ".csv": Exporter(_write_csv),
-    ".parquet": Exporter(_write_parquet, companion=False),
-    ".jsonl": Exporter(_write_jsonl),
-    ".arrow": Exporter(_write_arrow, companion=False),
+    ".csv": Exporter(_write_csv, "text"),
+    ".parquet": Exporter(_write_parquet, _TYPED, companion=False),
+    ".jsonl": Exporter(_write_jsonl, _TYPED),
+    ".arrow": Exporter(_write_arrow, _TYPED, companion=False),
 }
-"""The formats by suffix. To add one: write its function and a line here."""
+"""The formats by suffix. To add one: write its function and a line here, and its reader in `logs.reader`."""
 
 ALLOWED = ", ".join(EXPORTERS)
 LISTED = f"{', '.join([*EXPORTERS][:-1])} or {[*EXPORTERS][-1]}"

@@ -432,7 +432,7 @@ def plateaus_aside(values: FloatArray, stopped: Callable[[], bool]) -> list[Plat
             found = np.fromfile(answer).reshape(-1, _FIELDS).tolist()
     except OSError as error:
         raise LogError(
-            f"cannot search for bands: {error.strerror or error}", "it needs room for temporary files"
+            f"cannot search for bands: {error.strerror or error}", "it needs space for temporary files"
         ) from error
     return [Plateau(int(row[0]), int(row[1]), row[2], row[3], row[4], int(row[5])) for row in found]
 

@@ -158,7 +158,7 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
         unit = UNIT_NAMES[layout.unit_s]
         notes.say(f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on")
     if named[0] is None and (unread := unread_time(table, layout)):
-        notes.say(f"the times in {unread!r} cannot be read: the rows are counted")
+        notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
     metadata = metadata_in(parts[0].schema) or _metadata_beside(Path(title))
     return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
 

@@ -289,7 +289,7 @@ def _message(answer: object) -> Any:
     try:
         return json.loads(json.dumps(answer, default=_plain))
     except (TypeError, ValueError, RecursionError) as error:
-        hint = "text, numbers, True, None, lists and dicts; None is no answer"
+        hint = "text, numbers, True, None, lists and dicts; None means no answer"
         raise ConfigError(f"the program cannot get {error}", hint, key="roboSim.responder") from None
 
 

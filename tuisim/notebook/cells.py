@@ -84,9 +84,7 @@ def _cells(path: Path) -> Iterator[tuple[str, str]]:
             source = cell["source"]
             yield str(cell["cell_type"]), source if isinstance(source, str) else "".join(source)
     except (ValueError, KeyError, TypeError, RecursionError):
-        raise ConfigError(
-            "is no notebook that can be read", "one of format 4, as Jupyter saves it", file=shown
-        ) from None
+        raise ConfigError("is not a readable notebook", "one of format 4, as Jupyter saves it", file=shown) from None
 
 
 def notebook_programs(path: Path) -> list[NotebookProgram]:
@@ -119,7 +117,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
                 found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()
             elif words.unknown:
-                notes.append(f"{where}: only the notebook knows {words.unknown}, which is left out")
+                notes.append(f"{where}: {words.unknown} is defined only in the notebook, and is ignored")
     return found
 
 
@@ -173,5 +171,5 @@ def chosen_programs(word: str) -> list[NotebookProgram]:
     chosen = programs[int(cell) - 1]
     if chosen.unknown:
         hint = "run the cell there, or write a value in its place"
-        raise ConfigError(f"only the notebook knows {chosen.unknown}", hint, file=word)
+        raise ConfigError(f"{chosen.unknown} is defined only in the notebook", hint, file=word)
     return [chosen]

@@ -93,7 +93,7 @@ def picture_of(vals: Iterable[int]) -> Image:
     data = bytes(vals)
     side = round((len(data) / 4) ** 0.5)
     if side * side * 4 != len(data) or not side:
-        raise LogError(f"{len(data)} numbers are no square picture of 4 numbers a pixel")
+        raise LogError(f"{len(data)} numbers are not a square image of 4 numbers per pixel")
     return Image.frombytes("RGBA", (side, side), data)
 
 

@@ -50,7 +50,7 @@ def _command(magic: str) -> Command:
     params = [
         *shared_options(magic=True),
         option("-s", "--sim", metavar="NAME", group=group, help="Variable that holds the simulator (roboSim)."),
-        option("-h", "--help", is_flag=True, group=group, help="Show this."),
+        option("-h", "--help", is_flag=True, group=group, help="Show this help."),
         option("-v", "--preview", is_flag=True, group=group, help="Show the program and its predefined names."),
         option("--previewcode", is_flag=True, group=group, help="Only return the text of the prelude."),
         option("-S", "--stop", is_flag=True, group=group, help="Has no effect: a program ends with its cell."),

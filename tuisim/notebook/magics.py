@@ -63,7 +63,7 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
             print(words.help, end="")
             return ready if words.preview_code else None
         if words.preview and ready:
-            print(f"# ---- {magic}: what a program finds ready ----\n\n{ready}\n# ---- the program ----\n")
+            print(f"# ---- {magic}: predefined names ----\n\n{ready}\n# ---- the program ----\n")
             if cell is None:
                 return None
         lab = _lab(shell, words.sim)
@@ -98,11 +98,11 @@ def _log_command(magic: str) -> Command:
 
     params = [
         option("-s", "--sim", metavar="NAME", help="Variable that holds the simulator (roboSim)."),
-        option("-h", "--help", is_flag=True, help="Show this."),
+        option("-h", "--help", is_flag=True, help="Show this help."),
     ]
     index = {"type": _whole("--index", -MAX_INDEX, MAX_INDEX), "default": -1, "metavar": "N"}
     if magic == "sim_data":
-        params.append(option("-c", "--clear", is_flag=True, help="Forget what was logged."))
+        params.append(option("-c", "--clear", is_flag=True, help="Discard the logged data."))
     elif magic == "sim_robot_state":
         params.append(option("-c", "--clear", is_flag=True, hidden=True))
     elif magic == "sim_image_pair":
@@ -110,12 +110,12 @@ def _log_command(magic: str) -> Command:
         params.append(option(*flags, **index, help="Which pair, from 0; -1 is the last."))
     else:
         params += [
-            option("-i", "--index", **index, help="Which picture, from 0; -1 is the last."),
-            option("-r", "--random", is_flag=True, help="Any picture."),
+            option("-i", "--index", **index, help="Which image, from 0; -1 is the last."),
+            option("-r", "--random", is_flag=True, help="Any image."),
             option("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
                    help="The lightest grey that counts as dark (127)."),
-            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B", help="A part of the picture, in pixels."),
-            option("-n", "--nocrop", is_flag=True, help="The whole picture (unless --crop is given)."),
+            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B", help="Part of the image, in pixels."),
+            option("-n", "--nocrop", is_flag=True, help="The whole image (unless --crop is given)."),
             option("-d", "--digitclass", is_flag=True, hidden=True),
         ]  # fmt: skip
     return Command(f"%{magic}", params=params, add_help_option=False)

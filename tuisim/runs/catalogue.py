@@ -166,7 +166,7 @@ class Catalogue:
                 return operation(connection)
         except (sqlite3.Error, OSError) as error:
             # SQLite says "disk I/O error" where a file beside its own has no room.
-            reason, hint = (_FULL, "make room, or " + HOME_HINT) if _is_full(self._home) else (error, HOME_HINT)
+            reason, hint = (_FULL, "free some space, or " + HOME_HINT) if _is_full(self._home) else (error, HOME_HINT)
             raise LogError(f"the list of runs cannot be used: {reason}", hint, file=str(self._path)) from error
 
     def _make_again(self) -> None:
@@ -288,7 +288,7 @@ def _info(row: tuple[Any, ...]) -> RunInfo:
     number, *texts, seed, end, ticks, time_s, samples, summary, tags = row
     for count, kind in ((number, int), (ticks, int), (time_s, float), (samples, int)):
         if not isinstance(count, kind) and (count is not None or count is number):
-            raise ValueError(f"{count!r} is no number")
+            raise ValueError(f"{count!r} is not a number")
     words = (text.decode() for text in (*texts, end, summary, tags))
     run_id, created, program, background, profile, end, summary, tags = words
     state = RUN_STATES[end] if end else None

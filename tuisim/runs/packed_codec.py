@@ -325,7 +325,7 @@ def fold_rows(data: bytes) -> bytes:
         at = text_at + int.from_bytes(data[at : at + 4], "little")
         texts.append(data[text_at:at])
     if at != len(data):
-        raise ValueError("the last row is torn")
+        raise ValueError("the last row is incomplete")
     table = np.frombuffer(b"".join(heads), np.dtype(list(HEAD_FIELDS)))
     columns = [planes(changes(table[name])) for name in HEAD_COLUMNS]
     return zlib.compress(b"".join([len(heads).to_bytes(4, "little"), *columns, *texts]), LEVEL)

@@ -103,7 +103,7 @@ def find_packed(path: Path) -> Packed | None:
     if version != PACKED_VERSION:
         raise LogError(f"format version {version}, this tuisim reads {PACKED_VERSION}", file=str(packed))
     if check != zlib.crc32(head[: _HEADER.size]):
-        raise LogError("the packed recording is damaged: its header is not as it was written", file=str(packed))
+        raise LogError("the packed recording is damaged: its header is corrupt", file=str(packed))
     return Packed(packed, checksum, length, size, tuple(numbers), last)
 
 
@@ -158,7 +158,7 @@ def _packed(path: Path, data: bytes, spec: RunSpec) -> bytes | None:
             raise LogError(str(error), file=str(path)) from error
         back = packed_codec.unfold_rows(folded)
     if back != content:
-        raise LogError("cannot be packed: it would not come back as it is", file=str(path))
+        raise LogError("cannot be packed without loss", file=str(path))
     head = _HEADER.pack(
         PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), *astuple(geometry), last
     )

@@ -206,4 +206,4 @@ def decode_event(line: bytes) -> Message:
         kind = EVENTS[msgspec.json.decode(line, type=_Envelope).kind]
         return msgspec.json.decode(line, type=kind)
     except (msgspec.MsgspecError, UnicodeDecodeError, KeyError) as error:
-        raise HostError(f"the program's process sent something that is no message: {line[:60]!r}") from error
+        raise HostError(f"the program's process sent an invalid message: {line[:60]!r}") from error

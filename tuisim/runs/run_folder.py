@@ -202,9 +202,7 @@ def _model_note(profile: Mapping[str, Any]) -> str:
     """Return a note for runs recorded with another motor model; empty for any other run."""
     if "motor_law" in profile or law_of_earlier(profile) != MotorLaw.NBEV3DEVSIM:
         return ""
-    return (
-        f"recorded with an earlier motor model of the profile {profile['name']}: run again, it may come out otherwise"
-    )
+    return f"recorded with an earlier motor model of the profile {profile['name']}: a rerun may give another result"
 
 
 def field_files(spec: RunSpec) -> FieldFiles:
@@ -246,7 +244,7 @@ def mat_files(run: StoredRun) -> FieldFiles:
         # The file names are derived from the contents of the image.
         if made_on is not None and found.pixels.name != made_on.pixels.name:
             name = run.spec.world.background
-            raise LogError(f"the mat {name} is not the one of the run any more", file=str(background(name).image))
+            raise LogError(f"the mat {name} has changed since the run", file=str(background(name).image))
     except ConfigError as error:
         raise _no_mat(run, error) from error
     except (KeyError, TypeError, ValueError) as error:

@@ -86,7 +86,7 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
             actions.append(action)
         except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError, TuisimError) as error:
             raise LogError("not a user action", file=str(path), row=row) from error
-    return tuple(actions), f"{ACTIONS_FILE}: the last line was torn and is left out" if rest else ""
+    return tuple(actions), f"{ACTIONS_FILE}: the last line is incomplete and is ignored" if rest else ""
 
 
 def write_stop_tick(folder: Path, tick: int) -> None:

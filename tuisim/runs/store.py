@@ -187,7 +187,7 @@ class RunStore:
         words = list(tags)
         for word in words:
             if word.split() != [word]:
-                raise LogError(f"{word!r} is no tag", "a tag is one word without blanks")
+                raise LogError(f"{word!r} is not a tag", "a tag is one word without blanks")
         self._edit(run_id, tags=words)
         self._catalogue.update(run_id, tags=" ".join(words))
 
@@ -264,7 +264,7 @@ class RunStore:
         """
         rows = self._rows()
         if not rows:
-            raise LogError(f"no run {text!r}: there are none yet", file=str(self.home))
+            raise LogError(f"no run {text!r}: no runs are stored yet", file=str(self.home))
         return self._completed(_match(text, rows), _COUNT_A_LISTING_BYTES)[0]
 
     def load_run(self, run: str | Path) -> StoredRun:
@@ -293,7 +293,7 @@ class RunStore:
                 continue
             except OSError as error:
                 what = error.strerror or str(error)
-                raise LogError(f"runs cannot be kept here: {what}", HOME_HINT, file=str(self.home)) from error
+                raise LogError(f"runs cannot be stored here: {what}", HOME_HINT, file=str(self.home)) from error
             return run_id, folder
 
     def _edit(self, run_id: str, **changes: Any) -> None:

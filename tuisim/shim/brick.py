@@ -160,7 +160,7 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
     # Sorted by port, so that a class without an address finds the first port.
     for at, (motor, simulated) in enumerate(sorted(motors, key=lambda found: found[0].port)):
-        brick.add(MOTOR_CLASS, f"motor{at}", _motor_device(session, simulated, motor.port, motor.kind))
+        brick.add(MOTOR_CLASS, f"motor{at}", motor_device(session, simulated, motor.port, motor.kind))
     colors: dict[str, ColorDevice] = {}
     sensors: list[LegoSensor] = []
     for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
@@ -177,7 +177,8 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     return brick, colors
 
 
-def _motor_device(session: Session, motor: Motor, port: str, kind: str) -> SimDevice:
+def motor_device(session: Session, motor: Motor, port: str, kind: str) -> SimDevice:
+    """Return the device of a motor, by its motor law."""
     match motor:
         case BrickMotor():
             return TachoMotor(session, motor, port, kind).device()

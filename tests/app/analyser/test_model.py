@@ -176,7 +176,7 @@ def test_a_narrow_table_shows_the_chosen_column() -> None:
     ("pane", "words"),
     [
         ("table", "Colour"),
-        ("bands", "keeps a level"),
+        ("bands", "stays at a level"),
         ("statistics", "mean"),
         ("notes", "No notes yet"),
         ("runs", "This log is a file"),

@@ -77,7 +77,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
         assert screen.is_open and screen.model.limits is not None
         first_s = screen.model.limits[0]
         await until(pilot, lambda: page.exists() and rows.exists())
-        await until(pilot, lambda: "The report is in" in "".join(note.message for note in pilot.app._notifications))
+        await until(pilot, lambda: "Report saved to" in "".join(note.message for note in pilot.app._notifications))
     frame = samples_frame([run])
     pd.testing.assert_frame_equal(read_log(rows), frame, check_exact=True)
     assert open_log(rows).metadata == json.loads(json.dumps(log_metadata("samples", frame, [run])))
@@ -97,7 +97,7 @@ async def test_a_file_that_is_there_is_replaced_only_on_a_second_enter(
     target.write_text("mine")
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
         await ready(pilot)
-        assert f"{target.name} is there already" in await answered(pilot, key, target)
+        assert f"{target.name} already exists" in await answered(pilot, key, target)
         assert target.read_text() == "mine"
         await pilot.press("enter")
         await until(pilot, lambda: target.read_text() not in ("mine", ""))

@@ -68,7 +68,7 @@ async def test_breakpoints_and_light_stay_on_their_lines_when_a_held_program_is_
         # The cursor is on a line that the run does not have, then on one that it has elsewhere.
         area.move_cursor((0, 0))
         await pilot.press("L")
-        assert "This line is not in the text that runs" in notices(app)
+        assert "This line is not in the running text" in notices(app)
         area.move_cursor((4, 0))
         await pilot.press("L")
         await until(pilot, lambda: at(4) and area._lit == 5)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import re
+import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
 from tuisim.app.actions.table import ACTIONS, LabAction, working
+from tuisim.app.analyser.actions.table import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.app import LabApp
-from tuisim.app.keys import KeyHelp, fitting
+from tuisim.app.keys import Action, KeyHelp, fitting
 from tuisim.app.panels import PANELS, TerminalSize
 from tuisim.app.panels.position import parse_field
 from tuisim.app.snapshot import RunPhase, Situation
@@ -92,7 +96,7 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
         assert app.panel_area.shown("arrays")
         assert app.panel_area.shown("controls")
         assert not app.panel_area.shown("instrumentation")
-        assert "Simulator controls takes the room of Instrumentation (i)" in notices(app)
+        assert "Simulator controls replaces Instrumentation (i)" in notices(app)
         await pilot.press("H")
         assert app.panel_area.shown("instrumentation")
 
@@ -170,7 +174,7 @@ async def test_speed_steps_and_ends() -> None:
         await pilot.press("left_square_bracket", "left_square_bracket")
         assert app.run_controller.speed == 0.25
         await pilot.press("left_square_bracket")
-        assert notices(app) == ["Speed is ¼× already: that is the slowest"]
+        assert notices(app) == ["The speed is already ¼×, the slowest"]
         await pilot.press(*["right_square_bracket"] * 6)
         assert app.run_controller.speed == 0
 
@@ -298,6 +302,15 @@ def test_each_line_of_the_table_is_an_action(action: LabAction) -> None:
     for state in (RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED):
         for yes in (True, False):
             assert isinstance(action.why_not(Situation(state, yes, yes)), str)
+
+
+@pytest.mark.parametrize("table", [ACTIONS, ANALYSER_ACTIONS], ids=["app", "analyser"])
+def test_each_group_is_in_one_file_that_names_it(table: Mapping[str, Action[Any, Any]]) -> None:
+    functions = {(action.group, getattr(action.do, "func", action.do).__module__) for action in table.values()}
+    # Methods of a screen, and the few functions beside the table, are in no group's file.
+    pairs = {(group, name) for group, name in functions if ".actions." in name and not name.endswith(".table")}
+    assert len({group for group, _ in pairs}) == len(pairs)
+    assert [pair for pair in pairs if pair[0] not in (sys.modules[pair[1]].__doc__ or "")] == []
 
 
 def test_keys_differ() -> None:

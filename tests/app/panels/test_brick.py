@@ -158,7 +158,7 @@ async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
         await pilot.press("comma")
         await until(pilot, lambda: app.run_controller.snapshot().past)
         await pilot.press("enter")
-        await until(pilot, lambda: any("not in the past" in text for text in notices(app)))
+        await until(pilot, lambda: any("only in the present" in text for text in notices(app)))
         assert app.run_controller.pressed == {"up"}
         await pilot.press("y", "y")
         await until(

@@ -33,4 +33,4 @@ async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
             await pilot.press("R")
             await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words)
         told = [notice for notice in notices(app) if notice.startswith("The program")]
-        assert told == ["The program shows something on the brick: K opens its panel"]
+        assert told == ["The program uses the brick's display: K opens its panel"]

@@ -52,8 +52,8 @@ async def drag(pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int]) 
 async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await opened(pilot)
-        assert "none: a drag draws one" in screen_text(app)
-        assert "drag draws or moves an obstacle" in screen_text(app)
+        assert "none: drag to draw one" in screen_text(app)
+        assert "drag to draw or move an obstacle" in screen_text(app)
         assert all(entry.disabled for entry in app.query("Obstacles Input"))
 
 
@@ -76,7 +76,7 @@ async def test_add_type_and_remove() -> None:
         await until(pilot, lambda: boxes(app) == ())
         await pilot.pause()
         await pilot.press("delete")
-        assert "There is none to remove" in screen_text(app)
+        assert "There is no obstacle to remove" in screen_text(app)
 
 
 async def test_no_box_is_lost_when_two_are_added_at_once() -> None:
@@ -144,7 +144,7 @@ async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown
         await pilot.press("B")
         await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
         assert boxes(app) == OBSTACLES["Square_posts"]
-        assert "drag draws" not in screen_text(app)
+        assert "drag to draw" not in screen_text(app)
 
 
 async def test_the_box_at_hand_is_marked_in_the_world() -> None:
@@ -183,7 +183,7 @@ async def test_obstacles_are_not_changed_during_a_run() -> None:
         app = await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
-        await until(pilot, lambda: "Not during a run: S stops it" in notices(app))
+        await until(pilot, lambda: "Not available during a run: S stops it" in notices(app))
         assert boxes(app) == ()
 
 

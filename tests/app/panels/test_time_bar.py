@@ -162,7 +162,7 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
 
 async def test_words_that_are_no_place_are_answered() -> None:
     table = {
-        "": "where to?", "tomorrow": "not an instant", "9999": "run has reached", "tick 99999": "run has reached",
+        "": "no instant", "tomorrow": "not an instant", "9999": "run has reached", "tick 99999": "run has reached",
         "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "is not a number",
         "print [": "not a regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
         "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is not a number",
@@ -222,7 +222,7 @@ BAR = Moment(tick=200, newest=400, tick_hz=100, past=True, over=True)
 @pytest.mark.parametrize(
     ("width", "text"),
     [
-        (80, "past 2.00 s of 4.00 s  −2.00 s  end: back to now"),
+        (80, "past 2.00 s of 4.00 s  −2.00 s  end: to the present"),
         (50, "past 2.00 s of 4.00 s  −2.00 s"),
         (34, "past 2.00 of 4.00 s"),
         (20, "2.00 s"),

@@ -132,7 +132,7 @@ async def test_settings_are_not_changed_during_a_run() -> None:
         app = await opened(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await enter(pilot, "wheel_diameter_mm", "60")
-        assert "Not during a run: S stops it" in screen_text(app)
+        assert "Not available during a run: S stops it" in screen_text(app)
         assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 56
         await pilot.press("escape", "S")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)

@@ -1,1 +1,1 @@
-"""Functions behind the keys: one file per group of the table."""
+"""Functions behind the keys: each group of the table of keys, `table.py`, in one file."""

@@ -1,4 +1,4 @@
-"""Keys of the groups Panels and App: show, hide, enlarge, zoom; help, redraw, suspend, quit."""
+"""Keys of the groups Panels and App: show, hide, enlarge; help, redraw, suspend, quit."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ def enlarge(workspace: Workspace) -> None:
     if panel or workspace.panel_area.alone:
         workspace.panel_area.maximize("" if workspace.panel_area.alone else panel)
     else:
-        workspace.app.say("No panel has the focus: tab or a click gives it to one")
+        workspace.app.say("No panel has the focus: press tab, or click a panel")
 
 
-def _world(workspace: Workspace) -> World | None:
+def world_panel(workspace: Workspace) -> World | None:
+    """Return the world panel; None, with a notice, if it is hidden."""
     if workspace.panel_area.shown("world"):
         return workspace.panel_area.world
     workspace.app.say(f"The world is hidden: {PANELS['world'].key} shows it")
@@ -44,23 +45,16 @@ def _world(workspace: Workspace) -> World | None:
 
 def rays(workspace: Workspace) -> None:
     """Switch the ultrasonic rays on or off."""
-    if world := _world(workspace):
+    if world := world_panel(workspace):
         world.show_rays = not world.show_rays
         workspace.app.draw(force=True)
 
 
-def zoom(workspace: Workspace) -> None:
-    """Switch the world to the next zoom."""
-    if world := _world(workspace):
-        world.cycle_zoom()
-        workspace.app.draw(force=True)
-
-
 _START = (
-    "Press o and open an example, then R: the robot runs it. S stops, space pauses. b lays out another mat; "
-    "drag the robot with the mouse or nudge it with the arrows, and the sensors follow. What a program prints as "
-    "a name, a colon and a number, such as Colour: 86.3, goes into the log and the chart; e writes the log to a "
-    "file."
+    "Press o to open an example, then R to run it; S stops it, space pauses it. b selects another mat. "
+    "Drag the robot with the mouse or move it with the arrow keys: the readings follow. Each line that a program "
+    "prints as a name, a colon and a number, such as Colour: 86.3, is added to the log and the chart. e exports the "
+    "log to a file."
 )
 _NUDGES = (
     ("← ↑ → ↓", "Move the robot 10 mm"),

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def clear_log(workspace: Workspace) -> None:
     """Clear the logged data from the output and the chart; the run keeps its log."""
     workspace.panel_area.clear_log()
-    workspace.app.say("Output and chart are clear; the run keeps its log: l analyses it, e exports it")
+    workspace.app.say("Output and chart cleared. The run keeps its log: l analyses it, e exports it")
 
 
 def open_program(workspace: Workspace) -> None:
@@ -159,3 +159,17 @@ def analyse(workspace: Workspace) -> None:
     from tuisim.app.analyser.app import Analyser
 
     workspace.app.push_screen(Analyser(LogRequest(runs=(workspace.run_controller.run_id,))))
+
+
+def choose_run(workspace: Workspace) -> None:
+    """Ask for a stored run and open it."""
+    from tuisim.app.dialogs.runs import RunChooser
+
+    def chosen(run_id: str | None) -> None:
+        if run_id:
+            workspace.document.when_safe(lambda: workspace.loader.open_run(run_id))
+
+    def ask() -> None:
+        workspace.app.push_screen(RunChooser(), chosen)
+
+    workspace.document.when_safe(ask)

@@ -1,13 +1,13 @@
-"""Keys of the groups Program and Debugging: run, stop and speed; steps, breakpoints and watches."""
+"""Keys of the groups Program and Debugging: run, stop, pause and speed; steps, breakpoints and watches."""
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
-from tuisim.app.actions import time_travel
-from tuisim.app.actions.time_travel import propose_branch
-from tuisim.app.snapshot import speed_label
+from tuisim.app.actions.time_travel import propose_branch, refresh
+from tuisim.app.snapshot import RunPhase, speed_label
 
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
@@ -29,12 +29,27 @@ def stop(workspace: Workspace) -> None:
     workspace.run_controller.stop()
 
 
+def pause(workspace: Workspace) -> None:
+    """Pause or continue: playback in the past, the program at the newest instant."""
+    timeline = workspace.run_controller.timeline
+    if timeline.playing:
+        timeline.stop_playback()
+        refresh(workspace)
+    elif workspace.run_controller.in_past:
+        timeline.play(time.monotonic())
+        refresh(workspace)
+    elif workspace.run_controller.state == RunPhase.PAUSED:
+        workspace.run_controller.resume()
+    else:
+        workspace.run_controller.pause()
+
+
 def _change_speed(workspace: Workspace, by: int) -> None:
     speed = workspace.run_controller.speed
     at = SPEEDS.index(speed) if speed in SPEEDS else min(range(6), key=lambda i: abs(SPEEDS[i] - speed))
     to = at + by
     if not 0 <= to < len(SPEEDS):
-        workspace.app.say(f"Speed is {speed_label(speed)} already: that is the {'slowest' if by < 0 else 'fastest'}")
+        workspace.app.say(f"The speed is already {speed_label(speed)}, the {'slowest' if by < 0 else 'fastest'}")
         return
     workspace.run_controller.set_speed(SPEEDS[to])
     workspace.app.situation_changed()
@@ -48,9 +63,6 @@ def slower(workspace: Workspace) -> None:
 def faster(workspace: Workspace) -> None:
     """Go one step up in speed."""
     _change_speed(workspace, 1)
-
-
-TICKS = 10
 
 
 def next_line(workspace: Workspace) -> None:
@@ -79,18 +91,6 @@ def to_cursor(workspace: Workspace) -> None:
         workspace.debugger.run_to(line)
 
 
-def ten_ticks(workspace: Workspace) -> None:
-    """Run ten ticks."""
-    timeline = workspace.run_controller.timeline
-    if workspace.run_controller.in_past:
-        at = timeline.at or 0
-        time_travel.to_tick(workspace, at + TICKS if at + TICKS < timeline.newest else None)
-    elif workspace.debugger.is_away:
-        time_travel.to_now(workspace)
-    else:
-        workspace.run_controller.debug(protocol.StepTicks(TICKS))
-
-
 def toggle_break(workspace: Workspace) -> None:
     """Set or remove a breakpoint on the cursor's line in the code."""
     if line := _cursor_line(workspace):
@@ -101,7 +101,7 @@ def _cursor_line(workspace: Workspace) -> int:
     """Return the line of the cursor; show the code first if it is hidden."""
     if not workspace.panel_area.shown("code"):
         workspace.panel_area.toggle("code")
-        workspace.app.say("The cursor of the code chooses the line: tab leads there")
+        workspace.app.say("The cursor in the code sets the line: tab moves the focus there")
         return 0
     return workspace.panel_area.code.cursor_line if workspace.panel_area.code else 0
 

@@ -1,11 +1,11 @@
-"""Keys of the group Robot and world: pose, pen, mat, robot, profile, obstacles."""
+"""Keys of the group Robot: pose, pen, mat, robot, profile, obstacles, zoom of the world."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tuisim.app.actions.app import _world
+from tuisim.app.actions.app import world_panel
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.core.geometry import Pose
@@ -34,7 +34,7 @@ def nudge(workspace: Workspace, right_mm: float, up_mm: float, turn_deg: float) 
 
 def clear_trace(workspace: Workspace) -> None:
     """Clear the pen trace."""
-    if world := _world(workspace):
+    if world := world_panel(workspace):
         world.clear_trace()
         workspace.app.draw(force=True)
 
@@ -48,7 +48,7 @@ def random_place(workspace: Workspace) -> None:
     if pose := random_pose(workspace.run_controller.spec, Random()):
         workspace.run_controller.place(pose)
     else:
-        workspace.app.say("No free place was found: there are many obstacles, or the robot is large")
+        workspace.app.say("No free position found: there are too many obstacles, or the robot is too large")
 
 
 def saved_poses(workspace: Workspace) -> None:
@@ -115,4 +115,11 @@ def reset_robot(workspace: Workspace) -> None:
     if workspace.run_controller.next_run.robot_is_edited:
         workspace.loader.attempt(plans.with_robot_as_chosen)
     else:
-        workspace.app.say("Nothing of the robot is edited")
+        workspace.app.say("The robot has no changes to undo")
+
+
+def zoom(workspace: Workspace) -> None:
+    """Switch the world to the next zoom."""
+    if world := world_panel(workspace):
+        world.cycle_zoom()
+        workspace.app.draw(force=True)

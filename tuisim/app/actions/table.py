@@ -1,7 +1,7 @@
 """The table of keys: what each one does, its name, and when it is available.
 
-To add a key: write its function in `app.actions` and add a line to `ACTIONS`. Binding, footer, help and command palette
-follow from the line.
+To add a key: write its function in the file of this folder that holds its group, and add a line to `ACTIONS`. Binding,
+footer, help and command palette follow from the line.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def _can_run(now: Situation) -> str:
         return "No program yet: o opens one"
     if now.in_past:
         return ""
-    return "The program is running already: S stops it" if now.state in IN_RUN else ""
+    return "The program is already running: S stops it" if now.state in IN_RUN else ""
 
 
 def _can_stop(now: Situation) -> str:
@@ -45,16 +45,16 @@ def _can_step(now: Situation) -> str:
     if now.state == RunPhase.PAUSED or now.in_past:
         return ""
     if now.state in IN_RUN:
-        return "One tick works while paused: space pauses"
+        return "Works only while paused: space pauses"
     return "The run has ended: , goes back" if now.has_run else _can_stop(now)
 
 
 def _can_look_back(now: Situation) -> str:
-    return "" if now.has_run else "No run yet to look back on: R runs the program"
+    return "" if now.has_run else "No run yet: R runs the program"
 
 
 def _can_look_on(now: Situation) -> str:
-    return "" if now.in_past else _can_look_back(now) or "This is the newest instant"
+    return "" if now.in_past else _can_look_back(now) or "This is the latest instant"
 
 
 def _can_come_back(now: Situation) -> str:
@@ -62,7 +62,7 @@ def _can_come_back(now: Situation) -> str:
 
 
 def _can_change_world(now: Situation) -> str:
-    return "Not during a run: S stops it" if now.state in IN_RUN else ""
+    return "Not available during a run: S stops it" if now.state in IN_RUN else ""
 
 
 def _can_export(now: Situation) -> str:
@@ -90,13 +90,13 @@ def _nudges() -> list[LabAction]:
 
 def _toggles() -> list[LabAction]:
     return [
-        Action(f"panel-{p.id}", p.key, f"{p.title} on or off", PANEL, partial(app.toggle, panel=p.id), footer=p.id)
+        Action(f"panel-{p.id}", p.key, f"Show or hide {p.title}", PANEL, partial(app.toggle, panel=p.id), footer=p.id)
         for p in PANELS.values()
     ]
 
 
 def _can_branch(now: Situation) -> str:
-    return "" if now.in_past else "A branch begins in the past: , goes back"
+    return "" if now.in_past else "A branch starts in the past: , goes back"
 
 
 def _can_debug(now: Situation) -> str:
@@ -106,15 +106,14 @@ def _can_debug(now: Situation) -> str:
 def _debugs() -> list[LabAction]:
     can = _can_debug
     return [
-        Action("next-line", "n", "Next line", DEBUG, program.next_line, can, "next"),
-        Action("step-into", "s", "Next line, into calls", DEBUG, program.step_into, can, "into"),
-        Action("step-out", "u", "Continue until this function returns", DEBUG, program.step_out, can, "out"),
-        Action("line-back", "N", "One line back", DEBUG, program.line_back, _can_look_back, "line back"),
-        Action("break", "t", "Breakpoint on the cursor's line on or off", DEBUG, program.toggle_break, can, "break"),
-        Action("breaks", "T", "Breakpoints: add, edit, switch on or off, delete", DEBUG, program.list_breaks, can),
+        Action("next-line", "n", "Step over: next line", DEBUG, program.next_line, can, "next"),
+        Action("step-into", "s", "Step into a function call", DEBUG, program.step_into, can, "into"),
+        Action("step-out", "u", "Step out of this function", DEBUG, program.step_out, can, "out"),
+        Action("line-back", "N", "Step back one line", DEBUG, program.line_back, _can_look_back, "line back"),
+        Action("break", "t", "Toggle a breakpoint on the cursor's line", DEBUG, program.toggle_break, can, "break"),
+        Action("breaks", "T", "Breakpoints: add, edit, disable, delete", DEBUG, program.list_breaks, can),
         Action("watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can),
         Action("to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can),
-        Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, program.ten_ticks, _can_step),
     ]
 
 
@@ -123,13 +122,14 @@ def _travels() -> list[LabAction]:
     keys = "< >"
     go = time_travel
     return [
-        Action("now", "end", "Back to now (also escape)", TIME, go.to_now, _can_come_back, "now"),
+        Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, go.ten_ticks, _can_step),
+        Action("now", "end", "Return to the present (also escape)", TIME, go.to_now, _can_come_back, "now"),
         Action("second-back", "less_than_sign", "One second back", TIME, go.second_back, back, "1 s", "", keys),
         Action("second-on", "greater_than_sign", "One second forward", TIME, go.second_on, on),
         Action("sample-before", "left_parenthesis", "Previous sample", TIME, go.sample_before, back),
         Action("next-sample", "right_parenthesis", "Next sample", TIME, go.next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
-        Action("branch", "y", "Branch from this instant", TIME, time_travel.branch_here, _can_branch, "branch"),
+        Action("branch", "y", "Branch from this instant", TIME, go.branch_here, _can_branch, "branch"),
         Action("start-of-run", "home", "Start of the run", TIME, go.to_start, back),
     ]
 
@@ -140,7 +140,7 @@ ACTIONS: Mapping[str, LabAction] = {
     for action in (
         Action("run", "R", "Run the program", PROGRAM, program.run, _can_run, "run"),
         Action("stop", "S", "Stop the program", PROGRAM, program.stop, _can_stop, "stop"),
-        Action("pause", "space", "Pause or resume; play the past", PROGRAM, time_travel.pause, _can_pause, "pause"),
+        Action("pause", "space", "Pause or resume; play back the past", PROGRAM, program.pause, _can_pause, "pause"),
         Action("tick", "full_stop", "One tick forward, while paused", TIME, time_travel.tick_on, _can_step, "tick"),
         Action("back", "comma", "One tick back", TIME, time_travel.tick_back, _can_look_back, "back"),
         *_debugs(),
@@ -149,33 +149,33 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
         Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
-        Action("home", "m", "Robot back to its start pose", ROBOT, robot.home, footer="start"),
-        Action("random", "j", "Robot to a random pose", ROBOT, robot.random_place),
-        Action("poses", "P", "Saved poses: go there, save, delete", ROBOT, robot.saved_poses),
+        Action("home", "m", "Move the robot back to its start pose", ROBOT, robot.home, footer="start"),
+        Action("random", "j", "Move the robot to a random pose", ROBOT, robot.random_place),
+        Action("poses", "P", "Saved poses: go to, save, delete", ROBOT, robot.saved_poses),
         Action("robot", "r", "Choose a robot", ROBOT, robot.choose_robot, _can_change_world, "robot"),
-        Action("reset-robot", "ctrl+n", "Undo the robot's edits", ROBOT, robot.reset_robot, _can_change_world),
+        Action("reset-robot", "ctrl+n", "Undo changes to the robot", ROBOT, robot.reset_robot, _can_change_world),
         Action("obstacles", "k", "Choose obstacles", ROBOT, robot.choose_obstacles, _can_change_world),
         Action("profile", "F", "Choose a profile", ROBOT, robot.choose_profile, _can_change_world),
         Action("pen", "p", "Pen up or down", ROBOT, robot.pen, footer="pen"),
         Action("slower", "left_square_bracket", "Slower", PROGRAM, program.slower, footer="speed", footer_key="[ ]"),
         Action("faster", "right_square_bracket", "Faster", PROGRAM, program.faster),
         Action("compare", "equals_sign", "Compare this run with another", FILES, files.compare, _can_look_back),
-        Action("runs", "h", "Open a stored run", FILES, time_travel.choose_run, _can_change_world, "runs"),
+        Action("runs", "h", "Open a stored run", FILES, files.choose_run, _can_change_world, "runs"),
         Action("analyse", "l", "Analyse the log: table, chart, bands, notes", FILES, analyse, _can_export, "analyse"),
         Action("export", "e", "Export the log to a file", FILES, files.export, _can_export, "export"),
         Action("save-world", "ctrl+s", "Save the world to a file", FILES, files.save_world, footer="save"),
         Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, files.save_robot),
         Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
-        Action("zoom", "v", "Zoom the world", ROBOT, app.zoom, footer="zoom"),
+        Action("zoom", "v", "Zoom the world", ROBOT, robot.zoom, footer="zoom"),
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
-        Action("enlarge", "plus", "Enlarge the panel with the focus, or restore", PANEL, app.enlarge),
-        Action("rays", "U", "Ultrasonic rays on or off", PANEL, app.rays, footer="rays"),
+        Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
+        Action("rays", "U", "Show or hide the ultrasonic rays", PANEL, app.rays, footer="rays"),
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
-        Action("redraw", "ctrl+l", "Redraw, after something else has written over the screen", APP, app.redraw),
-        Action("suspend", "ctrl+z", "Suspend: fg in the shell comes back", APP, app.suspend),
+        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
+        Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),
         Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
     )
 }

@@ -1,4 +1,4 @@
-"""Functions behind the time keys: back, forward, and to a given instant."""
+"""Keys of the group Time: back, forward, to a given instant, and branches."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
     from tuisim.runs.recording import Recording
 
+MANY_TICKS = 10
+"""Ticks that `:` runs."""
+
 
 def to_tick(workspace: Workspace, tick: int | None) -> None:
     """Go to a tick of the run; None and ticks beyond the newest mean now. A running program is paused first."""
@@ -26,7 +29,7 @@ def to_tick(workspace: Workspace, tick: int | None) -> None:
     if tick is None:
         workspace.debugger.to_now()
     workspace.run_controller.timeline.go(tick)
-    _gone(workspace)
+    refresh(workspace)
 
 
 def _is_laid_out(workspace: Workspace, recording: Recording) -> bool:
@@ -34,11 +37,12 @@ def _is_laid_out(workspace: Workspace, recording: Recording) -> bool:
     mat = workspace.run_controller.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
-    workspace.app.say(f"Another mat is in use now: h opens {recording.name} with the mat that it was on")
+    workspace.app.say(f"The mat has changed since this run: h opens {recording.name} with its mat")
     return False
 
 
-def _gone(workspace: Workspace) -> None:
+def refresh(workspace: Workspace) -> None:
+    """Show another instant: redraw the panels and the footer."""
     workspace.app.situation_changed()
     workspace.app.draw(force=True)
 
@@ -72,6 +76,18 @@ def tick_on(workspace: Workspace) -> None:
         workspace.run_controller.step()
 
 
+def ten_ticks(workspace: Workspace) -> None:
+    """Run ten ticks."""
+    timeline = workspace.run_controller.timeline
+    if workspace.run_controller.in_past:
+        at = timeline.at or 0
+        to_tick(workspace, at + MANY_TICKS if at + MANY_TICKS < timeline.newest else None)
+    elif workspace.debugger.is_away:
+        to_now(workspace)
+    else:
+        workspace.run_controller.debug(protocol.StepTicks(MANY_TICKS))
+
+
 def second_back(workspace: Workspace) -> None:
     """Go back one second."""
     _by(workspace, -workspace.run_controller.timeline.tick_hz)
@@ -92,21 +108,6 @@ def to_now(workspace: Workspace) -> None:
     to_tick(workspace, None)
 
 
-def pause(workspace: Workspace) -> None:
-    """Pause or continue: playback in the past, the program at the newest instant."""
-    timeline = workspace.run_controller.timeline
-    if timeline.playing:
-        timeline.stop_playback()
-        _gone(workspace)
-    elif workspace.run_controller.in_past:
-        timeline.play(time.monotonic())
-        _gone(workspace)
-    elif workspace.run_controller.state == RunPhase.PAUSED:
-        workspace.run_controller.resume()
-    else:
-        workspace.run_controller.pause()
-
-
 def stop_time(workspace: Workspace) -> None:
     """Stop playback, and pause a running program."""
     workspace.run_controller.timeline.stop_playback()
@@ -120,8 +121,8 @@ def beat(workspace: Workspace) -> None:
         if workspace.run_controller.state == RunPhase.PAUSED:
             workspace.run_controller.resume()
         elif workspace.run_controller.state == RunPhase.ENDED:
-            workspace.app.say("The recording has been played to its end")
-        _gone(workspace)
+            workspace.app.say("Playback has reached the end of the recording")
+        refresh(workspace)
 
 
 def ask_where(workspace: Workspace) -> None:
@@ -154,20 +155,6 @@ def next_sample(workspace: Workspace) -> None:
 def sample_before(workspace: Workspace) -> None:
     """Go to the previous sample of any name."""
     _to_sample(workspace, "sample back")
-
-
-def choose_run(workspace: Workspace) -> None:
-    """Ask for a stored run and open it."""
-    from tuisim.app.dialogs.runs import RunChooser
-
-    def chosen(run_id: str | None) -> None:
-        if run_id:
-            workspace.document.when_safe(lambda: workspace.loader.open_run(run_id))
-
-    def ask() -> None:
-        workspace.app.push_screen(RunChooser(), chosen)
-
-    workspace.document.when_safe(ask)
 
 
 def propose_branch(workspace: Workspace, then: protocol.Message | None, restart: bool = False) -> None:

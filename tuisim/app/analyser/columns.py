@@ -56,8 +56,8 @@ class ColumnsDialog(Dialog[Columns]):
         log: The table, and the current meaning of its columns.
     """
 
-    TITLE_TEXT = "What are the columns?"
-    HINT = "Enter applies · Escape changes nothing"
+    TITLE_TEXT = "Columns"
+    HINT = "Enter applies · Escape cancels"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("t", "time", "Time", show=False),
         Binding("space", "value", "Value", show=False),
@@ -75,8 +75,8 @@ class ColumnsDialog(Dialog[Columns]):
         yield OptionList(markup=False)
         yield Static(id="message", classes="wrong", markup=False)
         keys = Table.grid(padding=(0, 2))
-        keys.add_row("t", "this column is the time; again: none is, the rows are counted")
-        keys.add_row("space", "draw this column, or not")
+        keys.add_row("t", "use this column as the time; again: use row numbers")
+        keys.add_row("space", "draw or omit this column")
         keys.add_row("u", f"unit of the time: {', '.join(SECONDS)}")
         yield Static(keys)
 
@@ -138,7 +138,7 @@ class ColumnsDialog(Dialog[Columns]):
     def _apply(self) -> None:
         try:
             if not self._chosen.values:
-                raise TuisimError("Nothing to draw: space chooses a column")
+                raise TuisimError("Nothing to draw: space selects a column")
             choose_columns(self._log.table, self._chosen.time, self._chosen.values, self._chosen.unit)
         except TuisimError as error:
             self.query_one("#message", Static).update(str(error))

@@ -47,9 +47,9 @@ _SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
 EMPTY = (
-    "This log is empty. Print values with a name:",
+    "This log is empty. To log a value, print it with a name:",
     "    print('Colour: ' + str(value))",
-    "Run again; T shows what every tick recorded.",
+    "Then run it again. T shows the telemetry, one row per tick.",
 )
 
 
@@ -158,12 +158,12 @@ PANES: Mapping[str, Pane] = {
     "bands": Pane(
         "Bands", lambda model: _LazyRows(model.bands(), _band),
         ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
-        Model.bands_in_words, "No band: no ticked variable keeps a level",
+        Model.bands_in_words, "No bands: no variable shown stays at a level",
     ),
     "statistics": Pane(
         "Statistics", _statistics,
         ("variable", "count", "min", "mean", "max", "std", *(f"{100 * part:g} %" for part in QUANTILES)),
-        _between, empty="Tick a variable: v chooses one, space ticks it",
+        _between, empty="No variable is shown: v selects one, space shows it",
     ),
     "events": Pane(
         "Events", lambda model: _LazyRows(model.events.found(model.log), _event),
@@ -176,7 +176,7 @@ PANES: Mapping[str, Pane] = {
     ),
     "runs": Pane(
         "Runs", _runs, ("", "run", "program", "mat", "end", "s", "profile", "seed"),
-        empty="This log is a file: R opens stored runs instead, several to lay them over each other",
+        empty="This log is a file. R opens stored runs instead; several share one chart",
     ),
 }  # fmt: skip
 """The panes by name."""
@@ -285,7 +285,7 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
     """Return the rows of the table around the cursor, with as many columns as fit."""
     rows = model.rows
     if not len(rows):
-        return [[("No row fulfils the conditions: U shows all again", DIM)]]
+        return [[("No row matches the filter: U clears it", DIM)]]
     place = rows.place(model.row)
     room = max(height - 1, 1)
     first = _first(place, len(rows), room)

@@ -108,7 +108,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             LogError: there is none yet.
         """
         if self._model is None:
-            raise LogError("there is no log yet")
+            raise LogError("no log is open yet")
         return self._model
 
     def open(self, request: LogRequest) -> None:
@@ -291,9 +291,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         """Ask for the meaning of the file's columns."""
         model = self.model
         if not model.subject.wanted.file:
-            self.say("Only the columns of a file can be chosen: those of a run are known")
+            self.say("Columns can be chosen only in a file: those of a run are fixed")
         elif not candidates(model.log.table):
-            self.say("There is no column of numbers")
+            self.say("There is no numeric column")
         else:
             self.app.push_screen(ColumnsDialog(model.log.bare()), self._set_columns)
 

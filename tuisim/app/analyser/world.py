@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 _POSE = ("x_mm", "y_mm", "heading_deg")
 _PLAIN, _DIM = Style(color="#d8dee6"), Style(color="#7f8fa1")
 _HERE = Style(color="#ffffff", bgcolor="#263545", bold=True)
-NO_POSES = "This log does not say where the robot was"
+NO_POSES = "This log has no robot positions"
 
 
 class WorldAt:
@@ -200,7 +200,7 @@ class WorldPane(Vertical):
             background.run(self, work, partial(self._prepared, model, run), group="worlds")
         world = self._worlds.get(run)
         if world is None:
-            note = NO_POSES if run in self._worlds else "The mat is being prepared …"
+            note = NO_POSES if run in self._worlds else "Preparing the mat …"
             self._source.set_lines([[(note, _DIM)]])
             return
         snapshot = world.at(model.time_of(model.row), model.row)

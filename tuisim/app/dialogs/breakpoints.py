@@ -23,13 +23,13 @@ Entry = TypeVar("Entry")
 
 FORMS = (
     ("12", "line 12 is about to run"),
-    ("12 if x > 3", "and this is true there"),
+    ("12 if x > 3", "line 12 is about to run, and the expression is true"),
     ("left.red% < 10", "a sensor, ultrasonic < 200, gyro > 90, x_mm > 1000"),
-    ("left.color changes", "another colour is seen"),
+    ("left.color changes", "the sensor sees another colour"),
     ("sample Colour < 50", "also: sample Colour changes"),
     ("print matches black", "a printed line, by a regular expression"),
-    ("time 3.5", "this simulated time has passed"),
-    ("stall", "a motor is blocked"),
+    ("time 3.5", "3.5 simulated seconds have passed"),
+    ("stall", "an obstacle blocks a motor"),
 )
 
 
@@ -144,7 +144,7 @@ class BreaksDialog(_Listed[Breakpoint]):
 
     TITLE_TEXT: str = "Breakpoints"
     HINT: str = "Enter changes · Space switches · Delete removes · Escape closes"
-    PLACEHOLDER: ClassVar[str] = "a new one, such as 12 if x > 3"
+    PLACEHOLDER: ClassVar[str] = "new breakpoint, such as 12 if x > 3"
 
     def __init__(
         self, breaks: Sequence[Breakpoint], robot: RobotSpec, changed: Callable[[tuple[Breakpoint, ...]], None]
@@ -186,7 +186,7 @@ class WatchesDialog(_Listed[str]):
 
     TITLE_TEXT: str = "Watches"
     HINT: str = "Enter changes · Delete removes · Escape closes"
-    PLACEHOLDER: ClassVar[str] = "an expression, such as len(values) or x / 2"
+    PLACEHOLDER: ClassVar[str] = "new expression, such as len(values) or x / 2"
 
     def parse(self, text: str) -> str:
         """Parse a Python expression.

@@ -102,13 +102,13 @@ class Chooser(ListDialog):
         path_hint: Placeholder of the path field; without it there is no field.
     """
 
-    HINT: str = "Enter chooses · Escape closes"
+    HINT: str = "Enter selects · Escape closes"
 
     def __init__(self, title: str, groups: Sequence[Group], current: str = "", path_hint: str = "") -> None:
         super().__init__()
         self.TITLE_TEXT = title
         if path_hint:
-            self.HINT = "Enter chooses · tab to the field · Escape closes"
+            self.HINT = "Enter selects · tab to the field · Escape closes"
         self._groups = [group for group in groups if group.entries]
         self._current = current
         self._path_hint = path_hint
@@ -169,8 +169,8 @@ def _robot_title(name: str) -> str:
     from tuisim.config.robots import ROBOTS
 
     robot = ROBOTS[name]
-    eyes = ", ".join(f"({eye.x_mm:g}, {eye.y_mm:g}) ⌀ {eye.diameter_mm}" for eye in robot.color_sensors)
-    return f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} apart; eyes {eyes}"
+    sensors = ", ".join(f"({sensor.x_mm:g}, {sensor.y_mm:g}) ⌀ {sensor.diameter_mm}" for sensor in robot.color_sensors)
+    return f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} apart; sensors {sensors}"
 
 
 def obstacle_chooser(plan: NextRun) -> Chooser:
@@ -212,7 +212,7 @@ class MatPicker(ListDialog):
     """
 
     TITLE_TEXT: str = "Mats"
-    HINT: str = "Enter lays it out · tab to the field · Escape closes"
+    HINT: str = "Enter selects · tab to the field · Escape closes"
 
     def __init__(self, current: str, known: Mapping[str, Background], folder: str | None) -> None:
         super().__init__()

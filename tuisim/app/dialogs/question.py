@@ -82,10 +82,10 @@ class BranchQuestion(Dialog[str]):
         self.HINT = "y branches · r runs from the start · n stays" if restart else "y branches · n stays"
         self._restart = restart
         program = "The edited program" if branch.edited else "The program"
-        again = "run from its start to there" if branch.edited else "run again to there"
-        ends = f" {branch.of.name.capitalize()} ends here, and is kept." if in_run else ""
-        then = "continues from there" if branch.goes_on else "pauses there"
-        self._text = f"{program} is {again}, with all that you did until then, and {then}{change}.{ends}"
+        again = "runs from its start to this instant" if branch.edited else "runs again up to this instant"
+        ends = f" {branch.of.name.capitalize()} ends now and is kept." if in_run else ""
+        then = "continues from here" if branch.goes_on else "pauses here"
+        self._text = f"{program} {again}, with all your actions until then, and {then}{change}.{ends}"
 
     def content(self) -> ComposeResult:
         """Return what would happen, and the answers."""
@@ -109,7 +109,7 @@ class LeaveQuestion(Dialog[bool]):
     """Returns True if the user wants to quit nevertheless."""
 
     TITLE_TEXT: str = "Quit?"
-    HINT: str = "y quits · n goes on"
+    HINT: str = "y quits · n stays"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y,q,enter", "yes", "Quit", show=False),
         Binding("n", "leave", "Stay", show=False),
@@ -117,7 +117,7 @@ class LeaveQuestion(Dialog[bool]):
 
     def content(self) -> ComposeResult:
         """The question."""
-        yield Static("A program is running. What it has logged so far is kept.", markup=False)
+        yield Static("A program is running. Everything logged so far is kept.", markup=False)
         yield Static("[@click=screen.yes]  y  Stop it and quit  [/]   [@click=screen.leave]  n  Stay  [/]")
 
     def action_yes(self) -> None:

@@ -103,7 +103,7 @@ class RunChooser(ListDialog):
         yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
         yield Static(_HEADS, markup=False, classes="heads")
         yield OptionList()
-        yield Static("Reading the list …", id="message", markup=False)
+        yield Static("Loading the list …", id="message", markup=False)
 
     def on_mount(self) -> None:
         """Read the list in the background: there may be thousands of runs."""

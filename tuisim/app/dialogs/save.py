@@ -97,7 +97,7 @@ class FileDialog(Dialog[Path]):
             target = self.checked(typed_path(typed))
             if target.exists() and self._agreed != typed:
                 self._agreed = typed
-                self.say(f"{target.name} is there already. Press Enter again to replace it.", wrong=True)
+                self.say(f"{target.name} already exists. Press Enter again to replace it.", wrong=True)
                 return
             self._writing = True
             self.write(target)
@@ -163,7 +163,7 @@ class SaveDialog(FileDialog):
         """Write the file at once."""
         self._save(target)
         if self._notice:
-            self.app.notify(f"The {self._what} is in {target}", markup=False)
+            self.app.notify(f"{self._what.capitalize()} saved to {target}", markup=False)
         self.dismiss(target)
 
 
@@ -174,8 +174,8 @@ class ProgramDialog(SaveDialog):
 
 
 _KINDS = {
-    False: "What the program printed: one row a sample",
-    True: "Telemetry: one row a tick, every sensor",
+    False: "Samples: what the program printed, one row each",
+    True: "Telemetry: every sensor, one row per tick",
 }
 
 
@@ -221,7 +221,7 @@ class ExportDialog(FileDialog):
         background.run(self, work, self._written, lambda error: self.failed(str(error)))
 
     def _written(self, target: Path) -> None:
-        self.app.notify(f"The log is in {target}", markup=False)
+        self.app.notify(f"Log saved to {target}", markup=False)
         self.dismiss(target)
 
 

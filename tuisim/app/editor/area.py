@@ -31,13 +31,13 @@ _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
 _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
 EDITOR_KEYS = (
-    ("Enter", "Type; Escape ends it"),
+    ("Enter", "Start editing; Escape ends it"),
     ("ctrl+s", "Save the program"),
-    ("ctrl+r F5", "Run the text as it stands"),
+    ("ctrl+r F5", "Run the text as it is"),
     ("ctrl+f F3 ⇧F3", "Find, next, previous"),
     ("ctrl+g", "Go to a line"),
-    ("tab ⇧tab", "Indent, outdent; backspace takes an indent back"),
-    ("ctrl+/", "Lines to comments and back"),
+    ("tab ⇧tab", "Indent, outdent; backspace removes an indent"),
+    ("ctrl+/", "Comment or uncomment lines"),
     ("ctrl+z ctrl+y", "Undo, redo"),
     ("ctrl+a", "Select all"),
     ("ctrl+x ctrl+c ctrl+v", "Cut, copy, paste"),
@@ -70,8 +70,8 @@ class CodeArea(TextArea):
         Binding("ctrl+f", "want('find')", "Find", show=False),
         Binding("ctrl+g", "want('line')", "Go to a line", show=False),
         Binding("ctrl+a", "select_all", "Select all", show=False),
-        Binding("f3", "want('next')", "Next place", show=False),
-        Binding("shift+f3", "want('previous')", "Place before", show=False),
+        Binding("f3", "want('next')", "Next match", show=False),
+        Binding("shift+f3", "want('previous')", "Previous match", show=False),
     ]
 
     class Wanted(Message):

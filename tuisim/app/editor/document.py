@@ -215,7 +215,7 @@ class Document:
 
         answers = (("s", "Save them"), ("d", "Discard them"))
         question = Question(
-            "Unsaved changes", f"{self._name} has changes that are not saved.", answers, "goes on editing"
+            "Unsaved changes", f"{self._name} has changes that are not saved.", answers, "continues editing"
         )
         self._app.push_screen(question, answered)
 
@@ -308,9 +308,9 @@ class Document:
 
     def _write(self, path: Path) -> None:
         if path.suffix != ".py":
-            raise ConfigError("is no name of a program", "it ends in .py", file=str(path))
+            raise ConfigError("is not a valid program name", "it ends in .py", file=str(path))
         if is_protected(path):
-            raise ConfigError("is an example, or may not be written", "choose another place", file=str(path))
+            raise ConfigError("is an example, or cannot be written", "choose another file", file=str(path))
         write_text(path, self._text, self._form)
 
     def _saved_to(self, path: Path, then: Callable[[], None]) -> None:
@@ -341,7 +341,7 @@ class Document:
             from tuisim.app.dialogs.question import Question
 
             text = f"{self._name} was changed on disk, and has unsaved changes here."
-            answers = (("k", "Keep mine"), ("t", "Take the file's"))
+            answers = (("k", "Keep mine"), ("t", "Use the file's"))
             self._app.push_screen(Question("Two versions", text, answers), self._resolved)
         return True
 

@@ -128,7 +128,7 @@ def keep_draft(path: str, text: str) -> None:
             handle.write(data)
     except OSError as error:
         reason = error.strerror or error
-        raise ConfigError(f"unsaved work cannot be kept: {reason}", "save it soon", file=str(file)) from None
+        raise ConfigError(f"unsaved changes cannot be backed up: {reason}", "save it soon", file=str(file)) from None
 
 
 def find_draft(path: str) -> Draft | None:

@@ -33,15 +33,18 @@ class Chart(Widget, can_focus=True):
     Chart > LinesView { width: 1fr; height: 1fr; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "select(-1)", "Trace before"),
+        Binding("up", "select(-1)", "Previous trace"),
         Binding("down", "select(1)", "Next trace"),
-        Binding("space", "tick", "Tick trace"),
-        *(Binding(str(number), f"tick({number})", f"Tick trace {number}", show=False) for number in range(1, 10)),
+        Binding("space", "tick", "Show or hide the trace"),
+        *(
+            Binding(str(number), f"tick({number})", f"Show or hide trace {number}", show=False)
+            for number in range(1, 10)
+        ),
         Binding("left", "move_cursor(-1)", "Cursor back"),
-        Binding("right", "move_cursor(1)", "Cursor on"),
+        Binding("right", "move_cursor(1)", "Cursor forward"),
         Binding("shift+left", "move_cursor(-10)", "Cursor far back", show=False),
-        Binding("shift+right", "move_cursor(10)", "Cursor far on", show=False),
-        Binding("escape", "drop_cursor", "No cursor"),
+        Binding("shift+right", "move_cursor(10)", "Cursor far forward", show=False),
+        Binding("escape", "drop_cursor", "Remove the cursor"),
         Binding("f", "freeze", "Follow or freeze"),
         Binding("delete,backspace", "clear", "Clear chart"),
     ]

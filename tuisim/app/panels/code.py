@@ -23,7 +23,7 @@ from tuisim.source import source_lines
 LIT_GAP_S = 0.1
 """Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
 
-NOTHING_OPEN = "No program: o opens one, ctrl+t begins a new one"
+NOTHING_OPEN = "No program: o opens one, ctrl+t creates one"
 _TYPING_KEYS = "esc done  ^s save  ^r run  ^f find"
 
 

@@ -76,7 +76,7 @@ class Controls(Widget, can_focus=False):
             (
                 self._button("R Run", "run", bool(self._program) and not in_run),
                 self._button("S Stop", "stop", in_run),
-                self._button("Go on" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run),
+                self._button("Resume" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run),
             )
         )
         spec = now.spec

@@ -25,8 +25,8 @@ Boxes: TypeAlias = tuple[Obstacle, ...]
 
 _FIELDS = {"x_mm": "X", "y_mm": "Y", "width_mm": "W", "height_mm": "H"}
 _NEW_SIZE_MM = 200.0
-_USE = "A drag draws another"
-_NONE = "none: a drag draws one"
+_USE = "Drag to draw another"
+_NONE = "none: drag to draw one"
 
 
 def box_label(number: int, box: Obstacle) -> str:
@@ -172,7 +172,7 @@ class Obstacles(Vertical):
 
     def action_remove(self) -> None:
         if self.at is None:
-            self._say("There is none to remove")
+            self._say("There is no obstacle to remove")
             return
         self.post_message(self.Edited(partial(_replaced, self.at, ())))
 

@@ -29,7 +29,7 @@ class Settings(VerticalScroll, can_focus=False):
     TITLE: ClassVar[str] = "Settings"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("down", "app.focus_next", "Next field", show=False),
-        Binding("up", "app.focus_previous", "Field before", show=False),
+        Binding("up", "app.focus_previous", "Previous field", show=False),
     ]
 
     @dataclass

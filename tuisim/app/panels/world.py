@@ -96,7 +96,7 @@ class World(Widget, can_focus=True):
 
     def edit_boxes(self, on: bool, marked: int | None = None) -> None:
         """Enable or disable drawing and moving obstacles with the mouse; `marked` is the selected one."""
-        self.border_subtitle = "drag draws or moves an obstacle" if on else ""
+        self.border_subtitle = "drag to draw or move an obstacle" if on else ""
         self._view.edit_boxes(on, marked)
 
     @property
@@ -425,7 +425,7 @@ def words(moment: Moment, width: int) -> str:
         return f"{now_s:.2f} s"
     short = f"past {at_s:.2f} of {now_s:.2f} s"
     long = f"past {at_s:.2f} s of {now_s:.2f} s  −{now_s - at_s:.2f} s"
-    longest = f"{long}  end: back to now"
+    longest = f"{long}  end: to the present"
     fits = (text for text in (longest, long, short) if len(text) + 1 + MIN_BAR_COLS <= width)
     return next(fits, f"{at_s:.2f} s")
 

@@ -87,7 +87,7 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
     """Return the text for a panel of that inner width."""
     if view.paused is None or view.inspected is None:
         if view.busy:
-            return _text("", ("computing that instant …",), width)
+            return _text("", ("computing this instant …",), width)
         return _hint(view.state, width)
     lines = _known(view, view.paused, view.inspected, width)
     if view.is_elsewhere and view.now:
@@ -104,7 +104,7 @@ def _hint(state: RunPhase, width: int) -> list[Line]:
         case RunPhase.RUNNING:
             return _text("running", ("space  pauses    n  pauses at the next line",), width)
         case RunPhase.WAITING:
-            return _text("waiting", ("The Output panel takes the answer.",), width)
+            return _text("waiting", ("Answer in the Output panel.",), width)
         case RunPhase.ENDED:
             return _text("", _OVER, width)
         case RunPhase.IDLE | RunPhase.STARTING | RunPhase.PAUSED:

@@ -65,11 +65,13 @@ class FieldGroup:
 
 def sections(plan: NextRun) -> list[FieldGroup]:
     """Return every field of a plan; the fields depend on the sensors of its robot."""
-    eyes = {eye.name: eye for eye in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)}
+    sensors = {
+        sensor.name: sensor for sensor in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)
+    }
     return [
         FieldGroup("Program", (Field("arguments", "Arguments", _arguments, _with_arguments),)),
         FieldGroup("Robot", _robot_fields()),
-        *(FieldGroup(f"Sensor {name}", _color_sensor_fields(name, eye, plan)) for name, eye in eyes.items()),
+        *(FieldGroup(f"Sensor {name}", _color_sensor_fields(name, sensor, plan)) for name, sensor in sensors.items()),
         FieldGroup("Ultrasonic", _ultrasonic_fields(plan)),
         FieldGroup("Gyro", _gyro_fields(plan)),
         *(FieldGroup(part.name.capitalize(), _further_fields(part)) for part in plan.robot_choice.spec.further_sensors),
@@ -236,24 +238,24 @@ def _free_port(robot: RobotSpec, wanted: str) -> str:
 
 def _placed(plan: NextRun, text: str, name: str) -> NextRun:
     """Change a colour sensor's x; the other sensors stay where the mat has put them."""
-    on_mat = {eye.name: eye for eye in plan.spec.robot.color_sensors}
+    on_mat = {sensor.name: sensor for sensor in plan.spec.robot.color_sensors}
     robot = plan.robot_choice.spec
-    eyes = [replace(eye, x_mm=on_mat[eye.name].x_mm) for eye in robot.color_sensors]
-    eyes = [replace(eye, x_mm=_number(text)) if eye.name == name else eye for eye in eyes]
-    return with_robot_edited(plan, replace(robot, color_sensors=tuple(eyes)), moved=True)
+    sensors = [replace(sensor, x_mm=on_mat[sensor.name].x_mm) for sensor in robot.color_sensors]
+    sensors = [replace(sensor, x_mm=_number(text)) if sensor.name == name else sensor for sensor in sensors]
+    return with_robot_edited(plan, replace(robot, color_sensors=tuple(sensors)), moved=True)
 
 
-def _color_sensor_fields(name: str, eye: ColorSensorSpec, plan: NextRun) -> tuple[Field, ...]:
+def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> tuple[Field, ...]:
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
         others = tuple(other for other in robot.color_sensors if other.name != name)
         if word == OFF:
             return replace(robot, color_sensors=others)
         if len(others) < len(robot.color_sensors):
             return robot
-        again = replace(eye, port=_free_port(robot, eye.port))
+        again = replace(sensor, port=_free_port(robot, sensor.port))
         order = [other.name for other in plan.robot.spec.color_sensors]
-        eyes = sorted((*others, again), key=lambda one: order.index(one.name) if one.name in order else len(order))
-        return replace(robot, color_sensors=tuple(eyes))
+        sensors = sorted((*others, again), key=lambda one: order.index(one.name) if one.name in order else len(order))
+        return replace(robot, color_sensors=tuple(sensors))
 
     used = _presence_field(name, switched)
     if name not in _sensors(plan.robot_choice.spec):
@@ -288,7 +290,7 @@ def _single_used(name: str, field: str, fresh: SensorSpec) -> Field:
 def _angles(text: str) -> tuple[float, ...]:
     angles = tuple(map(_number, text.replace(",", " ").split()))
     if not 1 <= len(angles) <= MAX_RAYS or not all(-360 <= angle <= 360 for angle in angles):
-        raise RobotError(f"must be 1 to {MAX_RAYS} angles from -360 to 360, with blanks between them")
+        raise RobotError(f"must be 1 to {MAX_RAYS} angles from -360 to 360, separated by spaces")
     return angles
 
 
@@ -392,7 +394,7 @@ def _with_arguments(plan: NextRun, text: str) -> NextRun:
     try:
         return with_arguments(plan, tuple(shlex.split(text)))
     except ValueError:
-        raise ConfigError("a quote is not closed", "'…' and \"…\" keep blanks in one argument") from None
+        raise ConfigError("a quote is not closed", "put an argument with spaces in '…' or \"…\"") from None
 
 
 def find(plan: NextRun, edit_id: str) -> Field | None:

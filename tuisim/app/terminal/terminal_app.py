@@ -229,7 +229,7 @@ class TerminalApp(App[None]):
         if isinstance(self._driver, TerminalDriver):
             self.suspending()
             if not self._driver.stop_as_job():
-                self.notify("No shell could resume tuisim, so it does not stop", markup=False)
+                self.notify("tuisim cannot be suspended: no shell could resume it", markup=False)
 
     def suspending(self) -> None:
         """Called before the app stops."""

@@ -127,7 +127,7 @@ def report(arguments: Arguments) -> int:
         ExportError: the file cannot be written.
     """
     if not arguments.words:
-        raise ConfigError("which log?", "a file, `-`, or a stored run such as `last`", key="report")
+        raise ConfigError("no log given", "a file, `-`, or a stored run such as `last`", key="report")
     if arguments.out:
         check_report(Path(arguments.out))
     request = asked(arguments)

@@ -49,7 +49,7 @@ def open_sources(arguments: Arguments) -> Iterator[Log]:
     """
     words: Sequence[str] = arguments.words
     if not words:
-        raise ConfigError("which log?", "a file, `-`, or a stored run such as `last`", key=arguments.action)
+        raise ConfigError("no log given", "a file, `-`, or a stored run such as `last`", key=arguments.action)
     runs: list[str] = []
     for word in words:
         if is_file(word):

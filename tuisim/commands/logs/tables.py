@@ -81,7 +81,7 @@ def bands(arguments: Arguments) -> int:
 def events(arguments: Arguments) -> int:
     """Print where each variable crosses the threshold."""
     if arguments.at is None:
-        raise ConfigError("at which threshold?", "such as --at 50", key="events")
+        raise ConfigError("no threshold given", "such as --at 50", key="events")
     rows: list[dict[str, Any]] = []
     for log in open_sources(arguments):
         for name in names_of(log, arguments):
@@ -128,7 +128,7 @@ def even(arguments: Arguments) -> int:
     """Output every variable resampled at a fixed period, one column each."""
     log = the_source(arguments)
     if arguments.period is None:
-        raise ConfigError("which period?", "such as --period 0.1", key="resample")
+        raise ConfigError("no period given", "such as --period 0.1", key="resample")
     all_series = [log.series(name) for name in names_of(log, arguments)]
     start = min(float(series.time_s.min()) for series in all_series)
     stop = max(float(series.time_s.max()) for series in all_series)
@@ -149,7 +149,7 @@ def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Be
 def calculate(arguments: Arguments) -> int:
     """Output the log with a column computed from an expression."""
     if not arguments.expression:
-        raise ConfigError("which expression?", "such as --expression '(left + right) / 2'", key="calc")
+        raise ConfigError("no expression given", "such as --expression '(left + right) / 2'", key="calc")
     log = the_source(arguments)
     frame = wide_frame(log)
     columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
@@ -183,7 +183,7 @@ def reckon(arguments: Arguments) -> int:
 def export(arguments: Arguments) -> int:
     """Write the log, or some of its variables, in another format."""
     if not arguments.out:
-        raise ConfigError("to which file?", "such as --out log.parquet", key="export")
+        raise ConfigError("no file given", "such as --out log.parquet", key="export")
     check_target(arguments.out)
     log = the_source(arguments)
     export_log(log, _chosen_part(log, arguments), arguments.out)

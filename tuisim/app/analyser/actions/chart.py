@@ -8,14 +8,14 @@ from tuisim.app.analyser.screen import LogScreen
 from tuisim.errors import LogError
 
 _ALIGNMENTS = (
-    ("time", "their beginnings"),
-    ("distance", "how far each has driven"),
-    ("Colour < 50", "the time at which each first meets that condition"),
+    ("time", "the start of each run"),
+    ("distance", "the distance driven"),
+    ("Colour < 50", "the first time at which each run meets the condition"),
 )
 _AGAINST = (
     ("y_mm against x_mm", "the path of the robot"),
     ("Ultrasonic", "the selected variable against another one"),
-    ("(nothing)", "all over time"),
+    ("(nothing)", "every variable over time"),
 )
 
 
@@ -62,9 +62,9 @@ def facets(screen: LogScreen) -> None:
     screen.redraw_chart()
     if screen.chart.options.facets:
         if len(screen.model.traces.ticked()) < 2:
-            screen.say("One chart for each ticked variable: v selects another one, space ticks it")
+            screen.say("Only one variable is shown: v selects another, space shows it")
         elif screen.chart.display and screen.chart.size.height < FACETS_ROWS:
-            screen.say("Not high enough for several charts: + enlarges the chart")
+            screen.say("Too little height for several charts: + enlarges the chart")
 
 
 def marks(screen: LogScreen) -> None:

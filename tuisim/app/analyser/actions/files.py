@@ -24,8 +24,7 @@ MOST_COPIED = 10_000
 """Most rows to copy: terminals drop longer texts."""
 _MANY_ROWS = 20_000
 """With more rows than this, searching for bands would block the keys."""
-_ROWS = ((".csv", "text"), (".parquet .arrow .jsonl", "with all types, and the metadata of the runs"))
-_CHARTS = ((".svg", "lines that stay sharp in any size"), (".png", "pixels"), (".txt", "as it is shown here"))
+_CHARTS = ((".svg", "vector graphics, sharp at any size"), (".png", "pixels"), (".txt", "text, as shown on the screen"))
 _REPORT = ((".html", "program, world, chart, bands, statistics and notes on one page"),)
 
 
@@ -51,7 +50,9 @@ def copy_pane(screen: LogScreen) -> None:
         return
     rows = model.rows
     if len(rows) > MOST_COPIED:
-        screen.say(f"{len(rows):,} rows are too many for a clipboard: F filters, `tuisim log export` writes a file")
+        screen.say(
+            f"{len(rows):,} rows are too many for the clipboard: F filters them, `tuisim log export` writes a file"
+        )
         return
     places = (rows.row(place) for place in range(len(rows)))
     lines = ["\t".join(rows.text(row, column) for column in rows.columns) for row in places]
@@ -60,11 +61,11 @@ def copy_pane(screen: LogScreen) -> None:
 
 def export(screen: LogScreen) -> None:
     """Ask for the file to export the rows of the pane to; of the table, only the columns shown."""
-    from tuisim.logs.export import LISTED, check_target
+    from tuisim.logs.export import EXPORTERS, LISTED, check_target
 
     pane = screen.pane.name_shown
     if pane != "table" and not PANES[pane].rows(screen.model):
-        screen.say("There are no rows here to export: t shows the table")
+        screen.say("No rows to export here: t shows the table")
         return
     what = "rows" if pane == "table" else pane
 
@@ -72,10 +73,11 @@ def export(screen: LogScreen) -> None:
         model = screen.model
         frame = None if pane == "table" else pane_frame(pane, model)
         work = partial(_write_rows, model, frame, target)
-        notice = f"The rows as shown are in {target}"
+        notice = f"Rows saved to {target}"
         background.run(screen, work, lambda _: screen.say(notice), screen.complain, group="export")
 
-    screen.app.push_screen(SaveDialog(f"{what} as shown", f"{what}.csv", save, LISTED, check_target, _ROWS, False))
+    forms = tuple((suffix, exporter.contents) for suffix, exporter in EXPORTERS.items())
+    screen.app.push_screen(SaveDialog(f"{what} as shown", f"{what}.csv", save, LISTED, check_target, forms, False))
 
 
 def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
@@ -113,7 +115,7 @@ def report(screen: LogScreen) -> None:
     names = [trace.name for trace in screen.model.traces.ticked()]
 
     def save(target: Path) -> None:
-        work, notice = partial(_write_report, subject, target, names), f"The report is in {target}"
+        work, notice = partial(_write_report, subject, target, names), f"Report saved to {target}"
         background.run(screen, work, lambda _: screen.say(notice), screen.complain, group="report")
 
     screen.app.push_screen(SaveDialog("report", default_name(subject), save, ".html", check_report, _REPORT, False))

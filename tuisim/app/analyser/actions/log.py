@@ -17,12 +17,12 @@ from tuisim.runs.diff import RunDiff, diff_runs
 from tuisim.runs.run_folder import StoredRun
 
 _DERIVED: tuple[Form, ...] = (
-    ("speed = slope(x_mm)", "change per second; the name before it is optional"),
+    ("speed = slope(x_mm)", "derivative per second; `speed =` is optional"),
     ("average(Colour, 5)", "mean of the 5 samples around each"),
-    ("integral(Colour)", "sum over time"),
-    ("resample(Colour, 0.1)", "at regular times, every 0.1 s"),
+    ("integral(Colour)", "integral over time"),
+    ("resample(Colour, 0.1)", "resampled every 0.1 s"),
     ("(Left + Right) / 2", "+ - * / // % ** < > == and or not, a if b else c"),
-    ("speed =", "removes it again"),
+    ("speed =", "removes the variable"),
 )
 _RECKONING: Form = (RECKONING, "the pose by dead reckoning, and the error_mm")
 _OTHER_RUNS = (("last", "the newest run"), ("12", "run 12"))
@@ -98,7 +98,7 @@ def note(screen: LogScreen) -> None:
         if not text:
             raise LogError("the note is empty", "Escape cancels")
         screen.model.add_note(text, start_s, stop_s, name, run)
-        screen.say("Noted: n lists the notes")
+        screen.say("Note saved: n lists the notes")
         screen.update()
 
     screen.ask(title, keep, value)
@@ -140,7 +140,7 @@ def differences(screen: LogScreen) -> None:
             from tuisim.runs.store import RunStore
 
             if not text:
-                raise LogError("with which run?", "its number, its id, or last")
+                raise LogError("no run given", "its number, its id, or last")
             other = RunStore().load_run(text)
             if other.id == first.id:
                 raise LogError("that is the same run", f"a run other than {_name(first)}")
@@ -174,7 +174,7 @@ def _go_to(screen: LogScreen, model: Model, time_s: float) -> None:
     name = model.selected.partition(" #")[0]
     selected = next((trace.name for trace in model.traces if trace.name in (name, f"{name} #1")), model.selected)
     if not model.log.rows:
-        screen.say(f"They differ from {time_s:.2f} s; no sample was printed")
+        screen.say(f"The runs differ from {time_s:.2f} s on; no samples were printed")
         return
     model.selected = selected
     model.go_to_moment(time_s)

@@ -229,7 +229,9 @@ def go_to(screen: LogScreen) -> None:
         elif text.isdecimal() and 0 < int(text) <= model.log.rows:
             model.go_to_row(int(text) - 1)
         else:
-            raise LogError(f"{text!r} is no row or time", f"a row from 1 to {model.log.rows}, or a time such as 2.5s")
+            raise LogError(
+                f"{text!r} is not a row or a time", f"a row from 1 to {model.log.rows}, or a time such as 2.5s"
+            )
         model.follow_cursor()
         screen.update()
 
@@ -246,7 +248,7 @@ def event(screen: LogScreen, step: int) -> None:
     rows = [event.row for event in events]
     ahead = [at for at, row in enumerate(rows) if (row > model.row if step > 0 else row < model.row)]
     if not ahead:
-        screen.say("That was the last event" if step > 0 else "That was the first event")
+        screen.say("This is the last event" if step > 0 else "This is the first event")
         return
     screen.go_to_event(ahead[0] if step > 0 else ahead[-1])
     screen.update()

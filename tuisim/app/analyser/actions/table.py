@@ -1,7 +1,7 @@
 """The table of the analyser's keys: what each one does, and its name.
 
-To add a key: write its function in this package and add a line to `ACTIONS`. Binding, footer, help and command palette
-follow from the line.
+To add a key: write its function in the file of this folder that holds its group, and add a line to `ACTIONS`. Binding,
+footer, help and command palette follow from the line.
 """
 
 from __future__ import annotations
@@ -112,10 +112,10 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("columns", "C", "Choose the columns of the file", LOG, LogScreen.ask_columns, _log),
         Action("open-runs", "R", "Open other runs, several in one chart", LOG, log.runs, _log),
         Action("differences", "D", "Go to where two runs differ", LOG, log.differences, _log),
-        Action("world", "w", "World on or off", PANE, panes.world, _log),
+        Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
         Action("help", "question_mark", "Help: all keys", APP, _help, footer="help"),
-        Action("redraw", "ctrl+l", "Redraw, after something else has written over the screen", APP, _redraw),
-        Action("suspend", "ctrl+z", "Suspend: fg in the shell comes back", APP, _suspend),
+        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _redraw),
+        Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _suspend),
         Action("leave", "q,escape", "Leave the analyser", APP, _leave, footer="leave", shown_key="q"),
     )
 }
