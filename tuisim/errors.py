@@ -73,8 +73,8 @@ class TuisimError(Exception):
         self.hint = hint
 
     def __str__(self) -> str:
-        said = f"{self.message} ({self.hint})" if self.hint else self.message
-        return "\n".join(map(printable, said.split("\n")))
+        text = f"{self.message} ({self.hint})" if self.hint else self.message
+        return "\n".join(map(printable, text.split("\n")))
 
 
 class ConfigError(TuisimError):

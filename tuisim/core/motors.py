@@ -42,7 +42,7 @@ class MotorState:
 
 
 class Motor(Protocol):
-    """One motor with its encoder. Its class implements the motor law."""
+    """One motor with its encoder. Its class implements the motor law; see `BrickMotor` for what is without a text."""
 
     mode: int
     """The current command; anything but `STOPPED` counts as running."""
@@ -58,36 +58,29 @@ class Motor(Protocol):
     """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
 
     @property
-    def moving_dps(self) -> float:
-        """Current speed of the wheel, signed."""
+    def moving_dps(self) -> float: ...
 
     @property
-    def counting_dps(self) -> float:
-        """Current speed of the encoder."""
+    def counting_dps(self) -> float: ...
 
     @property
-    def aim_dps(self) -> float:
-        """Target speed of the wheel, signed."""
+    def aim_dps(self) -> float: ...
 
     @property
-    def resting(self) -> bool:
-        """Whether ticks leave this motor unchanged until its next command."""
+    def resting(self) -> bool: ...
 
     @property
     def ramping_ticks(self) -> int:
         """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
 
-    def run(self, speed_dps: float) -> None:
-        """Run until the next command."""
+    def run(self, speed_dps: float) -> None: ...
 
     def run_until(self, speed_dps: float, end_tick: int) -> None:
         """Run until a tick."""
 
-    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
-        """Run to an encoder position; the speed has no sign."""
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None: ...
 
-    def stop(self) -> None:
-        """Stop."""
+    def stop(self) -> None: ...
 
     def step(self, tick: int, noise_dps: float) -> float:
         """Run one tick of any kind with noise added to the speed, and return the rotation of the wheel, in degrees."""
@@ -101,8 +94,7 @@ class Motor(Protocol):
     def glide_evenly(self, ticks: int) -> EvenGlide:
         """Run quiet ticks of a motor at a steady speed; the caller sets the final encoder position."""
 
-    def state(self) -> MotorState:
-        """Return the state that `hold_back` needs to undo a tick."""
+    def state(self) -> MotorState: ...
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
         """Undo the rest of a tick in which an obstacle stopped the wheel: only a part of it, below 1, was possible."""

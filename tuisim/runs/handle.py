@@ -384,8 +384,8 @@ def _here() -> str:
 
 def _python_path() -> tuple[str, ...]:
     """Return the folders of the user's PYTHONPATH; an empty one is the current folder, as in Python."""
-    said = os.environ.get("PYTHONPATH")
-    return tuple(os.path.abspath(folder) for folder in said.split(os.pathsep)) if said else ()
+    folders = os.environ.get("PYTHONPATH")
+    return tuple(os.path.abspath(folder) for folder in folders.split(os.pathsep)) if folders else ()
 
 
 def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:

@@ -128,100 +128,91 @@ def _reserve(fd: int, start: int, size: int) -> None:
             start += os.pwrite(fd, nothing[: end - start], start)
 
 
-class _GrowingMap:
-    """A memory-mapped file that grows in ever larger steps while the disk has space.
+class _Writer:
+    """A recording in a memory-mapped file that grows in ever larger steps while the disk has space.
 
     Raises:
-        OSError: by the constructor and `grow`, without space; data written before is kept.
+        OSError: by the constructor, without space.
     """
 
     def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
+        self.full: Callable[[OSError], BaseException] = lambda error: error
+        """Returns the exception to raise when the disk is full; what was written before is kept."""
+        self._is_full = False
         self._fd = private(str(path), os.O_RDWR | os.O_CREAT | os.O_EXCL)
-        self.capacity = HEADER_BYTES + first_bytes
-        _reserve(self._fd, 0, self.capacity)
+        self._capacity = HEADER_BYTES + first_bytes
+        _reserve(self._fd, 0, self._capacity)
         self._map_file()
-        self.map[0:HEADER_BYTES] = header(magic, record_bytes, 0)
+        self._map[0:HEADER_BYTES] = header(magic, record_bytes, 0)
 
-    def grow(self, need: int) -> None:
-        wanted = self.capacity
+    def _make_room(self, need: int) -> None:
+        try:
+            self._grow(need)
+        except OSError as error:
+            self._is_full = True
+            raise self.full(error) from None
+
+    def _grow(self, need: int) -> None:
+        wanted = self._capacity
         while wanted < need:
             wanted *= 2
         while True:
             try:
-                _reserve(self._fd, self.capacity, wanted - self.capacity)
+                _reserve(self._fd, self._capacity, wanted - self._capacity)
                 break
             except OSError as error:
                 # Some file systems keep the part for which there was space.
-                os.ftruncate(self._fd, self.capacity)
+                os.ftruncate(self._fd, self._capacity)
                 if not is_full(error) or wanted == need:
                     raise
-                wanted = max(need, (self.capacity + wanted) // 2 - _LEAST_STEP)
-        self.capacity = wanted
+                wanted = max(need, (self._capacity + wanted) // 2 - _LEAST_STEP)
+        self._capacity = wanted
         self._unmap()
         self._map_file()
 
     def _map_file(self) -> None:
-        self.map = mmap.mmap(self._fd, self.capacity)
+        self._map = mmap.mmap(self._fd, self._capacity)
         # Set in one aligned store, which readers see atomically: pack_into would clear the bytes first.
-        self.length = memoryview(self.map)[_LENGTH_AT : _LENGTH_AT + 8].cast("Q")
+        self._length = memoryview(self._map)[_LENGTH_AT : _LENGTH_AT + 8].cast("Q")
 
     def _unmap(self) -> None:
-        self.length.release()
-        self.map.close()
+        self._length.release()
+        self._map.close()
 
-    def publish(self, length: int) -> None:
-        self.length[0] = length
-
-    def close(self, used: int) -> None:
+    def _close(self, used: int) -> None:
         self._unmap()
         os.ftruncate(self._fd, used)
         os.close(self._fd)
 
 
-def _raised(error: OSError) -> BaseException:
-    return error
-
-
-class TelemetryWriter:
-    """Appends tick records. The hot loop packs into `map` directly, then calls `publish`."""
+class TelemetryWriter(_Writer):
+    """Appends tick records. The hot loop packs into the map of `room` directly, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
-        self.full: Callable[[OSError], BaseException] = _raised
-        """Returns the exception to raise when the disk is full."""
-        self._file = _GrowingMap(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
-        self._length = self._file.length
+        super().__init__(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
         self.count = 0
 
     def room(self, records: int) -> mmap.mmap:
         """Return the map, with space for `records` more records after `count`."""
         need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
-        if need > self._file.capacity:
-            try:
-                self._file.grow(need)
-            except OSError as error:
-                raise self.full(error) from None
-            self._length = self._file.length
-        return self._file.map
+        if need > self._capacity:
+            self._make_room(need)
+        return self._map
 
     def publish(self, count: int) -> None:
         """Make the first `count` records visible to readers."""
-        self.count = count
-        # Inlined `_GrowingMap.publish`: this happens every tick.
-        self._length[0] = count
+        self.count = self._length[0] = count
 
     def close(self) -> None:
         """Truncate the file to its true size."""
-        self._file.close(HEADER_BYTES + self.count * TICK_RECORD.size)
+        self._close(HEADER_BYTES + self.count * TICK_RECORD.size)
 
 
-class OutputWriter:
-    """Appends printed lines and publishes each at once."""
+class OutputWriter(_Writer):
+    """Appends printed lines and publishes each at once; when the disk is full, later output is lost."""
 
     def __init__(self, folder: Path) -> None:
-        self.full: Callable[[OSError], BaseException] = _raised
-        """Returns the exception to raise when the disk is full; it is raised once, later output is lost."""
-        self._is_full = False
-        self._file = _GrowingMap(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
+        super().__init__(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
         self.length = 0
 
     def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: Stream) -> None:
@@ -241,21 +232,16 @@ class OutputWriter:
             return
         at = HEADER_BYTES + self.length
         end = at + OUTPUT_ROW.size + len(text)
-        if end > self._file.capacity:
+        if end > self._capacity:
             if end > MAX_OUTPUT_BYTES:
                 raise LogError(f"the program printed more than {MAX_OUTPUT_BYTES >> 20} MiB")
-            try:
-                self._file.grow(end)
-            except OSError as error:
-                self._is_full = True
-                raise self.full(error) from None
-        self._file.map[at:end] = OUTPUT_ROW.pack(len(text), tick, time_ns, line, stream) + text
-        self.length = end - HEADER_BYTES
-        self._file.publish(self.length)
+            self._make_room(end)
+        self._map[at:end] = OUTPUT_ROW.pack(len(text), tick, time_ns, line, stream) + text
+        self.length = self._length[0] = end - HEADER_BYTES
 
     def close(self) -> None:
         """Truncate the file to its true size."""
-        self._file.close(HEADER_BYTES + self.length)
+        self._close(HEADER_BYTES + self.length)
 
 
 @dataclass(frozen=True, slots=True)

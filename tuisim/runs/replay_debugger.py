@@ -93,8 +93,8 @@ class ReplayDebugger:
     def go_on(self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect) -> None:
         """Pause at an instant, resume with a command, and inspect where that ends."""
         self._request, self._back, self._resumes = look, 0, True
-        stands = self._paused and Position(self._paused.tick, self._paused.ordinal)
-        if self._run is not None and self._of is recording and stands == at:
+        here = self._paused and Position(self._paused.tick, self._paused.ordinal)
+        if self._run is not None and self._of is recording and here == at:
             self.busy, self._paused = True, None
             self._run.send(command)
         else:
@@ -115,8 +115,8 @@ class ReplayDebugger:
         actions = recording.actions()
         known = self._of is recording and self._actions == len(actions) and self._run is not None
         if known and self._paused is not None and traced_from < 0:
-            stands = Position(self._paused.tick, self._paused.ordinal)
-            if stands == at or stands.is_before(at):
+            here = Position(self._paused.tick, self._paused.ordinal)
+            if here == at or here.is_before(at):
                 self._paused = None
                 assert self._run is not None
                 self._run.send(protocol.RunToInstant(at.tick, at.ordinal))

@@ -107,7 +107,7 @@ def patch_fonts_module(module: types.ModuleType) -> None:
     """Patch `ev3dev2.fonts` after its import so that every font of the brick can be loaded."""
     fonts: Any = module
     available, load = fonts.available, fonts.load
-    said: list[str] = []
+    warned: list[str] = []
 
     @wraps(available)
     def all_available() -> list[str]:
@@ -118,8 +118,8 @@ def patch_fonts_module(module: types.ModuleType) -> None:
         if name not in FACES or name in available():
             found: ImageFont = load(name)
             return found
-        if not said:
-            said.append(name)
+        if not warned:
+            warned.append(name)
             print(
                 f"{name}: the published library has no font files; another font stands in, of that size and weight",
                 file=sys.__stderr__,

@@ -70,10 +70,10 @@ class Battery:
 
     def voltage_v(self) -> float:
         """Return the present voltage."""
-        used = self._taken_as() / S_PER_H / CAPACITY_AH
+        used = self._charge_used_as() / S_PER_H / CAPACITY_AH
         return max(EMPTY_V, FULL_V - (FULL_V - EMPTY_V) * used) - INNER_OHM * self.current_a()
 
-    def _taken_as(self) -> float:
+    def _charge_used_as(self) -> float:
         """Return the charge drawn since the start, in ampere seconds."""
         sim = self._session.sim
         tick_s = 1 / sim.spec.profile.tick_hz

@@ -247,10 +247,10 @@ def _stty(shell: Shell, use: Use) -> Result:
 def _amixer(shell: Shell, use: Use) -> Result:
     words = [word for word in use.words if word != "-q"]
     try:
-        told = shell.mixer.do(words)
+        output = shell.mixer.do(words)
     except ValueError as error:
         return Result(FAILED, errors=f"amixer: {error}")
-    return Result(output=Flow(told.encode() if len(words) == len(use.words) else b""))
+    return Result(output=Flow(output.encode() if len(words) == len(use.words) else b""))
 
 
 def _echo(_shell: Shell, use: Use) -> Result:
