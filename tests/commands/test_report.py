@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from tests.conftest import Command
-from tuisim.analysis.source import Note, notes_of_file, notes_of_run, write_notes
+from tuisim.analysis.source import NOTES_FILE, Note, notes_of_file, write_notes
 from tuisim.cli import run_command
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -90,7 +90,7 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Driven:
     with redirect_stdout(io.StringIO()):
         assert run_command(["run", str(program)]) == 0
         run = RunStore().load_run("last")
-        write_notes(notes_of_run(run.folder), [Note("the <i>first</i> white", 0.5, 1.25, "Colour")])
+        write_notes(run.folder / NOTES_FILE, [Note("the <i>first</i> white", 0.5, 1.25, "Colour")])
         assert run_command(["log", "report", run.id, "--out", str(target)]) == 0
     return Driven(run, page_of(target))
 

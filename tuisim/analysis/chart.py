@@ -34,8 +34,6 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
     """Return the chart of a model: its visible variables within its limits.
 
     Args:
-        model: The log.
-        view: How to look at it.
         columns, rows: Size of the picture, in pixels or in parts of characters: what it could not tell apart
             is left out.
 

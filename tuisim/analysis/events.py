@@ -37,7 +37,6 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
     Args:
         time_s: Shape (n,), in any order.
         values: Shape (n,); those that are not finite are skipped.
-        threshold: The threshold.
         hysteresis: A crossing counts if the signal is this far from the threshold before and after it.
 
     Raises:

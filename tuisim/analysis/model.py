@@ -33,9 +33,6 @@ _SORTED_AT_ONCE = 200_000
 class Model:
     """The state of the analysis of one log.
 
-    Args:
-        subject: The log.
-
     Raises:
         LogError: it has rows but no numeric column, or its notes cannot be read.
     """
@@ -57,7 +54,6 @@ class Model:
         self.limits: Limits | None = None
         """Visible time range, None for all."""
         self.alignment = TIME
-        """How runs are aligned."""
         self._reports: dict[str, BandReport] = {}
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
         """Cache of the bands of the latest reports."""
@@ -65,7 +61,6 @@ class Model:
         self.definitions: dict[str, str] = {}
         """Definitions of derived variables as typed, by name."""
         self._words: dict[str, str] = {}
-        """The results, one sentence per variable."""
         self._summaries: dict[str, Summary] = {}
         self._places = subject.notes_places()
         self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]

@@ -61,8 +61,6 @@ def write_report(subject: OpenedLog, path: Path, names: Sequence[str] = (), sear
     """Write the report of a log, replacing an existing file.
 
     Args:
-        subject: The log, and its runs if they are in the store.
-        path: The file.
         names: Variables of chart and bands, none for those that the analyser shows first.
         search: Finds the bands; `analysis.aside` has one that leaves the other threads their time.
 
@@ -76,14 +74,7 @@ def write_report(subject: OpenedLog, path: Path, names: Sequence[str] = (), sear
 
 
 def report_of(subject: OpenedLog, names: Sequence[str] = (), search: Search = plateaus) -> str:
-    """Return the page.
-
-    Args:
-        subject, names, search: As for `write_report`.
-
-    Raises:
-        LogError: as `write_report`.
-    """
+    """Return the page that `write_report` writes; arguments and errors are the same."""
     subject, remark = _with_rows(subject)
     model = Model(subject)
     for trace in model.traces:
@@ -133,11 +124,7 @@ def _world(run: StoredRun, *, many: bool) -> str:
 
 
 def _way_picture(run: StoredRun) -> Image:
-    """Draw mat, obstacles, pen trace, robot, and the path of the axle's midpoint; a ring marks the start.
-
-    Raises:
-        LogError: the recording is damaged, or the mat cannot be found any more.
-    """
+    """Draw mat, obstacles, pen trace, robot, and the path of the axle's midpoint; a ring marks the start."""
     from PIL import ImageDraw
 
     picture = world_at_end(run)
@@ -156,7 +143,6 @@ def _way_picture(run: StoredRun) -> Image:
 
 
 def _as_source(picture: Image) -> str:
-    """Return an image as a data URL."""
     content = io.BytesIO()
     picture.save(content, "png", optimize=True)
     return f"data:image/png;base64,{base64.b64encode(content.getvalue()).decode()}"
@@ -231,7 +217,7 @@ def _programs(runs: Sequence[StoredRun]) -> list[str]:
 
 
 Fact = tuple[str, ...]
-"""Pairs of label and function of a run."""
+"""A label, and its text for each run."""
 
 
 def run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
@@ -385,8 +371,6 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]], numbers: int) -> 
     """Return rows of text as a table, empty if there are none.
 
     Args:
-        heads: The column headings.
-        rows: The cells.
         numbers: Index of the first right-aligned column.
     """
     if not rows:

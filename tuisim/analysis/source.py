@@ -58,7 +58,7 @@ class OpenedLog:
             LogError: the file no longer exists.
         """
         if self.runs:
-            return tuple(notes_of_run(run.folder) for run in self.runs)
+            return tuple(run.folder / NOTES_FILE for run in self.runs)
         file = Path(self.wanted.file)
         return (notes_of_file(file),) if file.is_file() else ()
 
@@ -95,6 +95,7 @@ def opening(wanted: LogRequest) -> Iterator[OpenedLog]:
 
 
 NOTES_FILE = "notes.jsonl"
+"""In the folder of a run."""
 _HASHED_BYTES = 1 << 16
 """Bytes at the beginning of a file that identify it, also if it grows."""
 
@@ -110,11 +111,6 @@ class Note:
     """End of the span; the same as `start_s` for a sample."""
     variable: str = ""
     """The variable; empty for none in particular."""
-
-
-def notes_of_run(folder: Path) -> Path:
-    """Return the file with the notes of a run, by its folder."""
-    return folder / NOTES_FILE
 
 
 def notes_of_file(path: Path) -> Path:

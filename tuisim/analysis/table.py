@@ -68,11 +68,7 @@ class TableView:
 
 
 class Rows:
-    """The rows and columns that the table shows.
-
-    Args:
-        log: The log.
-    """
+    """The rows and columns that the table shows."""
 
     def __init__(self, log: Log) -> None:
         self._log = log
@@ -217,10 +213,9 @@ class Rows:
     def find(self, text: str, from_place: int, step: int, task: TableTask | None = None) -> int | None:
         """Return the next position whose row contains a text in a shown column, wrapping around; None if none does.
 
-        Slow for a long log without a match.
+        The case of letters does not count. Slow for a long log without a match.
 
         Args:
-            text: The text, in any case of letters.
             from_place: Position to begin at; searched last.
             step: 1 for forwards, -1 for backwards.
             task: Receives the progress; can stop the search.

@@ -33,7 +33,6 @@ class LogTrace(Trace):
     """One variable of one run.
 
     Args:
-        log: The log.
         name: As in `Log.names`.
         number: Selects colour and mark.
     """
@@ -192,8 +191,6 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
     """Return the x positions of the samples of each series; None: their times.
 
     Args:
-        log: The log.
-        series: Variables of its runs.
         way: See `FORM`.
 
     Raises:

@@ -21,8 +21,6 @@ def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
     """Return round limits around values, so that they seldom change while values come in.
 
     Args:
-        low: The least value.
-        high: The greatest one.
         from_zero: Whether the limits must include 0.
     """
     if from_zero:

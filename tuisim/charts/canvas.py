@@ -149,7 +149,6 @@ def xy_lines(
         xs, ys: Shape (n,); pairs that are not finite are left out.
         here: Index of the point to mark, None for none.
         names: Of x and of y.
-        rgb: Colour of the curve.
         marker: `braille`, or one character.
         width, height: Size in characters.
     """
@@ -180,7 +179,6 @@ def xy_lines(
 
 
 def _put(line: list[Run], column: int) -> None:
-    """Mark a character of a line."""
     at = 0
     for number, (text, style) in enumerate(line):
         if at <= column < at + len(text):

@@ -35,7 +35,6 @@ class ChartFormat:
     least: Size
     most: Size
     unit: str
-    """Unit of the size."""
     finer: Size = (1, 1)
     """Resolution: subdivisions of a unit."""
 
@@ -124,7 +123,6 @@ def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
     """Return a picture as SVG.
 
     Args:
-        drawing: The picture.
         inside: Whether it is embedded in a page and uses its colours, instead of being a file.
     """
     size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'

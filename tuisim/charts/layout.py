@@ -175,7 +175,6 @@ def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> D
     """Return the picture of a chart.
 
     Args:
-        chart: The chart.
         width, height: Size in pixels.
         titled: Whether to draw the title above it.
     """

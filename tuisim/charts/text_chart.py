@@ -256,7 +256,6 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
 
 
 def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
-    """Return the placeholder for a chart without a canvas."""
     words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
     if some:
         words = (*words, "", "↑ ↓ and space show a trace") if width >= 26 else words
@@ -286,7 +285,6 @@ def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> T
     """Return a chart as text of a given size in characters.
 
     Args:
-        chart: The chart.
         width, height: Size in characters; facets use more lines if necessary.
         colors: Whether colours distinguish the lines; otherwise marks do.
     """

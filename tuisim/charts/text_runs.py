@@ -11,7 +11,6 @@ Run: TypeAlias = tuple[str, Style]
 """A piece of a line in one style."""
 
 Line: TypeAlias = list[Run]
-"""A line of text."""
 
 
 def cut(text: str, width: int) -> str:

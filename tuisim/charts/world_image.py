@@ -117,10 +117,6 @@ def draw_robot(
 
     Args:
         picture: Written in place, shape (view.height_px, view.width_px, 3).
-        view: What the picture shows.
-        pose: Where the robot is.
-        outline: Its body and parts.
-        colors: Colours of its parts.
         opacity: 0 … 1.
         pressed: Whether each bumper is pressed; empty for none.
     """
@@ -237,7 +233,6 @@ def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatA
     """Return x and y of the pen in the world at each record, up or down, each of shape (n,).
 
     Args:
-        robot: The robot.
         telemetry: As from `runs.views.TelemetryView.array`.
     """
     # As `core.geometry.world_point`, for all ticks at once.
@@ -252,7 +247,6 @@ def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
     """Return the pen trace of a run.
 
     Args:
-        spec: The run.
         telemetry: As from `runs.views.TelemetryView.array`.
     """
     pen = spec.robot.pen
@@ -277,10 +271,8 @@ def world_picture(
     """Return mat, obstacles, pen traces and robot.
 
     Args:
-        spec: The run.
         mat: Shape (height, width, 3), rows from the top.
         pose: Where the robot is, by default at its start.
-        traces: Pen traces.
         rays: Whether to draw the rays of the ultrasonic sensor.
 
     Returns:

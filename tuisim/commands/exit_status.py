@@ -36,7 +36,6 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     """Return a stored run as a JSON-compatible dict: its settings, its end, the robot's pose, counts of its log.
 
     Args:
-        run: The run.
         most_bytes: `lines` and `samples` are None, not counted, if the output is longer than this.
     """
     last, end = run.telemetry.last(), run.end

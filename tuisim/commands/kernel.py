@@ -81,17 +81,12 @@ kernel = Group.of(
     It has every magic and the modules that a course's cells import, so notebooks run unchanged.
     """,
 )
-"""`tuisim kernel`."""
 
 
 def _place(
     user: bool, sys_prefix: bool, prefix: str | None, name: str | None
 ) -> tuple[KernelSpecManager, str | None, str | None]:
-    """Return Jupyter's manager, the chosen kernel folder or None, and the chosen name or None.
-
-    Raises:
-        ConfigError: two places, a wrong name, or ipykernel is missing.
-    """
+    """Return Jupyter's manager, the chosen kernel folder or None, and the chosen name or None."""
     given = {"--user": user, "--sys-prefix": sys_prefix, "--prefix": prefix is not None}
     places = [flag for flag, is_given in given.items() if is_given]
     if len(places) > 1:
@@ -106,11 +101,6 @@ def _place(
 
 
 def _manager() -> KernelSpecManager:
-    """Return Jupyter's manager of kernel folders.
-
-    Raises:
-        ConfigError: ipykernel is not installed.
-    """
     try:
         # The kernel itself.
         import ipykernel  # noqa: F401
@@ -122,7 +112,6 @@ def _manager() -> KernelSpecManager:
 
 
 def _kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
-    """Yield the tuisim kernels in these kernel folders."""
     for folder in dict.fromkeys(folders):
         for file in sorted(Path(folder).glob(f"*/{_SPEC_FILE}")):
             spec = _read(file)

@@ -64,7 +64,6 @@ class Subcommand:
     path: str
     """MODULE:FUNCTION in `commands/logs`; imported on use."""
     options: tuple[str, ...] = _TABLE
-    """Its options, from `OPTIONS`."""
     words: str = "LOG…"
     """Its logs, as the help names them."""
 
@@ -129,4 +128,3 @@ log = Group(
       tuisim log report last
     """,
 )
-"""`tuisim log`."""

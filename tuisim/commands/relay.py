@@ -61,7 +61,6 @@ class Follower:
     """Follows one run to its end.
 
     Args:
-        handle: The run.
         out: Where its printed lines go; error text and speech go to stderr.
         listen: Called with each event of the run, after the output before it has been written.
         tell: Called at each poll, to show progress.

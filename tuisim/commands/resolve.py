@@ -47,7 +47,6 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
 
     Args:
         words: Programs and worlds, as the user named them.
-        arguments: The parsed command line.
 
     Raises:
         ConfigError: there is no program, more than one, or a notebook.
@@ -136,7 +135,6 @@ def prepare_app(words: Sequence[str], arguments: Arguments) -> Prepared:
 
     Args:
         words: Programs and worlds, as the user named them.
-        arguments: The parsed command line.
 
     Raises:
         ConfigError: program, magic line, world or options are wrong, or there are two programs.
@@ -157,7 +155,6 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tupl
     Args:
         run: Its number, its id or the start of its id, its folder's path, or `last`.
         words: Other words of the command line; must be empty.
-        arguments: The parsed command line.
 
     Raises:
         ConfigError: a program, a world or an option of a run is given too.
@@ -179,7 +176,6 @@ def prepare_runs(words: Sequence[str], arguments: Arguments) -> list[Prepared | 
 
     Args:
         words: Programs and at most one world, as the user named them.
-        arguments: The parsed command line.
 
     Raises:
         ConfigError: a program, magic line, world or option is wrong, or there is no program.

@@ -32,7 +32,6 @@ MOST_CHARACTERS = 200
 GO, STOP = "go", "stop"
 PRESS = "--press"
 DEFAULT_PRESS_S = 0.1
-"""The default duration of a press."""
 MAX_PRESS_S = 1e6
 
 
@@ -181,7 +180,6 @@ class BreakpointReporter:
     """Reports the breakpoints of one run on stderr.
 
     Args:
-        handle: The run.
         watches: Expressions to evaluate at each breakpoint.
         stops: Whether the first breakpoint ends the run.
     """
@@ -305,7 +303,6 @@ def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
 def _run_one(
     one: Prepared, arguments: Arguments, store: RunStore, interrupts: Interrupts, how_far: Callable[[RunHandle], None]
 ) -> tuple[int, RunHandle]:
-    """Run one program to its end; return exit code and run."""
     assert one.program is not None
     speed = one.settings.speed or 0.0
     options = RunOptions(

@@ -276,4 +276,3 @@ runs = Group.of(
     A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.
     """,
 )
-"""`tuisim runs`."""

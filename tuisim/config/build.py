@@ -74,11 +74,6 @@ def _obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...]:
             return boxes
 
 
-def _profile(settings: Settings) -> ProfileSpec:
-    chosen = settings.profile
-    return chosen if isinstance(chosen, ProfileSpec) else load_profile(chosen, "--profile")
-
-
 def build_run_spec(settings: Settings) -> RunSpec:
     """Return the run specification of the settings; unset ones are decided by mat, robot and profile.
 
@@ -90,7 +85,8 @@ def build_run_spec(settings: Settings) -> RunSpec:
         mat = find_mat(os.path.expanduser(settings.background), settings.mats)
     chosen = settings.robot
     choice = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
-    profile = _profile(settings)
+    named = settings.profile
+    profile = named if isinstance(named, ProfileSpec) else load_profile(named, "--profile")
     solid = profile.solid if settings.solid is None else settings.solid
     robot = _with_pen(robot_on_mat(choice, mat), settings)
     motor = settings.motor_noise if settings.motor_noise is not None else choice.motor_noise or 0

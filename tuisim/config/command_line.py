@@ -29,8 +29,8 @@ Arguments = SimpleNamespace
 
 _FILES = ("FILE", "[NAME|FILE]", "FOLDER", "MAT", "ROBOT", "NAME")
 """Placeholders of values that may be files."""
-_ATTACHED = re.compile(r"(-[A-Za-z])=(.*)", re.DOTALL)
-"""A short option with its value, as in `-x=5`."""
+_ATTACHED = re.compile(r"\A(-[A-Za-z])=")
+"""A short option before its value, as in `-x=5`."""
 
 
 class Value(click.ParamType):  # type: ignore[type-arg]
@@ -68,11 +68,8 @@ class GroupedOption(click.Option):
     """An option under a heading of the help; only its first two names are listed there.
 
     Args:
-        flags: As in `click.Option`.
-        group: The heading.
         sets: The field of `Settings` that it sets, if any.
         adds: The word that it adds to that field, instead of its value.
-        how: Further arguments of `click.Option`.
     """
 
     def __init__(self, flags: Sequence[str], group: str = GENERAL, sets: str = "", adds: str = "", **how: Any) -> None:
@@ -137,7 +134,7 @@ class Command(click.Command):
         if self._passes_arguments and ARGUMENTS_FOLLOW in args:
             at = args.index(ARGUMENTS_FOLLOW)
             ours, program = args[:at], tuple(args[at + 1 :])
-        ours = [part for word in ours for part in _split(word)]
+        ours = [_ATTACHED.sub(r"\1", word) for word in ours]
         try:
             if not ctx.resilient_parsing:
                 self._check_values(ctx, ours)
@@ -182,11 +179,6 @@ def command(*params: click.Parameter, **how: Any) -> Callable[[Callable[..., int
         return Command(callback=work, params=list(params), **given)
 
     return make
-
-
-def _split(word: str) -> tuple[str, ...]:
-    match = _ATTACHED.fullmatch(word)
-    return (match[1] + match[2],) if match else (word,)
 
 
 class Group(click.Group):
@@ -306,7 +298,6 @@ Names = Callable[[str], Iterable[str]]
 
 
 def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
-    """Return the Click option for a line of `OPTIONS`."""
     flags = [*shared.flags, *(shared.magic_flags if magic else ())]
     how: dict[str, Any] = {"group": shared.group, "sets": shared.field, "help": shared.help, "hidden": hidden}
     if shared.panel:

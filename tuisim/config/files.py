@@ -46,7 +46,6 @@ class Location:
 
     file: str
     error: type[ConfigError] = ConfigError
-    """The class of errors about it."""
     key: str = ""
     """The path of the value in the file, such as `ultrasonic.x_mm` or `obstacle[1]`; empty for the top level."""
 
@@ -234,8 +233,6 @@ def table(data: object, at: Location, keys: Iterable[str] | None = None, unliste
     """Return data that is a table, as a dict.
 
     Args:
-        data: The data.
-        at: Its location.
         keys: The keys that it may have; None for any.
         unlisted: Further keys, which hints omit.
 
@@ -332,7 +329,6 @@ def convert(data: object, kind: type[Value], at: Location) -> Value:
     Args:
         data: The data: tables as dicts, lists, texts, numbers and booleans.
         kind: The type. Numbers must be finite, texts one line.
-        at: The location of the data.
 
     Raises:
         ConfigError: a key is missing or unknown, or a value is wrong.
@@ -471,9 +467,7 @@ def save_toml(
     """Write a TOML file atomically. In an existing file the user's comments, layout and order stay.
 
     Args:
-        path: The file.
         lines: The contents of a new file.
-        at: The location of its data.
         read: Returns the object in the file's data.
         expected: The object that `read` must return.
         check: Raises for data of another kind of file, without looking into further files; by default `read`.
@@ -513,13 +507,7 @@ def save_toml(
 def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str:
     """Return a TOML text with the values of a new one, but comments, layout and order of the old one.
 
-    Args:
-        old, new: The texts.
-        kept: Keys that only the old text has.
-        whole: Whether tables are replaced as a whole.
-
-    Raises:
-        ConfigError: the library cannot do it.
+    Only the old text has the keys `kept`; `whole` tells whether tables are replaced as a whole.
     """
     import tomlkit
     from tomlkit.exceptions import TOMLKitError

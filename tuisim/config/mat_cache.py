@@ -69,10 +69,6 @@ class FieldFiles:
         return cls(int(data["width_px"]), int(data["height_px"]), Path(data["pixels"]), sums)
 
 
-def _pixels_size() -> int:
-    return FIELD_HEIGHT_MM * FIELD_WIDTH_MM * 3
-
-
 def _sums_size(diameter: int) -> int:
     return (FIELD_HEIGHT_MM + diameter) * (FIELD_WIDTH_MM + diameter) * 3 * 4
 
@@ -106,7 +102,7 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
     sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in wanted)
     files = FieldFiles(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
     missing = [(diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))]
-    if not _in_use(files.pixels, _pixels_size()) or missing:
+    if not _in_use(files.pixels, 3 * FIELD_WIDTH_MM * FIELD_HEIGHT_MM) or missing:
         _make(files, missing, decode(content, image, fit))
     return files
 
@@ -169,7 +165,6 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 
 def _store(path: Path, array: NDArray[Any]) -> None:
-    """Write an array's bytes atomically."""
     with replacing(path, lasting=False, owner_only=True) as stream:
         stream.write(array.data)
 

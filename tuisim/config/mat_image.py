@@ -109,7 +109,6 @@ def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
     """Return the pixels of the field with an image on it.
 
     Args:
-        content: The bytes of the image file.
         path: Its path, for messages.
         fit: One of BACKGROUND_FITS.
 

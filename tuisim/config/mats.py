@@ -66,7 +66,6 @@ class _Entry:
 
 
 def _background(name: str, data: object, file: Path) -> Background:
-    """Return one mat from its table in the catalogue."""
     at = Location(str(file), BackgroundError, name)
     entry = convert(data, _Entry, at)
     return Background(
@@ -212,7 +211,9 @@ def find_mat(word: str, folder: str | None = None) -> Background:
     known = mats(folder)
     if (found := known.get(word)) is not None:
         if not found.shipped and not found.image.is_file():
-            raise BackgroundError(f"the mat {word!r} comes without its image", where_to_put(found))
+            names = " or ".join(dict.fromkeys((found.original, f"{found.name}.png")))
+            hint = f"save it as {names} in {own_folder()}, or name its folder with --mats FOLDER"
+            raise BackgroundError(f"the mat {word!r} comes without its image", hint)
         return found if found.is_own else background(word)
     if not is_image_path(word):
         raise BackgroundError(f"no such mat {word!r}", names_hint(word, list(known)))
@@ -244,12 +245,6 @@ def mat_of_spec(name: str) -> tuple[str, Background]:
     if (found := _of_path(name, known)) is not None:
         return found.name if found.is_own else name, found
     return name, background(name)
-
-
-def where_to_put(mat: Background) -> str:
-    """Return the hint for a mat without an image."""
-    names = " or ".join(dict.fromkeys((mat.original, f"{mat.name}.png")))
-    return f"save it as {names} in {own_folder()}, or name its folder with --mats FOLDER"
 
 
 def import_originals(source: Path) -> tuple[list[Taken], list[str]]:

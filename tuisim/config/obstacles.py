@@ -33,7 +33,6 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
     """Return a set of obstacles by name, or from a TOML or JSON file.
 
     Args:
-        word: The name or the path.
         key: The option to name in errors about an unknown name, such as `-o`.
 
     Raises:

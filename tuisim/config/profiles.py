@@ -61,7 +61,6 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
     """Return a profile by name, or from a TOML file.
 
     Args:
-        word: The name or the path.
         key: The option to name in errors about an unknown name, such as `--profile`.
 
     Raises:
@@ -76,9 +75,7 @@ def profile_from_table(data: object, name: str, at: Location) -> ProfileSpec:
     """Return the profile in a table. Costs may be given in ms instead of ns.
 
     Args:
-        data: The table.
         name: The profile's name, unless the table has one.
-        at: The location of the table.
 
     Raises:
         ProfileError: a key or a value is wrong.
@@ -124,7 +121,6 @@ def profile_lines(spec: ProfileSpec, parent: str = "") -> list[str]:
     """Return a profile as TOML lines, with every value.
 
     Args:
-        spec: The profile.
         parent: The name of its table; empty for a file of its own.
     """
     values: dict[str, Scalar] = {}

@@ -119,7 +119,6 @@ def find_magic(text: str, name: str) -> Magic | None:
     """Return the magic line before the program's first statement, or None.
 
     Args:
-        text: The program.
         name: Its file name, for errors.
 
     Raises:

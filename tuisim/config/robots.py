@@ -112,7 +112,6 @@ def load_robot(word: str, key: str = "") -> RobotSpec:
     """Return a robot by name, or from a TOML or JSON file.
 
     Args:
-        word: The name or the path.
         key: The option to name in errors about an unknown name, such as `-r`.
 
     Raises:
@@ -137,9 +136,7 @@ def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
     """Return the robot in a table.
 
     Args:
-        data: The table.
         name: The robot's name, unless the table has one.
-        at: The location of the table.
 
     Raises:
         RobotError: a key or a value is wrong.
@@ -173,11 +170,8 @@ def _check_name(data: object, at: Location) -> None:
 
 
 def _weight(data: object, at: Location) -> float:
-    return (
-        ROBOT_WEIGHTS[files.one_of(data, at, ROBOT_WEIGHTS)]
-        if isinstance(data, str)
-        else files.convert(data, float, at)
-    )
+    named = isinstance(data, str)
+    return ROBOT_WEIGHTS[files.one_of(data, at, ROBOT_WEIGHTS)] if named else files.convert(data, float, at)
 
 
 def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str, Any]:
@@ -258,11 +252,6 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     know either is ignored, with a note. Keys are translated to those of a robot's TOML table, so both formats are
     checked by the same rules.
 
-    Args:
-        data: The object in the file.
-        name: The robot's name.
-        at: The location of the object.
-
     Raises:
         RobotError: a key or a value is wrong.
     """
@@ -286,10 +275,8 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
             unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
         elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
             unknown.append(key)
-    motor, light = (
-        _json_noise(found, _WHEEL_NOISE, MAX_MOTOR_NOISE, at),
-        _json_noise(found, _SENSOR_NOISE, MAX_LIGHT_NOISE, at),
-    )
+    motor = _json_noise(found, _WHEEL_NOISE, MAX_MOTOR_NOISE, at)
+    light = _json_noise(found, _SENSOR_NOISE, MAX_LIGHT_NOISE, at)
     try:
         choice = robot_from_table(ours, name, at)
     except ConfigError as error:
@@ -342,7 +329,6 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
     """Return a robot as TOML lines, with every value.
 
     Args:
-        spec: The robot.
         parent: The name of its table; empty for a file of its own.
         pen_keys: The keys to write of its pen.
     """

@@ -145,7 +145,6 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
     """Read a world file. Paths in it are relative to its folder.
 
     Args:
-        path: The file.
         mats: A folder of the user's own mats, used if the file names none.
 
     Raises:
@@ -161,7 +160,6 @@ def world_from_table(data: object, path: Path, mats: str | None = None) -> World
     """Return the world in a table.
 
     Args:
-        data: The table.
         path: The path of the file, which may not exist yet.
         mats: As for `load_world`.
 
@@ -314,10 +312,8 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
     """Write a run atomically to a world file from which an equal run is built. Comments in the file stay.
 
     Args:
-        spec: The run.
         path: The file; an image and a program are written relative to its folder.
         program: The program to run in it, as a path or as the name of an example.
-        arguments: The program's arguments.
 
     Raises:
         ConfigError: the file cannot be written, or cannot represent the run.
@@ -345,7 +341,6 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     """Return a run as TOML lines.
 
     Args:
-        spec: The run.
         folder: Where the file will be; paths are relative to it.
         program, arguments: As for `save_world`.
     """
@@ -380,7 +375,6 @@ def _table(name: str, values: Mapping[str, Scalar]) -> list[str]:
 
 
 def _infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
-    """Return beacon and button presses as lines of a world file."""
     lines: list[str] = []
     if beacon is not None:
         lines += ["", "[beacon]", *files.toml_lines(asdict(beacon), _COMMENTS)]

@@ -202,12 +202,8 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                     try:
                         part = _whole(reader.get_batch(at))
                     except (pa.ArrowException, OSError, ValueError):
-                        notes.add(
-                            "batch of rows is damaged and was skipped",
-                            "batches of rows are damaged and were skipped",
-                            [],
-                            1,
-                        )
+                        damaged = "batch of rows is damaged", "batches of rows are damaged"
+                        notes.add(f"{damaged[0]} and was skipped", f"{damaged[1]} and were skipped", [], 1)
                     else:
                         yield (at + 1) / count, _named(part, notes)
                 return

@@ -128,8 +128,6 @@ def band_report(log: Log, name: str, search: Callable[[FloatArray], list[Plateau
     """Return the bands of a variable.
 
     Args:
-        log: The log.
-        name: The variable.
         search: Returns the plateaus of its values.
 
     Raises:

@@ -44,11 +44,7 @@ class Block:
 
 
 class LineCutter:
-    """Cuts bytes into blocks of whole lines.
-
-    Args:
-        notes: Receives warnings about bad input.
-    """
+    """Cuts bytes into blocks of whole lines."""
 
     def __init__(self, notes: Notes) -> None:
         self._notes = notes
@@ -177,10 +173,8 @@ def unpacked(title: str, head: bytes, handle: Any, notes: Notes) -> Readable | N
     """Return the text in a compressed file, None if it is not compressed.
 
     Args:
-        title: Name of the file.
         head: Its first `MAGIC_BYTES` bytes.
         handle: The file, open at its beginning.
-        notes: Receives warnings about bad input.
 
     Raises:
         LogError: the format cannot be read.
@@ -197,7 +191,6 @@ class _Unpacked:
 
     Args:
         file: Returns what it unpacks; raises one of `_ERRORS` where it is damaged or cut off.
-        notes: Receives warnings about bad input.
     """
 
     def __init__(self, file: Any, notes: Notes) -> None:

@@ -323,7 +323,6 @@ def _is_moment(table: pa.Table, name: str) -> bool:
         return True
     if not is_text(kind) or not table.num_rows:
         return False
-
     return bool(np.isfinite(seconds_of_texts(table.column(name).slice(0, 20))).any())
 
 
@@ -340,7 +339,6 @@ def choose_columns(table: pa.Table, time: str | None, values: Sequence[str], uni
     """Return the roles of the columns; the user may name some of them.
 
     Args:
-        table: The log.
         time: Column with the time; empty to count the rows; None to guess.
         values: Columns with values; none to guess.
         unit: Unit of a numeric time column, one of `SECONDS`; empty to guess it.

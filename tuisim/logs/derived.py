@@ -71,8 +71,6 @@ def derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
     Variables sampled at other times are forward-filled; columns are read in the row of each sample.
 
     Args:
-        log: The log that has the other variables.
-        definition: The definition to compute.
         otherwise: The variable whose sample times are used if the definition names no variable.
 
     Raises:
@@ -165,7 +163,6 @@ def dead_reckoning(
         left_position_deg: Position of the left wheel since the start, shape (n,).
         right_position_deg: Position of the right wheel.
         start: Pose at the first count.
-        robot: Wheel diameter and spacing.
     """
     per_degree = mm_per_degree(robot)
     left = np.diff(left_position_deg, prepend=left_position_deg[:1]) * per_degree

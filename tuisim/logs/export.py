@@ -92,7 +92,6 @@ def export_frame(frame: pd.DataFrame, path: str | Path, metadata: Metadata) -> N
 
     Args:
         frame: Columns of numbers, texts and time spans.
-        path: The target.
         metadata: Stored with it, ready for JSON. It must be the same for identical runs.
 
     Raises:
@@ -141,7 +140,6 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
     Args:
         log: The log, whose metadata are stored with the rows.
         table: Some of its rows and columns, in any order.
-        path: The target.
 
     Raises:
         ExportError: it cannot be written; an existing file is unchanged.
@@ -185,7 +183,6 @@ def log_metadata(table: str, frame: pd.DataFrame, runs: Sequence[StoredRun]) -> 
 
     Args:
         table: `samples` or `telemetry`.
-        frame: The log.
         runs: Its runs, in the order of the `run` column.
     """
     return {
@@ -276,4 +273,3 @@ EXPORTERS: Mapping[str, Exporter] = {
 
 ALLOWED = ", ".join(EXPORTERS)
 LISTED = f"{', '.join([*EXPORTERS][:-1])} or {[*EXPORTERS][-1]}"
-"""The suffixes in words."""

@@ -55,10 +55,6 @@ def _shifted(values: FloatArray) -> FloatArray:
     return np.concatenate(([np.nan], values[:-1])) if np.ndim(values) else values
 
 
-def _difference(values: FloatArray) -> FloatArray:
-    return values - _shifted(values)
-
-
 Functions = Mapping[str, tuple[int, Callable[..., Any], str]]
 """By name: number of arguments, function, description."""
 
@@ -79,7 +75,7 @@ FUNCTIONS: Functions = {
     "clip": (3, np.clip, "limited to a range"),
     "where": (3, np.where, "the second if the first is true, else the third"),
     "shift": (1, _shifted, "value of the previous row"),
-    "diff": (1, _difference, "change since the previous row"),
+    "diff": (1, lambda x: x - _shifted(x), "change since the previous row"),
 }
 """Functions of every expression."""
 
@@ -92,7 +88,6 @@ def evaluate(text: str, columns: Mapping[str, FloatArray], functions: Functions 
     Args:
         text: The expression; a column name that is not a Python identifier is written in backticks.
         columns: Arrays of one length by name.
-        functions: Functions by name.
 
     Returns:
         Shape (n,); conditions are 1 where they are true and 0 elsewhere.
@@ -158,10 +153,7 @@ class _Evaluation:
     """The evaluation of one expression.
 
     Args:
-        columns: Arrays by name.
         names: Names in backticks by their placeholders.
-        text: The whole expression, for messages.
-        functions: Functions by name.
     """
 
     def __init__(

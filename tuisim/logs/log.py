@@ -17,7 +17,6 @@ from tuisim.logs.columns import ROW, Layout, seconds_of
 from tuisim.runs.arrays import FloatArray, IntArray
 
 LogTable = pa.Table
-"""The type of tables."""
 
 _NO_ROWS: IntArray = np.empty(0, np.int64)
 
@@ -37,12 +36,7 @@ class Member:
 
 
 def members(table: pa.Table, layout: Layout) -> list[Member]:
-    """Return the series of a table, in order of first appearance.
-
-    Args:
-        table: The log.
-        layout: The roles of its columns.
-    """
+    """Return the series of a table, in order of first appearance."""
     runs, run_codes = _encoded(table.column(layout.run)) if layout.run else ([0], None)
     several = len(runs) > 1
     if not layout.variable:
@@ -146,7 +140,6 @@ class Log:
     metadata: Mapping[str, Any] = field(default_factory=dict)
     """Metadata of the runs, if the file was exported by tuisim."""
     derived: Mapping[str, Series] = field(default_factory=dict)
-    """Derived series, by name."""
     _kept: _Kept = field(default_factory=_Kept, repr=False, compare=False)
 
     @property

@@ -116,14 +116,7 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
 def read_pieces(
     source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = ""
 ) -> Iterator[Loaded]:
-    """Read a log; yield the log so far, soon after the start and then repeatedly.
-
-    Args:
-        source, time, values, unit: As for `open_log`.
-
-    Raises:
-        LogError: as for `open_log`.
-    """
+    """Read a log; yield the log so far, soon after the start and then repeatedly; arguments are those of `open_log`."""
     title = "standard input" if str(source) == STDIN else str(source)
     notes = Notes()
     parts: list[pa.Table] = []
@@ -188,7 +181,6 @@ def _is_empty(column: pa.ChunkedArray) -> bool:
 
 
 def _filled(part: pa.Table) -> pa.Table:
-    """Return the columns that are not empty."""
     return part.select([name for name in part.column_names if not _is_empty(part.column(name))])
 
 
@@ -241,7 +233,6 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
         handle: The bytes.
         size: Their number, 0 if unknown.
         suffix: Suffix of the file name in lower case, such as `.csv`.
-        notes: Receives warnings about bad input.
     """
     cutter, reader = LineCutter(notes), None
     read = 0

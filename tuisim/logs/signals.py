@@ -65,7 +65,6 @@ def integral(time_s: FloatArray, values: FloatArray, between: Between = Between.
     Args:
         time_s: Shape (n,), in any order.
         values: Shape (n,); values that are not finite are skipped, with NaN in the result.
-        between: The interpolation between samples.
     """
     sums = np.full(len(values), np.nan)
     known = known_in_order(time_s, values)
@@ -127,7 +126,6 @@ def resample(
         time_s: Shape (n,), in any order.
         values: Shape (n,); values that are not finite are skipped.
         period_s: Sampling period, above 0.
-        between: The interpolation between samples.
 
     Returns:
         The times in s, and the values at these times.
@@ -166,7 +164,6 @@ def known_at(
         time_s: Shape (n,), in any order.
         values: Shape (n,); values that are not finite are skipped.
         moments_s: Shape (m,).
-        between: The interpolation between samples.
     """
     known = known_in_order(time_s, values)
     return value_at(time_s[known], values[known], moments_s, between)

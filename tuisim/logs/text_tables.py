@@ -122,7 +122,6 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
 
     Args:
         lines: The first non-blank lines, each with its line number in the file.
-        notes: Receives warnings about guesses.
     """
     comments = [text for _, text in takewhile(lambda line: line[1].startswith(COMMENT), lines)]
     body = lines[len(comments) :]
@@ -229,11 +228,7 @@ _MOST_LINES, _MOST_JOINS = 100, 100
 
 
 class CsvReader:
-    """Reads blocks of one file; names and types of the columns are fixed by the first.
-
-    Args:
-        notes: Receives warnings about bad input.
-    """
+    """Reads blocks of one file; names and types of the columns are fixed by the first."""
 
     def __init__(self, notes: Notes) -> None:
         self._notes = notes
@@ -243,16 +238,8 @@ class CsvReader:
         """Type by column; missing while all cells of a column were empty."""
 
     @property
-    def _names(self) -> tuple[str, ...]:
-        return self._heading.names
-
-    @property
     def _separator(self) -> str:
         return "\t" if self._heading.separator == BLANKS else self._heading.separator
-
-    @property
-    def _decimal_comma(self) -> bool:
-        return self._heading.decimal_comma
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has only the header."""
@@ -268,9 +255,9 @@ class CsvReader:
             columns, rows = self._careful(block)
         if not len(columns[0]):
             return None
-        return pa.Table.from_arrays(
-            [self._typed(n, c, block, rows) for n, c in zip(self._names, columns, strict=True)], list(self._names)
-        )
+        names = list(self._heading.names)
+        typed = [self._typed(name, cells, block, rows) for name, cells in zip(names, columns, strict=True)]
+        return pa.Table.from_arrays(typed, names)
 
     # The heading
 
@@ -298,9 +285,9 @@ class CsvReader:
     def _parsed(self, block: Block, kinds: Mapping[str, pa.DataType]) -> list[pa.Array] | None:
         """Parse the block with pyarrow; None if a row has another number of cells, or a cell another type."""
         if block.text.isspace() or not block.text:
-            return [pa.nulls(0, pa.string()) for _ in self._names]
-        types = {name: kinds.get(name, pa.string()) for name in self._names}
-        options = {"null_values": EMPTY_CELLS, "decimal_point": "," if self._decimal_comma else "."}
+            return [pa.nulls(0, pa.string()) for _ in self._heading.names]
+        types = {name: kinds.get(name, pa.string()) for name in self._heading.names}
+        options = {"null_values": EMPTY_CELLS, "decimal_point": "," if self._heading.decimal_comma else "."}
         try:
             table = _parsed_csv(block.text, types, pa_csv.ParseOptions(delimiter=self._separator), **options)
         except pa.ArrowInvalid:
@@ -311,7 +298,7 @@ class CsvReader:
 
     def _careful(self, block: Block) -> tuple[list[pa.Array], list[int]]:
         """Parse line by line; short rows are filled, long ones cut, and both are noted."""
-        width = len(self._names)
+        width = len(self._heading.names)
         rows, numbers, short, long = [], [], [], []
         for row, cells in self._records(block):
             if len(cells) < width:
@@ -345,7 +332,7 @@ class CsvReader:
         except csv.Error:
             cells = []
         further = lines[at + 1 : at + reader.line_num]
-        if further and len(cells) == len(self._names) and not any(map(self._is_row, further)):
+        if further and len(cells) == len(self._heading.names) and not any(map(self._is_row, further)):
             return cells, at + reader.line_num
         if further:
             # An unclosed quote is an ordinary character; searching for its end from every line would be too slow.
@@ -355,13 +342,13 @@ class CsvReader:
     def _is_row(self, line: str) -> bool:
         """Return whether a line seems to be a row of its own, not text between quotes."""
         cells = line.split(self._separator)
-        if len(cells) != len(self._names):
+        if len(cells) != len(self._heading.names):
             return False
-        return '"' not in line or bool(are_numbers(texts_array(cells[:1]), self._decimal_comma))
+        return '"' not in line or bool(are_numbers(texts_array(cells[:1]), self._heading.decimal_comma))
 
     def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
         if name not in self._kinds:
-            numeric = are_numbers(cells, self._decimal_comma)
+            numeric = are_numbers(cells, self._heading.decimal_comma)
             if numeric is None:
                 return pa.nulls(len(cells), pa.float64())
             truths = not numeric and are_booleans(cells)
@@ -372,7 +359,7 @@ class CsvReader:
         if kind == CODED:
             return cells.dictionary_encode()
         truths = kind == pa.bool_()
-        numbers, wrong = parsed_booleans(cells) if truths else parsed_numbers(cells, self._decimal_comma)
+        numbers, wrong = parsed_booleans(cells) if truths else parsed_numbers(cells, self._heading.decimal_comma)
         if (count := _count(wrong)) > 0:
             at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
             where = [rows[index] for index in at] if rows else _rows_at(block, at)
@@ -432,7 +419,6 @@ class JsonReader:
     """Reads blocks of one file; names and types of the columns are fixed by the first.
 
     Args:
-        notes: Receives warnings about bad input.
         exact: Whether each column has the type that all its cells have, as in an export; else texts or numbers.
     """
 
@@ -513,11 +499,7 @@ _TABLE_ROW = re.compile(r"[,;\t]|^[^A-Za-z]*[0-9][^A-Za-z]*$")
 
 
 class PrintedReader:
-    """Reads blocks of one file of printed samples.
-
-    Args:
-        notes: Receives warnings about bad input.
-    """
+    """Reads blocks of one file of printed samples."""
 
     def __init__(self, notes: Notes) -> None:
         self._notes = notes

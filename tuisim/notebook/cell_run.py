@@ -74,8 +74,6 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
     Args:
-        wanted: The run.
-        stage: Where it is shown.
         begun: Called with the run as soon as its recording exists.
 
     Raises:
@@ -110,7 +108,6 @@ def end_text(run: StoredRun, *, hurry: bool = False) -> str:
     """Return a status line of a finished run: state, simulated time, samples.
 
     Args:
-        run: The run.
         hurry: Omit the number of samples if counting them would be slow.
     """
     what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
@@ -129,7 +126,6 @@ class Interruption:
 
     def __init__(self) -> None:
         self.count = 0
-        """Number of interrupts."""
         self._allowed = False
         self._before: Any = None
 
@@ -164,15 +160,6 @@ class Interruption:
 
 
 class _Follower:
-    """Follows one run.
-
-    Args:
-        wanted: The run.
-        handle: Its process.
-        screen: Draws it.
-        interruption: Counts the interrupts, which stop the run.
-    """
-
     def __init__(self, wanted: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
         self._wanted, self._handle, self._screen, self._interruption = wanted, handle, screen, interruption
         self._said: list[Any] = []
@@ -236,8 +223,6 @@ class _Follower:
 
 
 class _Screen:
-    """Draws a run while it goes on."""
-
     def __init__(self, wanted: CellRun, stage: Stage, run: StoredRun) -> None:
         self._wanted, self._stage, self._run = wanted, stage, run
         self._due = 0.0
@@ -257,7 +242,6 @@ class _Screen:
         """Draw the current state of the run.
 
         Args:
-            status: One line about it.
             most_rows: Maximum number of new lines searched for samples, None for all.
         """
         wanted, run = self._wanted, self._run

@@ -47,8 +47,6 @@ def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) 
     """Return rows of name and value as a displayable table.
 
     Args:
-        title: The caption.
-        rows: Name and value.
         keep_blanks: Whether to preserve blanks in the values, as in a program; a browser collapses them.
     """
     begin, end = ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
@@ -164,11 +162,7 @@ def chart_of(samples: Iterable[Sample], columns: int = CHART_SIZE[0]) -> Chart:
 
 
 class Stage:
-    """The panels of one cell, each a display that is updated in place.
-
-    Args:
-        settings: The panels that are on and off.
-    """
+    """The panels of one cell, each a display that is updated in place."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -190,12 +184,7 @@ class Stage:
         return panel in self._settings.panels_on
 
     def show(self, scene: Scene, status: str) -> None:
-        """Draw all panels.
-
-        Args:
-            scene: The state to show.
-            status: One line about the run.
-        """
+        """Draw all panels."""
         # A kernel sends printed text with a delay, but displays immediately.
         sys.stdout.flush()
         sys.stderr.flush()

@@ -126,7 +126,6 @@ class Lab:
         """Apply a cell's magic; on an error nothing changes.
 
         Args:
-            words: The magic line.
             text: The program below it, None for none.
             prelude: none, imports or preloaded.
 

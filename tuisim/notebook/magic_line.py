@@ -7,10 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tuisim.config.command_line import Command, Value, help_of, option, parse, shared_options
-from tuisim.config.options import number
+from tuisim.config.command_line import Arguments, Command, GroupedOption, Value, help_of, option, parse, shared_options
+from tuisim.config.options import number, whole
 from tuisim.errors import ConfigError
 
+MAX_INDEX = 1_000_000
 MIN_REFRESH_S, MAX_REFRESH_S = 0.02, 60.0
 DEFAULT_REFRESH_S = 0.2
 
@@ -44,20 +45,28 @@ class MagicWords:
     """The help text, if it was requested."""
 
 
+def _of_every_magic(**how: str) -> list[GroupedOption]:
+    return [
+        option("-s", "--sim", metavar="NAME", help="Variable that holds the simulator (roboSim).", **how),
+        option("-h", "--help", is_flag=True, help="Show this help.", **how),
+    ]
+
+
 def _command(magic: str) -> Command:
     refresh = number(MIN_REFRESH_S, MAX_REFRESH_S)
     group = "Notebook"
     params = [
         *shared_options(magic=True),
-        option("-s", "--sim", metavar="NAME", group=group, help="Variable that holds the simulator (roboSim)."),
-        option("-h", "--help", is_flag=True, group=group, help="Show this help."),
+        *_of_every_magic(group=group),
         option("-v", "--preview", is_flag=True, group=group, help="Show the program and its predefined names."),
-        option("--previewcode", is_flag=True, group=group, help="Only return the text of the prelude."),
+        option("--previewcode", "preview_code", is_flag=True, group=group, help="Only return the text of the prelude."),
         option("-S", "--stop", is_flag=True, group=group, help="Has no effect: a program ends with its cell."),
-        option("-m", "--move", is_flag=True, group=group, help="Move the robot back to its start."),
-        option("-F", "--refresh", is_flag=False, flag_value=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S, metavar="S",
-               type=Value(lambda text: refresh(text, "-F")), group=group, help="Seconds between two redraws."),
-        option("-L", "--collab", is_flag=True, group=group, help="`roboSim.responder` answers the program."),
+        option("-m", "--move", "move_back", is_flag=True, group=group, help="Move the robot back to its start."),
+        option("-F", "--refresh", "refresh_s", is_flag=False, flag_value=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S,
+               metavar="S", type=Value(lambda text: refresh(text, "-F")), group=group,
+               help="Seconds between two redraws."),
+        option("-L", "--collab", "collaborative", is_flag=True, group=group,
+               help="`roboSim.responder` answers the program."),
     ]  # fmt: skip
     return Command(f"%{magic}", params=params, add_help_option=False)
 
@@ -69,32 +78,71 @@ def parse_line(line: str, magic: str) -> MagicWords:
         ConfigError: a word is no option, or a value is wrong.
     """
     command = _command(magic)
-    try:
-        words = shlex.split(line)
-    except ValueError as error:
-        raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
+    words = _split(line, magic)
     try:
         found = parse(command, words)
     except ConfigError as error:
         raise ConfigError(error.message, f"see %{magic} -h" if not error.hint else error.hint) from None
-    return MagicWords(
-        settings=found.settings,
-        sim=found.sim,
-        preview=found.preview,
-        preview_code=found.previewcode,
-        stop=found.stop,
-        move_back=found.move,
-        refresh_s=found.refresh,
-        collaborative=found.collab,
-        help=help_of(command) if found.help else "",
-    )
+    return MagicWords(**vars(found) | {"help": help_of(command) if found.help else ""})
+
+
+def _split(line: str, magic: str) -> list[str]:
+    try:
+        return shlex.split(line)
+    except ValueError as error:
+        raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
+
+
+def _whole(flag: str, low: int, high: int) -> Value:
+    return Value(lambda text: whole(low, high)(text, flag))
+
+
+def _corners(text: str) -> tuple[int, ...]:
+    corners = tuple(int(part) for part in text.split(",") if part.strip().isdecimal())
+    if len(corners) != 4 or not (corners[0] < corners[2] and corners[1] < corners[3]):
+        raise ConfigError(f"must be LEFT,TOP,RIGHT,BOTTOM in pixels, got {text!r}", key="--crop")
+    return corners
+
+
+def _log_command(magic: str) -> Command:
+    params = _of_every_magic()
+    index = {"type": _whole("--index", -MAX_INDEX, MAX_INDEX), "default": -1, "metavar": "N"}
+    if magic == "sim_data":
+        params.append(option("-c", "--clear", is_flag=True, help="Discard the logged data."))
+    elif magic == "sim_robot_state":
+        params.append(option("-c", "--clear", is_flag=True, hidden=True))
+    elif magic == "sim_image_pair":
+        flags = ("-i", "--index", "-p", "--pairindex", "index")
+        params.append(option(*flags, **index, help="Which pair, from 0; -1 is the last."))
+    else:
+        params += [
+            option("-i", "--index", **index, help="Which image, from 0; -1 is the last."),
+            option("-r", "--random", is_flag=True, help="Any image."),
+            option("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
+                   help="The lightest grey that counts as dark (127)."),
+            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B", help="Part of the image, in pixels."),
+            option("-n", "--nocrop", is_flag=True, help="The whole image (unless --crop is given)."),
+            option("-d", "--digitclass", is_flag=True, hidden=True),
+        ]  # fmt: skip
+    return Command(f"%{magic}", params=params, add_help_option=False)
+
+
+def parse_log_line(line: str, magic: str) -> Arguments:
+    """Parse the words after a magic that reads the log; `help` is the help text, if it was requested.
+
+    Raises:
+        ConfigError: a word is no option, or a value is wrong.
+    """
+    command = _log_command(magic)
+    found = parse(command, _split(line, magic))
+    found.help = help_of(command) if found.help else ""
+    return found
 
 
 def lasting_after(before: Mapping[str, Any], said: Mapping[str, Any]) -> dict[str, Any]:
     """Return the lasting settings after a cell.
 
     Args:
-        before: Those before it.
         said: What the cell says, by field of `Settings`; another mat drops `OF_THE_MAT`.
     """
     kept = dict(before)

@@ -5,7 +5,6 @@ Loading them must be fast: what they need is imported by the first cell that nee
 
 from __future__ import annotations
 
-import shlex
 import sys
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -18,9 +17,7 @@ from tuisim.notebook.lab import Lab, roboSim
 from tuisim.source import PRELUDE_TEXTS, PRELUDES
 
 if TYPE_CHECKING:
-    from tuisim.config.command_line import Arguments, Command, Value
-
-MAX_INDEX = 1_000_000
+    from tuisim.config.command_line import Arguments
 
 Handler = Callable[[str, str | None], Any]
 
@@ -42,11 +39,6 @@ def _guarded(act: Handler) -> Callable[..., Any]:
 
 
 def _lab(shell: InteractiveShell, name: str | None) -> Lab:
-    """Return the simulator in a variable of the notebook.
-
-    Raises:
-        ConfigError: there is no such variable, or it is no simulator.
-    """
     found = roboSim if name is None else shell.user_ns.get(name)
     if not isinstance(found, Lab):
         raise ConfigError(f"no simulator {name!r}", "roboSim is one", key="-s")
@@ -78,60 +70,13 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
 Log = Callable[[Lab, "Arguments"], Any]
 
 
-def _whole(flag: str, low: int, high: int) -> Value:
-    from tuisim.config.command_line import Value
-    from tuisim.config.options import whole
-
-    return Value(lambda text: whole(low, high)(text, flag))
-
-
-def _corners(text: str) -> tuple[int, ...]:
-    corners = tuple(int(part) for part in text.split(",") if part.strip().isdecimal())
-    if len(corners) != 4 or not (corners[0] < corners[2] and corners[1] < corners[3]):
-        raise ConfigError(f"must be LEFT,TOP,RIGHT,BOTTOM in pixels, got {text!r}", key="--crop")
-    return corners
-
-
-def _log_command(magic: str) -> Command:
-    """Return the parser of a magic that reads the log."""
-    from tuisim.config.command_line import Command, Value, option
-
-    params = [
-        option("-s", "--sim", metavar="NAME", help="Variable that holds the simulator (roboSim)."),
-        option("-h", "--help", is_flag=True, help="Show this help."),
-    ]
-    index = {"type": _whole("--index", -MAX_INDEX, MAX_INDEX), "default": -1, "metavar": "N"}
-    if magic == "sim_data":
-        params.append(option("-c", "--clear", is_flag=True, help="Discard the logged data."))
-    elif magic == "sim_robot_state":
-        params.append(option("-c", "--clear", is_flag=True, hidden=True))
-    elif magic == "sim_image_pair":
-        flags = ("-i", "--index", "-p", "--pairindex", "index")
-        params.append(option(*flags, **index, help="Which pair, from 0; -1 is the last."))
-    else:
-        params += [
-            option("-i", "--index", **index, help="Which image, from 0; -1 is the last."),
-            option("-r", "--random", is_flag=True, help="Any image."),
-            option("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
-                   help="The lightest grey that counts as dark (127)."),
-            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B", help="Part of the image, in pixels."),
-            option("-n", "--nocrop", is_flag=True, help="The whole image (unless --crop is given)."),
-            option("-d", "--digitclass", is_flag=True, hidden=True),
-        ]  # fmt: skip
-    return Command(f"%{magic}", params=params, add_help_option=False)
-
-
 def _log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
     def read(line: str, cell: str | None) -> Any:
-        from tuisim.config.command_line import help_of, parse
+        from tuisim.notebook.magic_line import parse_log_line
 
-        command = _log_command(magic)
-        try:
-            found = parse(command, shlex.split(line))
-        except ValueError as error:
-            raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
+        found = parse_log_line(line, magic)
         if found.help:
-            print(help_of(command))
+            print(found.help)
             return None
         return act(_lab(shell, found.sim), found)
 
@@ -175,7 +120,6 @@ LOG_MAGICS: Mapping[str, Log] = {
     "sim_image_pair": _sim_image_pair,
     "sim_bw_image_data": _sim_bw_image_data,
 }
-"""The magics that read the log."""
 
 
 def install(shell: InteractiveShell) -> None:

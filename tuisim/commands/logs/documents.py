@@ -51,7 +51,6 @@ def plot(arguments: Arguments) -> int:
 
 
 def _check_visible(model: Model) -> None:
-    """Raise LogError if there is nothing to draw."""
     ticked = model.traces.ticked()
     if not any(len(trace.pyramid.times_s) for trace in ticked):
         raise LogError(f"no numbers in {listed(trace.name for trace in ticked)}", file=model.log.title)

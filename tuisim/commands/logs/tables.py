@@ -275,11 +275,6 @@ def _plain(value: Any) -> Any:
 class _Number(float):
     """A float with a format spec of its own, for tables."""
 
-    def __new__(cls, value: float, how: str) -> _Number:
-        number = super().__new__(cls, value)
-        number.how = how
-        return number
-
     how: str
 
     def __str__(self) -> str:
@@ -287,4 +282,8 @@ class _Number(float):
 
 
 def _written(value: Any, how: str) -> Any:
-    return _Number(value, how) if how and isinstance(value, float) else value
+    if not how or not isinstance(value, float):
+        return value
+    number = _Number(value)
+    number.how = how
+    return number
