@@ -39,7 +39,7 @@ def noisy_run(record: Callable[..., Recorder], spec: RunSpec, **options: object)
     recorder = record(spec, **options)
     for step in range(30):
         recorder.drive(300, 280, 4, line=3)
-        recorder.print(f"Colour: {recorder.simulation.x_mm!r}", line=step)
+        recorder.print(f"Colour: {recorder.simulation.drive.x_mm!r}", line=step)
         recorder.print(f"Größe: {step}", line=step)
     return recorder.end()
 
