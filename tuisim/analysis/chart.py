@@ -33,9 +33,7 @@ class View:
 def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
     """Return the chart of a model: its visible variables within its limits.
 
-    Args:
-        columns, rows: Size of the picture, in pixels or in parts of characters: what it could not tell apart
-            is left out.
+    What a picture of `columns` by `rows` pixels, or parts of characters, could not tell apart is left out.
 
     Raises:
         LogError: no such variable to draw against.

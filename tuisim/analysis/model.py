@@ -211,10 +211,7 @@ class Model:
             self.selected = names[(names.index(self.selected) + step) % len(names)]
 
     def align(self, way: str) -> None:
-        """Align the runs.
-
-        Args:
-            way: `time`; `distance`, so far as each has driven; or an event such as `Colour < 50`.
+        """Align the runs by `time`; by `distance`, so far as each has driven; or by an event such as `Colour < 50`.
 
         Raises:
             LogError: the log does not say how far the robot drove, or no run has such an event.

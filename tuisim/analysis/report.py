@@ -368,11 +368,7 @@ def _class(name: str) -> str:
 
 
 def table(heads: Sequence[str], rows: Sequence[Sequence[str]], numbers: int) -> str:
-    """Return rows of text as a table, empty if there are none.
-
-    Args:
-        numbers: Index of the first right-aligned column.
-    """
+    """Return rows of text as a table, empty if there are none; columns from index `numbers` on are right-aligned."""
     if not rows:
         return ""
 

@@ -124,13 +124,12 @@ class LogTraces(Traces):
         super().__init__()
         # If a row has no variable, there is a name without samples.
         names = (name for name in log.names if not log.layout.variable or len(log.series(name).rows))
-        self._all = [LogTrace(log, name, number) for number, name in enumerate(names)]
+        self._by_log_name = {name: LogTrace(log, name, number) for number, name in enumerate(names)}
         self._show_light_columns()
-        self._by_log_name = {trace.name: trace for trace in self._all}
 
     def take_log(self, log: Log) -> None:
         """Switch to the same log with other derived variables; new ones become visible."""
-        kept = [trace for trace in self._all if trace.name in log.names and not trace.is_derived_otherwise(log)]
+        kept = [trace for trace in self if trace.name in log.names and not trace.is_derived_otherwise(log)]
         known = {trace.name for trace in kept}
         number = max((trace.number for trace in kept), default=-1)
         added = [name for name in log.derived if name not in known]
@@ -139,20 +138,19 @@ class LogTraces(Traces):
         for trace in new:
             trace.on = True
             trace.other_scale = bool(shown) and not trace.is_like(shown)
-        self._all = [*kept, *new]
-        self._by_log_name = {trace.name: trace for trace in self._all}
+        self._by_log_name = {trace.name: trace for trace in (*kept, *new)}
 
     def _show_light_columns(self) -> None:
         """Make only the red light columns of colour sensors visible, of the many columns of telemetry."""
-        light = [trace for trace in self._all if trace.name.endswith(_LIGHT)]
-        for trace in self._all:
+        light = [trace for trace in self if trace.name.endswith(_LIGHT)]
+        for trace in self:
             trace.on = trace in light[:MOST_ON] if light else trace.on
 
     def __iter__(self) -> Iterator[LogTrace]:
-        return iter(self._all)
+        return iter(self._by_log_name.values())
 
     def __len__(self) -> int:
-        return len(self._all)
+        return len(self._by_log_name)
 
     def __contains__(self, name: object) -> bool:
         return name in self._by_log_name
@@ -167,7 +165,7 @@ class LogTraces(Traces):
 
     def ticked(self) -> list[LogTrace]:
         """Return the traces that are drawn if they have points."""
-        return [trace for trace in self._all if trace.on]
+        return [trace for trace in self if trace.on]
 
     def span_s(self) -> Limits:
         """Return the first and the last time of the visible traces, widened if they are equal."""
@@ -188,10 +186,7 @@ FORM = f"time, distance, or an event: {THRESHOLD_FORM}"
 
 
 def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | None]:
-    """Return the x positions of the samples of each series; None: their times.
-
-    Args:
-        way: See `FORM`.
+    """Return the x positions of the samples of each series, None for their times; for `way`, see `FORM`.
 
     Raises:
         LogError: `way` is invalid, or the log cannot be aligned like that.

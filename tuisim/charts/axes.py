@@ -18,11 +18,7 @@ def nice_step(span: float, count: int) -> float:
 
 
 def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
-    """Return round limits around values, so that they seldom change while values come in.
-
-    Args:
-        from_zero: Whether the limits must include 0.
-    """
+    """Return round limits around values, and 0 if `from_zero`, so that they seldom change while values come in."""
     if from_zero:
         low = min(low, 0.0)
     size = max(abs(low), abs(high), 1.0)

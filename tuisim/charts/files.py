@@ -120,11 +120,7 @@ _INVALID = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\
 
 
 def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
-    """Return a picture as SVG.
-
-    Args:
-        inside: Whether it is embedded in a page and uses its colours, instead of being a file.
-    """
+    """Return a picture as SVG: a file, or `inside` a page, whose colours it then uses."""
     size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'
     look = f'font-family="{_FONT}" font-size="{FONT_PX}" role="img"'
     ink = "" if inside else f' color="{_SVG_INK}"'

@@ -230,11 +230,7 @@ class PenTrace:
 
 
 def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
-    """Return x and y of the pen in the world at each record, up or down, each of shape (n,).
-
-    Args:
-        telemetry: As from `runs.views.TelemetryView.array`.
-    """
+    """Return x and y of the pen in the world at each record of telemetry, up or down, each of shape (n,)."""
     # As `core.geometry.world_point`, for all ticks at once.
     right_mm, ahead_mm = outline_of(robot).pen_mm
     turn = np.radians(telemetry["heading_deg"] - 90.0)
@@ -244,11 +240,7 @@ def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatA
 
 
 def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
-    """Return the pen trace of a run.
-
-    Args:
-        telemetry: As from `runs.views.TelemetryView.array`.
-    """
+    """Return the pen trace of a run, from the records of `runs.views.TelemetryView.array`."""
     pen = spec.robot.pen
     x_mm, y_mm = pen_points_mm(spec.robot, telemetry)
     points = np.stack([x_mm, FIELD_HEIGHT_MM - y_mm], axis=1) / MM_PER_PX
@@ -331,11 +323,7 @@ def _draw_rays(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:
 
 
 def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:
-    """Return the sensors' pixel arrays side by side.
-
-    Args:
-        arrays: Sensor and its RGB bytes, d × d pixels, row by row.
-    """
+    """Return side by side the pixel arrays of sensors, each given as RGB bytes, d × d pixels, row by row."""
     from PIL import Image
 
     tiles = [

@@ -35,8 +35,7 @@ def exit_code_of(ended: Ended) -> int:
 def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     """Return a stored run as a JSON-compatible dict: its settings, its end, the robot's pose, counts of its log.
 
-    Args:
-        most_bytes: `lines` and `samples` are None, not counted, if the output is longer than this.
+    `lines` and `samples` are None, not counted, if the output is longer than `most_bytes`.
     """
     last, end = run.telemetry.last(), run.end
     pose = last.pose if last else run.spec.world.start

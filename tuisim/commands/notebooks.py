@@ -104,11 +104,7 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
 
 
 def print_results(results: Sequence[tuple[str, StoredRun | None]]) -> None:
-    """Print a table with one row per program: state, samples, simulated time, run.
-
-    Args:
-        results: Pairs of label and run; None for one that was not run.
-    """
+    """Print a table with one row per label and run, None if it was not run: state, samples, simulated time, run."""
     rows = [_row(label, run) for label, run in results]
     echo_lines(table(("cell", "state", "samples", "time s", "run"), rows))
 

@@ -15,6 +15,7 @@ from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, known_programs_of
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
+from tuisim.config.folders import programs_folder
 from tuisim.config.options import RobotChoice, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, read_program
 from tuisim.config.robots import choose_robot
@@ -43,10 +44,7 @@ class Prepared:
 
 
 def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
-    """Check that the words after `--`, if any, belong to exactly one program.
-
-    Args:
-        words: Programs and worlds, as the user named them.
+    """Check that the words after `--`, if any, belong to exactly one of the programs and worlds that the user named.
 
     Raises:
         ConfigError: there is no program, more than one, or a notebook.
@@ -79,8 +77,6 @@ def find_program(word: str) -> Path:
         raise ConfigError(f"cannot read {word}: {error.strerror or error}") from error
     if not path.name or path.parent != Path() or path.exists():
         return path
-    from tuisim.config.folders import programs_folder
-
     for name in (path.name, f"{path.name}.py"):
         if (example := programs_folder() / name).is_file():
             return example
@@ -131,10 +127,7 @@ def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Arguments)
 
 
 def prepare_app(words: Sequence[str], arguments: Arguments) -> Prepared:
-    """Prepare the app for nothing, a program, a world, or a program in a world.
-
-    Args:
-        words: Programs and worlds, as the user named them.
+    """Prepare the app for nothing, a program, a world, or a program in a world, as the user named them.
 
     Raises:
         ConfigError: program, magic line, world or options are wrong, or there are two programs.
@@ -170,12 +163,9 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tupl
 
 
 def prepare_runs(words: Sequence[str], arguments: Arguments) -> list[Prepared | NotRun]:
-    """Prepare programs to run one after another, all in the named world, if any.
+    """Prepare the programs that the user named to run one after another, all in the named world, if any.
 
     An error in one notebook of a folder does not prevent the others from running.
-
-    Args:
-        words: Programs and at most one world, as the user named them.
 
     Raises:
         ConfigError: a program, magic line, world or option is wrong, or there is no program.

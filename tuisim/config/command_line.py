@@ -117,10 +117,8 @@ def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
 class Command(click.Command):
     """A command whose help groups its options, and whose wrong use raises ConfigError.
 
-    Its callback gets the shared options as `settings`.
-
-    Args:
-        passes_arguments: Whether the words after `--` are the program's arguments, and part of `settings`.
+    Its callback gets the shared options as `settings`; if it `passes_arguments`, with the words after `--` as those of
+    the program.
     """
 
     def __init__(self, name: str, *, passes_arguments: bool = False, **how: Any) -> None:

@@ -12,7 +12,9 @@ corner    one pixel is one mm, from the upper left corner, as in the course's br
 
 from __future__ import annotations
 
+import io
 import stat
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -97,8 +99,6 @@ def fits_as_it_is(content: bytes) -> bool:
 
 def size_of(content: bytes) -> tuple[int, int]:
     """Return width and height in pixels of an image that can be decoded."""
-    import io
-
     from PIL import Image
 
     with Image.open(io.BytesIO(content)) as picture:
@@ -118,9 +118,6 @@ def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
     Raises:
         BackgroundError: it is not an image, is damaged, has no pixels or too many.
     """
-    import io
-    import warnings
-
     import numpy as np
     from PIL import Image, ImageOps
 

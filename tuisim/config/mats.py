@@ -108,9 +108,6 @@ def background(name: str) -> Background:
     Names of the catalogue take precedence. A name with a folder or a suffix, or of an existing
     file, is the path of an image; such a mat is named after its file, without the suffix.
 
-    Args:
-        name: Such as `Lollipop`, `maze.png` or `~/mats/maze.jpg`.
-
     Raises:
         BackgroundError: the name is unknown, or its image is missing.
         ConfigError: there is no folder of mats.
@@ -181,10 +178,8 @@ def own_folder() -> Path:
 def mats(folder: str | None = None) -> dict[str, Background]:
     """Return every mat by name: the catalogue in its order, then the user's additional ones.
 
-    A mat of the catalogue whose image is not distributed is included even if its image is missing.
-
-    Args:
-        folder: Another folder of the user's own mats, which takes precedence.
+    A mat of the catalogue whose image is not distributed is included even if its image is missing. Another `folder`
+    of the user's own mats takes precedence.
 
     Raises:
         BackgroundError: a folder cannot be read, or the catalogue is wrong.

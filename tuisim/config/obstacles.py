@@ -30,10 +30,7 @@ _HEAD = "# Obstacles for tuisim: lower left corner and size in mm; x from the fi
 
 
 def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
-    """Return a set of obstacles by name, or from a TOML or JSON file.
-
-    Args:
-        key: The option to name in errors about an unknown name, such as `-o`.
+    """Return a set of obstacles by name, or from a TOML or JSON file; errors about a name blame the option `key`.
 
     Raises:
         ObstacleError: the name is unknown, or the file is wrong.

@@ -58,10 +58,7 @@ SOURCES: Mapping[str, str] = {
 
 
 def load_profile(word: str, key: str = "") -> ProfileSpec:
-    """Return a profile by name, or from a TOML file.
-
-    Args:
-        key: The option to name in errors about an unknown name, such as `--profile`.
+    """Return a profile by name, or from a TOML file; errors about a name blame the option `key`.
 
     Raises:
         ProfileError: the name is unknown, or the file is wrong.
@@ -72,10 +69,7 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
 
 
 def profile_from_table(data: object, name: str, at: Location) -> ProfileSpec:
-    """Return the profile in a table. Costs may be given in ms instead of ns.
-
-    Args:
-        name: The profile's name, unless the table has one.
+    """Return the profile in a table, called `name` unless the table says otherwise; costs are in ms or ns.
 
     Raises:
         ProfileError: a key or a value is wrong.
@@ -118,11 +112,7 @@ def _in_ms(key: str) -> str:
 
 
 def profile_lines(spec: ProfileSpec, parent: str = "") -> list[str]:
-    """Return a profile as TOML lines, with every value.
-
-    Args:
-        parent: The name of its table; empty for a file of its own.
-    """
+    """Return a profile as TOML lines, with every value: the table `parent`, or a file of its own."""
     values: dict[str, Scalar] = {}
     for field in fields(ProfileSpec):
         value = getattr(spec, field.name)

@@ -9,6 +9,7 @@ import shlex
 import symtable
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -116,10 +117,7 @@ def beside(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def find_magic(text: str, name: str) -> Magic | None:
-    """Return the magic line before the program's first statement, or None.
-
-    Args:
-        name: Its file name, for errors.
+    """Return the magic line before the program's first statement, or None; errors blame the file `name`.
 
     Raises:
         ConfigError: the magic is not one of `PRELUDES`, or an option in it is wrong.
@@ -242,11 +240,9 @@ def _decode(data: bytes, shown: str) -> str:
 
 def _neighbours(path: Path) -> str:
     """Return the hint for a missing file: similar names beside it, else similar examples, else how to list them."""
-    import difflib
-
     close = close_beside(path, (".py",))
     if not close and path.parent == Path():
         # A word without a folder may also be meant as an example, which needs no suffix.
         stems = [file.path.stem for file in programs()]
-        close = [f"{stem}{path.suffix}" for stem in difflib.get_close_matches(path.stem, stems, 3)]
+        close = [f"{stem}{path.suffix}" for stem in get_close_matches(path.stem, stems, 3)]
     return did_you_mean(close) or "see `tuisim programs` for examples"

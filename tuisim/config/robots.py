@@ -109,10 +109,7 @@ _HEAD = (
 
 
 def load_robot(word: str, key: str = "") -> RobotSpec:
-    """Return a robot by name, or from a TOML or JSON file.
-
-    Args:
-        key: The option to name in errors about an unknown name, such as `-r`.
+    """Return a robot by name, or from a TOML or JSON file; errors about a name blame the option `key`.
 
     Raises:
         RobotError: the name is unknown, or the file is wrong.
@@ -133,10 +130,7 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
 
 
 def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
-    """Return the robot in a table.
-
-    Args:
-        name: The robot's name, unless the table has one.
+    """Return the robot in a table, called `name` unless the table says otherwise.
 
     Raises:
         RobotError: a key or a value is wrong.

@@ -11,23 +11,12 @@ from typing import Annotated, Any, TypeAlias, TypeVar
 
 from msgspec import UNSET, Meta, Struct, UnsetType, structs
 
-from tuisim.config import files
+from tuisim.config import files, options
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.files import Location, Scalar
 from tuisim.config.folders import programs_folder
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
-from tuisim.config.options import (
-    MAX_ANGLE_DEG,
-    MAX_PEN_MM,
-    MAX_POSITION_MM,
-    MAX_SEED,
-    MIN_PEN_MM,
-    PANELS,
-    RobotChoice,
-    pen_color,
-    settings_of,
-)
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
 from tuisim.config.robots import load_robot, robot_from_table, robot_lines
 from tuisim.core.geometry import Pose
@@ -50,8 +39,8 @@ _Value = TypeVar("_Value")
 Given: TypeAlias = _Value | UnsetType
 """A key that may be missing."""
 
-Position = Annotated[float, Meta(ge=-MAX_POSITION_MM, le=MAX_POSITION_MM)]
-Angle = Annotated[float, Meta(ge=-MAX_ANGLE_DEG, le=MAX_ANGLE_DEG)]
+Position = Annotated[float, Meta(ge=-options.MAX_POSITION_MM, le=options.MAX_POSITION_MM)]
+Angle = Annotated[float, Meta(ge=-options.MAX_ANGLE_DEG, le=options.MAX_ANGLE_DEG)]
 Time = Annotated[float, Meta(ge=0, le=1e9)]
 Channel = Annotated[int, Meta(ge=1, le=4)]
 
@@ -70,7 +59,7 @@ class _Noise(Struct):
 class _Pen(Struct):
     down: Given[bool] = UNSET
     color: Given[str] = UNSET
-    width_mm: Given[Annotated[float, Meta(ge=MIN_PEN_MM, le=MAX_PEN_MM)]] = UNSET
+    width_mm: Given[Annotated[float, Meta(ge=options.MIN_PEN_MM, le=options.MAX_PEN_MM)]] = UNSET
 
 
 class _Beacon(Struct):
@@ -98,7 +87,7 @@ class _World(Struct):
     obstacles: Given[str] = UNSET
     obstacle: Given[list[Any]] = UNSET
     profile: Given[str | dict[str, Any]] = UNSET
-    seed: Given[Annotated[int, Meta(ge=0, le=MAX_SEED)]] = UNSET
+    seed: Given[Annotated[int, Meta(ge=0, le=options.MAX_SEED)]] = UNSET
     walls: Given[bool] = UNSET
     solid: Given[bool] = UNSET
     pen_marks: Given[bool] = UNSET
@@ -142,10 +131,7 @@ def means_world(word: str) -> bool:
 
 
 def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
-    """Read a world file. Paths in it are relative to its folder.
-
-    Args:
-        mats: A folder of the user's own mats, used if the file names none.
+    """Read a world file. Paths in it are relative to its folder; it may name a folder of mats instead of `mats`.
 
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
@@ -189,8 +175,8 @@ def world_from_table(data: object, path: Path, mats: str | None = None) -> World
     found |= _pen(world.get("pen", {}), at.at("pen")) | _infrared(world, at)
     for key, field in _PANEL_FIELDS.items():
         if key in world:
-            listed = files.entries(world[key], at.at(key), len(PANELS), "panels")
-            found[field] = tuple(files.one_of(panel, place, PANELS) for panel, place in listed)
+            listed = files.entries(world[key], at.at(key), len(options.PANELS), "panels")
+            found[field] = tuple(files.one_of(panel, place, options.PANELS) for panel, place in listed)
     if "arguments" in world:
         words = enumerate(world["arguments"], start=1)
         found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
@@ -268,7 +254,7 @@ def _named(word: str, at: Location, resolve: Resolver, load: Callable[[str], obj
 def _pen(pen: Mapping[str, Any], at: Location) -> dict[str, Any]:
     found = {f"pen_{key}": value for key, value in pen.items()}
     if "color" in pen:
-        found["pen_color"] = files.by_option(pen["color"], at.at("color"), pen_color)
+        found["pen_color"] = files.by_option(pen["color"], at.at("color"), options.pen_color)
     return found
 
 
@@ -322,7 +308,7 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
     at = Location(str(path))
 
     def read(data: object) -> RunSpec:
-        return build_run_spec(settings_of(world_from_table(data, path).settings))
+        return build_run_spec(options.settings_of(world_from_table(data, path).settings))
 
     def check(data: object) -> None:
         world = _given(files.convert(data, _World, at))
@@ -361,7 +347,7 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     lines += _table("noise", {key: settings[f"{key}_noise"] for key in ("light", "motor")})
     pen = {"down": "pen_down", "color": "pen_color", "width_mm": "pen_width_mm"}
     lines += _table("pen", {key: settings[field] for key, field in pen.items()})
-    if isinstance(settings["robot"], RobotChoice):
+    if isinstance(settings["robot"], options.RobotChoice):
         lines += ["", *robot_lines(spec.robot, "robot", ("x_mm", "y_mm"))]
     if isinstance(settings["profile"], ProfileSpec):
         lines += ["", *profile_lines(spec.profile, "profile")]

@@ -125,10 +125,7 @@ class BandReport:
 
 
 def band_report(log: Log, name: str, search: Callable[[FloatArray], list[Plateau]] = plateaus) -> BandReport:
-    """Return the bands of a variable.
-
-    Args:
-        search: Returns the plateaus of its values.
+    """Return the bands of a variable, whose plateaus `search` returns.
 
     Raises:
         LogError: there is no such variable.

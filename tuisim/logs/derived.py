@@ -66,12 +66,9 @@ def definition_of(text: str) -> Definition:
 
 
 def derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
-    """Return the series of a definition, one for each run that has the first variable in it.
+    """Return the series of a definition, one for each run that has its first variable, `otherwise` if it has none.
 
     Variables sampled at other times are forward-filled; columns are read in the row of each sample.
-
-    Args:
-        otherwise: The variable whose sample times are used if the definition names no variable.
 
     Raises:
         LogError: the expression is invalid, or names an unknown variable.

@@ -150,11 +150,7 @@ def _parse(source: str, text: str) -> ast.Expression:
 
 
 class _Evaluation:
-    """The evaluation of one expression.
-
-    Args:
-        names: Names in backticks by their placeholders.
-    """
+    """The evaluation of one expression; `names` are those in backticks by their placeholders."""
 
     def __init__(
         self, columns: Mapping[str, FloatArray], names: Mapping[str, str], text: str, functions: Functions

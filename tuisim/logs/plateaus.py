@@ -89,10 +89,9 @@ class Plateau:
 
 
 def noise_of(values: FloatArray) -> float:
-    """Return the standard deviation of the noise, from the differences of neighbours; 0 for clean steps.
+    """Return the standard deviation of the noise of finite values, shape (n,), from the differences of neighbours.
 
-    Args:
-        values: Finite, shape (n,).
+    It is 0 for clean steps.
     """
     if len(values) < 3:
         return 0.0
@@ -118,10 +117,9 @@ def _steps(differences: FloatArray) -> NDArray[np.bool_]:
 
 @np.errstate(over="ignore", invalid="ignore")
 def plateaus(values: FloatArray) -> list[Plateau]:
-    """Return the plateaus of a log, in order; the samples between them are edges.
+    """Return the plateaus of a log of samples at a fixed period, shape (n,), in order; the samples between are edges.
 
-    Args:
-        values: Samples at a fixed period, shape (n,); those that are not finite belong to no plateau.
+    Samples that are not finite belong to no plateau.
     """
     finite = np.flatnonzero(np.isfinite(values))
     clean = np.asarray(values, np.float64)[finite]

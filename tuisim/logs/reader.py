@@ -13,15 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import pyarrow as pa
 
 from tuisim.errors import LogError
-from tuisim.logs.arrow import (
-    ARROW_MAGIC,
-    ARROW_STREAM_MAGIC,
-    PARQUET_MAGIC,
-    arrow_parts,
-    arrow_stream_parts,
-    metadata_in,
-    parquet_parts,
-)
+from tuisim.logs import arrow
 from tuisim.logs.blocks import BLOCK_BYTES, MAGIC_BYTES, MAGICS, Block, LineCutter, Readable, unpacked
 from tuisim.logs.columns import UNIT_NAMES, choose_columns, guess_columns, unread_time
 from tuisim.logs.export import ALLOWED, EXPORTERS, companion_of, log_metadata, typed_frame
@@ -109,7 +101,7 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
         names = () if table is not None else _metadata_beside(source).get("columns", ())
         kinds = {name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names}
         return pa.schema(kinds).empty_table() if table is None else table
-    parts = parquet_parts if suffix == ".parquet" else arrow_parts
+    parts = arrow.parquet_parts if suffix == ".parquet" else arrow.arrow_parts
     return joined([table for _, table in parts(source, notes)])
 
 
@@ -152,7 +144,7 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
         notes.say(f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on")
     if named[0] is None and (unread := unread_time(table, layout)):
         notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
-    metadata = metadata_in(parts[0].schema) or _metadata_beside(Path(title))
+    metadata = arrow.metadata_in(parts[0].schema) or _metadata_beside(Path(title))
     return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
 
 
@@ -206,12 +198,12 @@ def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table |
         regular = path.is_file()
         with path.open("rb", buffering=0 if not regular else -1) as handle:
             head = handle.read(MAGIC_BYTES) if regular else b""
-            if head.startswith(PARQUET_MAGIC):
-                yield from parquet_parts(path, notes)
-            elif head.startswith(ARROW_MAGIC):
-                yield from arrow_parts(path, notes)
-            elif head.startswith(ARROW_STREAM_MAGIC):
-                yield from arrow_stream_parts(path, notes)
+            if head.startswith(arrow.PARQUET_MAGIC):
+                yield from arrow.parquet_parts(path, notes)
+            elif head.startswith(arrow.ARROW_MAGIC):
+                yield from arrow.arrow_parts(path, notes)
+            elif head.startswith(arrow.ARROW_STREAM_MAGIC):
+                yield from arrow.arrow_stream_parts(path, notes)
             else:
                 if regular:
                     handle.seek(0)
@@ -238,7 +230,7 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
     read = 0
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
-        if not read and data.startswith((PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC, *MAGICS)):
+        if not read and data.startswith((arrow.PARQUET_MAGIC, arrow.ARROW_MAGIC, arrow.ARROW_STREAM_MAGIC, *MAGICS)):
             raise LogError("only text can be read from a pipe or inside a compressed file", "name the file itself")
         read += len(data)
         block = cutter.feed(data) if data else cutter.finish()

@@ -68,11 +68,7 @@ def parsed_numbers(cells: pa.Array, decimal_comma: bool) -> tuple[pa.Array, pa.A
 
 
 def parsed_booleans(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
-    """Parse cells as booleans, with nulls for others; also return a mask of the invalid cells.
-
-    Args:
-        cells: Texts such as `true` or `False`.
-    """
+    """Parse cells such as `true` or `False`, with nulls for others; also return a mask of the invalid cells."""
     texts: Any = pc.utf8_lower(pc.utf8_trim_whitespace(cells))
     known = pc.is_in(texts, value_set=texts_array(("true", "false")))
     empty = pc.or_(pc.is_null(cells), pc.is_in(pc.utf8_trim_whitespace(cells), value_set=texts_array(EMPTY_CELLS)))
@@ -118,11 +114,7 @@ class Heading:
 
 
 def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
-    """Detect the header of a table.
-
-    Args:
-        lines: The first non-blank lines, each with its line number in the file.
-    """
+    """Detect the header of a table from its first non-blank lines, each with its line number in the file."""
     comments = [text for _, text in takewhile(lambda line: line[1].startswith(COMMENT), lines)]
     body = lines[len(comments) :]
     if not body:
@@ -418,8 +410,7 @@ _NAMELESS = "(no name)"
 class JsonReader:
     """Reads blocks of one file; names and types of the columns are fixed by the first.
 
-    Args:
-        exact: Whether each column has the type that all its cells have, as in an export; else texts or numbers.
+    Columns are texts or numbers; if `exact`, each has the type that all its cells have, as in an export.
     """
 
     def __init__(self, notes: Notes, exact: bool = False) -> None:

@@ -73,8 +73,7 @@ class CellRun:
 def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) -> StoredRun:
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
-    Args:
-        begun: Called with the run as soon as its recording exists.
+    `begun` is called with the run as soon as its recording exists.
 
     Raises:
         ConfigError: the responder has returned what a program cannot get; the run has been stopped.
@@ -107,8 +106,7 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
 def end_text(run: StoredRun, *, hurry: bool = False) -> str:
     """Return a status line of a finished run: state, simulated time, samples.
 
-    Args:
-        hurry: Omit the number of samples if counting them would be slow.
+    In a hurry, the number of samples is omitted if counting them would be slow.
     """
     what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
     status = f"{run.state}{what} · {run.time_s:.3f} s"
@@ -239,11 +237,7 @@ class _Screen:
         self._due = time.monotonic() + self._wanted.refresh_s
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
-        """Draw the current state of the run.
-
-        Args:
-            most_rows: Maximum number of new lines searched for samples, None for all.
-        """
+        """Draw the current state of the run; at most so many new lines, None for all, are searched for samples."""
         wanted, run = self._wanted, self._run
         if self._stage.shows("chart"):
             for row, after in islice(run.output.rows_from(self._position), most_rows):

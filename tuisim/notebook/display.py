@@ -46,8 +46,7 @@ def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
 def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
     """Return rows of name and value as a displayable table.
 
-    Args:
-        keep_blanks: Whether to preserve blanks in the values, as in a program; a browser collapses them.
+    Blanks in the values, as in a program, are preserved only on request; a browser collapses them.
     """
     begin, end = ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
     wide = max((len(name) for name, _ in rows), default=0)

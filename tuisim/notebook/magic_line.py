@@ -140,11 +140,7 @@ def parse_log_line(line: str, magic: str) -> Arguments:
 
 
 def lasting_after(before: Mapping[str, Any], said: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the lasting settings after a cell.
-
-    Args:
-        said: What the cell says, by field of `Settings`; another mat drops `OF_THE_MAT`.
-    """
+    """Return the lasting settings after a cell that has said these settings; another mat drops `OF_THE_MAT`."""
     kept = dict(before)
     if "background" in said:
         kept = {field: value for field, value in kept.items() if field not in OF_THE_MAT}

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from IPython.core.interactiveshell import InteractiveShell
+from IPython.display import display
 
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds
@@ -88,8 +89,6 @@ def _sim_data(lab: Lab, found: Arguments) -> Any:
 
 
 def _sim_robot_state(lab: Lab, found: Arguments) -> dict[str, Any]:
-    from IPython.display import display
-
     from tuisim.notebook.display import table_bundle
 
     state = lab.state
@@ -98,8 +97,6 @@ def _sim_robot_state(lab: Lab, found: Arguments) -> dict[str, Any]:
 
 
 def _sim_image_pair(lab: Lab, found: Arguments) -> None:
-    from IPython.display import display
-
     from tuisim.notebook.display import picture_bundle
 
     for picture in eds.image_pair(lab.image_data(), found.index):

@@ -15,6 +15,7 @@ from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.commands.runs import diff_text
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError
+from tuisim.logs import signals
 from tuisim.logs.arrow import numbers_of, unique_names
 from tuisim.logs.bands import band_report, in_words
 from tuisim.logs.columns import is_numeric
@@ -22,16 +23,7 @@ from tuisim.logs.derived import reckoned_series
 from tuisim.logs.export import check_target, export_frame, export_log
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, LogTable, Series
-from tuisim.logs.signals import (
-    QUANTILES,
-    Between,
-    derivative,
-    even_moments,
-    integral,
-    known_at,
-    moving_average,
-    summary_of,
-)
+from tuisim.logs.signals import Between
 from tuisim.runs.arrays import FloatArray
 from tuisim.runs.diff import diff_runs
 from tuisim.runs.store import RunStore
@@ -40,7 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ANALYSIS_FORMAT = 1
-_QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in QUANTILES)
+_QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in signals.QUANTILES)
 
 
 def summary(arguments: Arguments) -> int:
@@ -49,7 +41,7 @@ def summary(arguments: Arguments) -> int:
     for log in open_sources(arguments):
         for name in names_of(log, arguments):
             series = log.series(name)
-            figures = asdict(summary_of(series.values))
+            figures = asdict(signals.summary_of(series.values))
             quantiles = dict(zip(_QUANTILE_NAMES, figures.pop("quantiles"), strict=True))
             times_s = series.time_s
             span = {"first_s": float(times_s.min()), "last_s": float(times_s.max())}
@@ -111,17 +103,17 @@ def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArr
 
 def derive(arguments: Arguments) -> int:
     """Output the derivative of each variable, in units per second."""
-    return _each(arguments, "derivative", lambda series: derivative(series.time_s, series.values))
+    return _each(arguments, "derivative", lambda series: signals.derivative(series.time_s, series.values))
 
 
 def integrate(arguments: Arguments) -> int:
     """Output the integral of each variable, in units times seconds."""
-    return _each(arguments, "integral", lambda s: integral(s.time_s, s.values, arguments.between))
+    return _each(arguments, "integral", lambda s: signals.integral(s.time_s, s.values, arguments.between))
 
 
 def average(arguments: Arguments) -> int:
     """Output the centred rolling mean of each variable."""
-    return _each(arguments, "average", lambda series: moving_average(series.values, arguments.width))
+    return _each(arguments, "average", lambda series: signals.moving_average(series.values, arguments.width))
 
 
 def even(arguments: Arguments) -> int:
@@ -132,7 +124,7 @@ def even(arguments: Arguments) -> int:
     all_series = [log.series(name) for name in names_of(log, arguments)]
     start = min(float(series.time_s.min()) for series in all_series)
     stop = max(float(series.time_s.max()) for series in all_series)
-    moments = even_moments(start, stop, arguments.period)
+    moments = signals.even_moments(start, stop, arguments.period)
     show_frame(_sampled_at(moments, all_series, arguments.between), arguments)
     return 0
 
@@ -141,9 +133,9 @@ def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Be
     """Return the values of each series at given times: one column each, with unique names."""
     import pandas as pd
 
-    names = unique_names(["time", *(series.name for series in all_series)])
-    columns = [moments_s, *(known_at(series.time_s, series.values, moments_s, between) for series in all_series)]
-    return pd.DataFrame(dict(zip(names, columns, strict=True)))
+    names = unique_names(["time", *(one.name for one in all_series)])
+    known = [signals.known_at(one.time_s, one.values, moments_s, between) for one in all_series]
+    return pd.DataFrame(dict(zip(names, [moments_s, *known], strict=True)))
 
 
 def calculate(arguments: Arguments) -> int:
