@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +16,9 @@ import pytest
 
 from tests.forkserver import ForkServer
 from tests.running import PATIENCE_S, Done, Run, Start, over
+from tuisim.atomic import make_private_folder
 from tuisim.cli import run_command
+from tuisim.config import mat_cache
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
@@ -23,6 +27,22 @@ from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.source import Program
 
 ROOT = Path(__file__).resolve().parent.parent
+MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store")}
+"""How mats are looked for and stored by users."""
+
+# Hundreds of commands and children import the same modules: where bytecode is kept, each is compiled once.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# To look for garbage among the thousands of collected tests costs as much as the tests; so few objects die while they
+# are collected that it can wait.
+gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    """Leave what all tests share out of every search for garbage, and search less often."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)
+    gc.enable()
 
 
 Command = Callable[..., "subprocess.CompletedProcess[str]"]
@@ -48,6 +68,38 @@ def _forked_children() -> Iterator[None]:
     yield
     patch.undo()
     server.close()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _mats_are_prepared_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Lay the same prepared mats into every home: to prepare one costs more than most tests."""
+    kept = tmp_path_factory.mktemp("mats")
+    in_use, store = MATS.values()
+
+    def in_use_or_kept(path: Path, size: int) -> bool:
+        if not path.exists() and in_use(kept / path.name, size):
+            with suppress(OSError):
+                make_private_folder(path.parent)
+                os.link(kept / path.name, path)
+        found: bool = in_use(path, size)
+        return found
+
+    def store_and_keep(path: Path, array: Any) -> None:
+        store(path, array)
+        if not (kept / path.name).exists():
+            os.link(path, kept / path.name)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mat_cache, "_in_use", in_use_or_kept)
+        patch.setattr(mat_cache, "_store", store_and_keep)
+        yield
+
+
+@pytest.fixture
+def real_mats(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Prepare mats as users do."""
+    for name, real in MATS.items():
+        monkeypatch.setattr(mat_cache, name, real)
 
 
 @pytest.fixture

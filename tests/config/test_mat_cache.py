@@ -20,6 +20,8 @@ from tuisim.config import folders, mat_cache, mats
 from tuisim.core.field import disc_mask
 from tuisim.errors import BackgroundError
 
+pytestmark = pytest.mark.usefixtures("real_mats")
+
 WIDTH, HEIGHT = 2362, 1143
 
 

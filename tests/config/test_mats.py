@@ -62,12 +62,12 @@ def catalog(folder: Path, text: str) -> None:
     (folder / "backgrounds" / "catalog.toml").write_text(text, encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", STARTS)
-def test_mat_has_its_start_pose(name: str) -> None:
-    found = mats.background(name)
-    assert found.start == Pose(*STARTS[name])
-    assert found.image.is_file()
-    assert found.title and "\n" not in found.title
+def test_mats_have_their_start_poses() -> None:
+    for name, start in STARTS.items():
+        found = mats.background(name)
+        assert found.start == Pose(*start), name
+        assert found.image.is_file(), name
+        assert found.title and "\n" not in found.title, name
 
 
 def test_only_one_mat_brings_obstacles() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from _pytest.mark.structures import ParameterSet
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
@@ -30,6 +31,11 @@ MOTIONS = {
 }
 
 
+def slow(*values: object) -> ParameterSet:
+    """A row that is another kind of one that is tested anyway."""
+    return pytest.param(*values, marks=pytest.mark.slow)
+
+
 def told(sim: Simulation, left_dps: float, right_dps: float, ticks: int) -> float:
     """Drive, and return the deepest overlap on the way."""
     sim.left.run(left_dps)
@@ -53,10 +59,13 @@ def leaves(sim: Simulation) -> bool:
 
 
 @pytest.mark.parametrize("motion", MOTIONS)
-@pytest.mark.parametrize("profile", PROFILES)
-@pytest.mark.parametrize("solid", [False, True], ids=["open", "solid"])
-@pytest.mark.parametrize("walls", [False, True], ids=["no walls", "walls"])
-def test_a_robot_drives_on_from_the_start_of_any_mat(motion: str, profile: str, solid: bool, walls: bool) -> None:
+@pytest.mark.parametrize("profile", ["robolab", *(slow(profile) for profile in PROFILES if profile != "robolab")])
+@pytest.mark.parametrize(
+    ("walls", "solid"),
+    [(False, False), slow(False, True), slow(True, False), (True, True)],
+    ids=["open", "solid", "open with walls", "solid with walls"],
+)
+def test_a_robot_drives_on_from_the_start_of_any_mat(motion: str, profile: str, walls: bool, solid: bool) -> None:
     for name, mat in backgrounds().items():
         sim = simulation(WorldSpec(name, mat.obstacles, walls, solid, start=mat.start), profile=profile)
         first_mm = overlap_mm(sim)
@@ -83,8 +92,11 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("noise", [0, 100], ids=["quiet", "noisy"])
-@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize(
+    ("motion", "noise"),
+    [(motion, 0) for motion in MOTIONS]
+    + [("forwards", 100), *(slow(motion, 100) for motion in MOTIONS if motion != "forwards")],
+)
 @pytest.mark.parametrize("place", PLACES)
 def test_a_robot_put_into_something_gets_no_deeper_and_can_leave(place: str, motion: str, noise: int) -> None:
     start, boxes = PLACES[place]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from array import array
 from dataclasses import replace
-from random import Random
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -21,12 +20,11 @@ LEFT, RIGHT = RobotSpec().color_sensors
 
 def random_field() -> Field:
     """A narrow mat whose disc sums are any that a disc can have."""
-    random = Random(1)
     most = 255 * disc_pixels(DIAMETER)
     size = (FIELD_HEIGHT_MM + DIAMETER) * (WIDTH_PX + DIAMETER) * 3
-    sums = array("I", (random.randint(0, most) for _ in range(size)))
+    sums = np.random.default_rng(1).integers(0, most, size, np.uint32, endpoint=True)
     pixels = memoryview(bytes(range(256)) * (WIDTH_PX * FIELD_HEIGHT_MM * 3 // 256 + 1))
-    return Field(WIDTH_PX, FIELD_HEIGHT_MM, pixels, {DIAMETER: memoryview(sums)})
+    return Field(WIDTH_PX, FIELD_HEIGHT_MM, pixels, {DIAMETER: sums.data})
 
 
 FIELD = random_field()

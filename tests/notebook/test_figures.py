@@ -127,7 +127,7 @@ def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("heading", [0, 90, 180, -90])
+@pytest.mark.parametrize("heading", [0, *(pytest.param(turned, marks=pytest.mark.slow) for turned in (90, 180, -90))])
 def test_the_robot_is_drawn_as_large_as_what_collides(robot: str, heading: int) -> None:
     # Bumpers are pressed before anything collides.
     outline = outline_of(replace(at(robot).robot, touch_sensors=()))

@@ -44,7 +44,7 @@ ENDS = {
 @pytest.mark.parametrize(("text", "end", "exit_code"), ENDS.values(), ids=ENDS)
 @pytest.mark.usefixtures("real_start")
 def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None:
-    done = run(text, time_limit_s=5.0)
+    done = run(text, time_limit_s=1.0)
     assert (done.ended.end, done.ended.exit_code) == (end, exit_code)
     if ("A: 1" in text and end != "raised") or text.startswith("print('A: 1')\n"):
         assert done.lines == ["A: 1"]
@@ -117,7 +117,7 @@ def test_misuse_raises_the_librarys_own_error(run: Run, text: str, words: str) -
 
 def test_stall_in_python_code_names_the_line(run: Run) -> None:
     text = "import re\nprint('A: 1')\nre.match(r'(a+)+$', 'a' * 40 + 'b')"
-    done = run(text, stall_limit_s=1.0)
+    done = run(text, stall_limit_s=0.3)
     assert done.ended.end == "stalled"
     assert "line 3" in done.ended.summary
     assert done.lines == ["A: 1"]

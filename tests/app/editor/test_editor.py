@@ -143,7 +143,10 @@ async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path)
         assert app.document.dirty
 
 
-@pytest.mark.parametrize("size", [(80, 24), (100, 30), (120, 40), (200, 60)], ids=str)
+@pytest.mark.parametrize(
+    "size", [(80, 24), *(pytest.param(size, marks=pytest.mark.slow) for size in ((100, 30), (120, 40))), (200, 60)],
+    ids=str,
+)  # fmt: skip
 async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=size) as pilot:
         app = await ready(pilot)
@@ -170,7 +173,10 @@ async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> N
 WRONG = "print('A: 1')\nfor n in range(3):\n    n.x\n"
 
 
-@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["panel hidden", "panel shown"])
+@pytest.mark.parametrize(
+    "size",
+    [pytest.param((80, 24), id="panel hidden"), pytest.param((120, 40), id="panel shown", marks=pytest.mark.slow)],
+)
 async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
         app = await ready(pilot)
@@ -204,22 +210,21 @@ async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None
         await until(pilot, lambda: "Save the world" in screen_text(app))
 
 
-@pytest.mark.parametrize(
-    ("answer", "in_file", "left"),
-    [("s", "x" + TEXT, True), ("d", TEXT, True), ("escape", TEXT, False)],
-    ids=["save", "discard", "stay"],
-)
-async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, left: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("answer", "in_file"), [("s", "x" + TEXT), ("d", TEXT)], ids=["save", "discard"])
+async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
-        await typed(pilot, code, "x", "escape", "escape", "q")
-        await asked(pilot)
-        await pilot.press(answer)
-        await pilot.pause()
-        assert path.read_text() == in_file
-        assert app._exit is left
-    assert (find_draft(str(path)) is None) is left
+        await typed(pilot, code, "x", "escape", "escape")
+        await until(pilot, lambda: find_draft(str(path)) is not None)
+        for key, expected, left in (("escape", TEXT, False), (answer, in_file, True)):
+            await pilot.press("q")
+            await asked(pilot)
+            await pilot.press(key)
+            await pilot.pause()
+            assert path.read_text() == expected
+            assert app._exit is left
+            assert (find_draft(str(path)) is None) is left
 
 
 async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import pytest
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
-from tuisim.app.actions.table import ACTIONS, LabAction, working
+from tuisim.app.actions.table import ACTIONS, working
 from tuisim.app.analyser.actions.table import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.app import LabApp
 from tuisim.app.keys import Action, KeyHelp, fitting
@@ -49,18 +50,23 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
                 assert (f"─ {panel.title}" in screen_text(app)) is shown, panel.id
 
 
-@pytest.mark.parametrize("panel", [panel for panel in PANELS if panel not in ("world", "output")])
-async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back(panel: str) -> None:
-    off = frozenset({panel})
-    async with LabApp(settings(LOGS, panels_off=off)).run_test(size=(120, 40)) as pilot:
+async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() -> None:
+    panels = PANELS.keys() - {"world", "output"}
+    async with LabApp(settings(LOGS, panels_off=frozenset(panels))).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await pilot.press(PANELS[panel].key)
-        # Those that hear no keys leave the focus where it is.
-        deaf = ("instrumentation", "arrays", "controls")
-        wanted = app.panel_area.panels["world" if panel in deaf else panel]
-        await until(pilot, lambda: app.focused is not None and wanted in app.focused.ancestors_with_self)
-        await pilot.press(PANELS[panel].key)
-        await until(pilot, lambda: not app.panel_area.shown(panel) and app.focused is app.panel_area.world)
+
+        def has_focus(panel: str) -> bool:
+            return app.focused is not None and app.panel_area.panels[panel] in app.focused.ancestors_with_self
+
+        for panel in panels:
+            await pilot.press(PANELS[panel].key)
+            await until(pilot, partial(app.panel_area.shown, panel), panel)
+            # Those that hear no keys leave the focus where it is.
+            deaf = panel in ("instrumentation", "arrays", "controls")
+            await until(pilot, partial(has_focus, "world" if deaf else panel), panel)
+            await pilot.press(PANELS[panel].key)
+            await until(pilot, partial(has_focus, "world"), panel)
+            assert not app.panel_area.shown(panel), panel
 
 
 async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
@@ -75,18 +81,23 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
         assert any("Colour" in row.text for row in recording.rows.rows(0))
 
 
-@pytest.mark.parametrize(("size", "columns"), [((80, 24), 1), ((120, 40), 2), ((200, 60), 3)], ids=str)
-async def test_help_has_as_many_columns_as_there_is_room_for(size: tuple[int, int], columns: int) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=SIZES[0]) as pilot:
         app = await ready(pilot)
-        await pilot.press("question_mark")
         groups = {"In the code", *(action.group for action in ACTIONS.values())}
 
         def top() -> str:
             """The row in which each column begins with the name of a group."""
             return next((row for row in screen_text(app).split("\n") if re.search(r"│ +Program  ", row)), "")
 
-        await until(pilot, lambda: sum(f" {group}  " in top() for group in groups) == columns)
+        def has_columns(count: int) -> bool:
+            return sum(f" {group}  " in top() for group in groups) == count
+
+        for columns, size in enumerate(SIZES, 1):
+            await pilot.resize_terminal(*size)
+            await pilot.press("question_mark")
+            await until(pilot, partial(has_columns, columns), str(size))
+            await pilot.press("escape")
 
 
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
@@ -295,13 +306,13 @@ def test_footer_fits_and_always_shows_help_and_quit(width: int, state: RunPhase)
     assert sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) <= width
 
 
-@pytest.mark.parametrize("action", ACTIONS.values(), ids=list(ACTIONS))
-def test_each_line_of_the_table_is_an_action(action: LabAction) -> None:
-    assert action.title
-    assert callable(action.do)
-    for state in (RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED):
-        for yes in (True, False):
-            assert isinstance(action.why_not(Situation(state, yes, yes)), str)
+def test_each_line_of_the_table_is_an_action() -> None:
+    for name, action in ACTIONS.items():
+        assert action.title, name
+        assert callable(action.do), name
+        for state in (RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED):
+            for yes in (True, False):
+                assert isinstance(action.why_not(Situation(state, yes, yes)), str), name
 
 
 @pytest.mark.parametrize("table", [ACTIONS, ANALYSER_ACTIONS], ids=["app", "analyser"])

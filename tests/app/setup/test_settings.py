@@ -76,7 +76,7 @@ async def test_a_value_is_taken_at_once() -> None:
         assert app.run_controller.snapshot().ultrasonic_mm is not None
 
 
-async def test_a_wrong_value_is_told_below_its_field_and_nothing_is_changed() -> None:
+async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_choice_stepped_quickly() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
         before = app.run_controller.next_run
@@ -87,15 +87,22 @@ async def test_a_wrong_value_is_told_below_its_field_and_nothing_is_changed() ->
         assert "must be" not in screen_text(app)
         assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 60
 
-
-async def test_a_field_that_is_left_is_entered() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
         entry = row(app, "back_mm").entry
         entry.focus()
         entry.value = "-99"
         await pilot.press("tab")
         await until(pilot, lambda: app.run_controller.next_run.spec.robot.back_mm == -99)
+
+        app.loader.attempt(lambda plan: with_robot(plan, "Default_Robot"))
+        choice = row(app, "preset").entry
+        assert isinstance(choice, Choice)
+        await until(pilot, lambda: choice.value == "Default_Robot")
+        names = [*ROBOTS]
+        for _ in range(3):
+            choice.action_step(1)
+        await pilot.pause()
+        wanted = names[names.index("Default_Robot") + 3 - len(names)]
+        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == wanted)
 
 
 @pytest.mark.slow
@@ -111,19 +118,6 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
         assert app.run_controller.mat is not None
         assert app.run_controller.mat.key[2] == {30, 10}
         assert app.run_controller.pose.x_mm == 150
-
-
-async def test_no_step_is_lost_when_a_choice_is_stepped_through_quickly() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
-        choice = row(app, "preset").entry
-        assert isinstance(choice, Choice)
-        names = [*ROBOTS]
-        for _ in range(3):
-            choice.action_step(1)
-        await pilot.pause()
-        wanted = names[names.index("Default_Robot") + 3 - len(names)]
-        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == wanted)
 
 
 @pytest.mark.slow

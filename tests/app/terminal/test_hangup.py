@@ -147,10 +147,14 @@ def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path
     wait(lambda: not any(alive(process) for process in program))
 
 
-def test_an_app_that_was_stopped_from_outside_is_drawn_again_and_hears_every_key(tmp_path: Path, root: Path) -> None:
+def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_and_hears_every_key(
+    tmp_path: Path, root: Path
+) -> None:
     with lab(tmp_path, root) as (app, outer):
         screen = Screen(outer)
         screen.wait(b"quit")
+        os.write(outer, b"\x1a")
+        screen.wait(b"No shell could")
         os.kill(app.pid, signal.SIGSTOP)
         os.kill(app.pid, signal.SIGCONT)
         screen.wait(b"\x1b[?1049h")
@@ -182,18 +186,6 @@ def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(tmp_path: Path,
         os.write(outer, b"y")
         screen.wait(b"\x1b[?1049l")
         assert shell.wait(PATIENCE_S) == 0
-        os.close(outer)
-
-
-def test_ctrl_z_where_no_shell_could_go_on_does_not_stop_the_app(tmp_path: Path, root: Path) -> None:
-    with lab(tmp_path, root) as (app, outer):
-        screen = Screen(outer)
-        screen.wait(b"quit")
-        os.write(outer, b"\x1a")
-        screen.wait(b"No shell could")
-        os.write(outer, b"q")
-        screen.wait(b"\x1b[?1049l")
-        assert app.wait(PATIENCE_S) == 0
         os.close(outer)
 
 

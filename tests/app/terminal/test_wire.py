@@ -25,7 +25,7 @@ BEATS = 20
 ATTEMPTS = 5
 
 
-@pytest.mark.parametrize("colors", ["256", "truecolor"])
+@pytest.mark.parametrize("colors", ["256", pytest.param("truecolor", marks=pytest.mark.slow)])
 async def test_the_first_paint_shows_the_panels_before_the_mat(colors: str) -> None:
     async with on_wire(LabApp(settings()), colors) as pilot:
         await ready(pilot)
@@ -93,17 +93,21 @@ async def test_where_nothing_happens_nothing_is_sent() -> None:
             assert await sent_at_rest(pilot) == "", keys
 
 
-@pytest.mark.parametrize("panels", [frozenset[str](), frozenset(["chart"])], ids=["no chart", "chart"])
-@pytest.mark.parametrize("key", ["space", "S"])
-async def test_a_run_that_stands_still_or_is_over_sends_nothing(key: str, panels: frozenset[str]) -> None:
-    async with on_wire(LabApp(settings(ENDLESS, panels_on=panels, autorun=True))) as pilot:
+def has_state(app: LabApp, state: str) -> bool:
+    return app.run_controller.state == state
+
+
+@pytest.mark.parametrize("panels", [pytest.param([], id="no chart", marks=pytest.mark.slow), ["chart"]], ids=str)
+async def test_a_run_that_stands_still_or_is_over_sends_nothing(panels: list[str]) -> None:
+    async with on_wire(LabApp(settings(ENDLESS, panels_on=frozenset(panels), autorun=True))) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == "running")
-        await pilot.press(key)
-        await until(pilot, lambda: app.run_controller.state in ("paused", "ended"))
-        app.clear_notifications()
+        for key, state in (("space", "paused"), ("S", "ended")):
+            await pilot.press(key)
+            await until(pilot, partial(has_state, app, state))
+            app.clear_notifications()
 
-        assert await sent_at_rest(pilot) == ""
+            assert await sent_at_rest(pilot) == "", state
 
 
 async def test_the_analyser_at_rest_sends_nothing(tmp_path: Path) -> None:
