@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
 from tests.core.test_solid import overlap_mm, simulation
-from tuisim.config.mats import backgrounds
+from tuisim.config import mats
 from tuisim.core.geometry import Pose
 from tuisim.core.motors import FOREVER
 from tuisim.core.profile import PROFILES
@@ -66,7 +66,7 @@ def leaves(sim: Simulation) -> bool:
     ids=["open", "solid", "open with walls", "solid with walls"],
 )
 def test_a_robot_drives_on_from_the_start_of_any_mat(motion: str, profile: str, walls: bool, solid: bool) -> None:
-    for name, mat in backgrounds().items():
+    for name, mat in mats.catalogue().items():
         sim = simulation(WorldSpec(name, mat.obstacles, walls, solid, start=mat.start), profile=profile)
         first_mm = overlap_mm(sim)
         deepest_mm = told(sim, *MOTIONS[motion], 120)
