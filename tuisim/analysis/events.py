@@ -176,12 +176,12 @@ class Events:
         self._of: tuple[Log | None, tuple[Threshold, ...]] = (None, ())
         self._found: list[Event] = []
 
-    def take(self, log: Log, thresholds: tuple[Threshold, ...], found: list[Event]) -> None:
+    def set(self, log: Log, thresholds: tuple[Threshold, ...], found: list[Event]) -> None:
         """Set the events."""
         self.thresholds, self._of, self._found = thresholds, (log, thresholds), found
 
     def found(self, log: Log) -> list[Event]:
         """Return the events of a log, in the order of its rows."""
         if self._of[0] is not log or self._of[1] != self.thresholds:
-            self.take(log, self.thresholds, events_of(log, self.thresholds))
+            self.set(log, self.thresholds, events_of(log, self.thresholds))
         return self._found

@@ -37,11 +37,11 @@ class Model:
         LogError: it has rows but no numeric column, or its notes cannot be read.
     """
 
-    def __init__(self, subject: OpenedLog) -> None:
-        self.subject = subject
-        self.log = subject.log
-        self.rows = Rows(subject.log)
-        self.traces = LogTraces(subject.log)
+    def __init__(self, opened: OpenedLog) -> None:
+        self.opened = opened
+        self.log = opened.log
+        self.rows = Rows(opened.log)
+        self.traces = LogTraces(opened.log)
         ticked = self.traces.ticked()
         if self.log.rows and not ticked:
             raise LogError("no numeric column", "there is nothing to draw", file=self.log.title)
@@ -62,7 +62,7 @@ class Model:
         """Definitions of derived variables as typed, by name."""
         self._words: dict[str, str] = {}
         self._summaries: dict[str, Summary] = {}
-        self._places = subject.notes_places()
+        self._places = opened.notes_places()
         self._notes: list[list[Note]] = [list(read_notes(place)) for place in self._places]
         if ticked and len(self.trace.series.rows):
             self.row = int(self.trace.series.rows[0])
@@ -155,7 +155,7 @@ class Model:
             at = int(np.searchsorted(rows, self.row, "right" if samples > 0 else "left")) + samples - (samples > 0)
             self.row = int(rows[min(max(at, 0), len(rows) - 1)])
 
-    def take_over(self, other: Model) -> None:
+    def restore(self, other: Model) -> None:
         """Restore the state of another model of the same log, which has grown since."""
         self.row, self.mark_s, self.limits = other.row, other.mark_s, other.limits
         if other.row == other.log.rows - 1:
@@ -168,7 +168,7 @@ class Model:
         if other.selected in self.traces:
             self.selected = other.selected
         self.events.thresholds = other.events.thresholds
-        self.rows.take_over(other.rows)
+        self.rows.restore(other.rows)
         if other.alignment != TIME:
             self._align_again(other.alignment)
 
@@ -180,12 +180,12 @@ class Model:
                 with suppress(LogError):
                     derive(self, text)
 
-    def take_log(self, log: Log) -> None:
+    def set_log(self, log: Log) -> None:
         """Switch to the same log with other derived variables."""
-        self.log, self.subject = log, replace(self.subject, log=log)
+        self.log, self.opened = log, replace(self.opened, log=log)
         before = {trace.name: trace for trace in self.traces}
-        self.traces.take_log(log)
-        self.rows.take_log(log)
+        self.traces.set_log(log)
+        self.rows.set_log(log)
         for name, trace in before.items():
             if name not in self.traces or self.traces.named(name) is not trace:
                 self._reports.pop(name, None)
@@ -356,16 +356,16 @@ def derive(model: Model, text: str) -> None:
     Raises:
         LogError: as for `with_definition`.
     """
-    take(model, *with_definition(model, text))
+    apply_definition(model, *with_definition(model, text))
 
 
-def take(model: Model, text: str, log: Log) -> None:
+def apply_definition(model: Model, text: str, log: Log) -> None:
     """Apply a derived log to a model."""
     name = RECKONING if text == RECKONING else definition_of(text).name
     model.definitions.pop(name, None)
     if text == RECKONING or definition_of(text).expression:
         model.definitions[name] = text
-    model.take_log(log)
+    model.set_log(log)
     shown = RECKONED[-1] if name == RECKONING else name
     model.selected = next((one for one in log.derived if one.partition(" #")[0] == shown), model.selected)
 

@@ -40,9 +40,9 @@ _WIDTH_PX = 960
 _WAY, _HALO = (230, 90, 0), (255, 255, 255)
 
 
-def default_name(subject: OpenedLog) -> str:
+def default_name(opened: OpenedLog) -> str:
     """Return the default file name of a report."""
-    name = subject.runs[0].program.name if subject.runs else subject.wanted.file
+    name = opened.runs[0].program.name if opened.runs else opened.request.file
     return f"{Path(name).stem.strip('-.') or 'log'}-report.html"
 
 
@@ -57,7 +57,7 @@ def check_report(path: Path) -> None:
     check_place(path)
 
 
-def write_report(subject: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = plateaus) -> None:
+def write_report(opened: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = plateaus) -> None:
     """Write the report of a log, replacing an existing file.
 
     Args:
@@ -70,18 +70,18 @@ def write_report(subject: OpenedLog, path: Path, names: Sequence[str] = (), sear
     """
     check_report(path)
     # A program may contain lone surrogates, which `clean` has replaced.
-    write_whole(path, report_of(subject, names, search).encode())
+    write_whole(path, report_of(opened, names, search).encode())
 
 
-def report_of(subject: OpenedLog, names: Sequence[str] = (), search: Search = plateaus) -> str:
+def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = plateaus) -> str:
     """Return the page that `write_report` writes; arguments and errors are the same."""
-    subject, remark = _with_rows(subject)
-    model = Model(subject)
+    opened, remark = _with_rows(opened)
+    model = Model(opened)
     for trace in model.traces:
         trace.on = trace.name in names if names else trace.on
     model.find_bands(model.unsearched(), search)
-    log = subject.log
-    runs = subject.runs
+    log = opened.log
+    runs = opened.runs
     body = [
         f"<header>\n<h1>{clean(log.title)}</h1>",
         paragraph(remark, soft=True) if remark else "",
@@ -97,13 +97,13 @@ def report_of(subject: OpenedLog, names: Sequence[str] = (), search: Search = pl
     return page(f"{log.title}: report", [part for part in body if part])
 
 
-def _with_rows(subject: OpenedLog) -> tuple[OpenedLog, str]:
+def _with_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
     """The log of a report, and the facts about it."""
-    if subject.log.rows:
-        return subject, ""
-    if not subject.runs:
-        raise LogError("no rows", "a report needs a log or a run", file=subject.log.title)
-    *_, found = opening(LogRequest(runs=(subject.runs[0].id,), telemetry=True))
+    if opened.log.rows:
+        return opened, ""
+    if not opened.runs:
+        raise LogError("no rows", "a report needs a log or a run", file=opened.log.title)
+    *_, found = opening(LogRequest(runs=(opened.runs[0].id,), telemetry=True))
     return found, "The program printed no samples: chart, bands and statistics use the telemetry."
 
 
@@ -205,7 +205,7 @@ def _notes(model: Model) -> str:
     for run, note in model.notes:
         span = f"{note.start_s:.2f}" + (f" to {note.stop_s:.2f}" if note.stop_s > note.start_s else "")
         rows.append((str(run + 1), span, note.variable, note.text))
-    many = len(model.subject.runs) > 1
+    many = len(model.opened.runs) > 1
     heads = ("run", "s", "variable", "note")
     return table(heads[not many :], [row[not many :] for row in rows], numbers=len(heads))
 

@@ -43,7 +43,7 @@ class LogRequest:
 class OpenedLog:
     """An open log, possibly not completely read yet."""
 
-    wanted: LogRequest
+    request: LogRequest
     log: Log
     runs: tuple[StoredRun, ...] = ()
     """In the order of the log's run column; none for a file."""
@@ -59,20 +59,20 @@ class OpenedLog:
         """
         if self.runs:
             return tuple(run.folder / NOTES_FILE for run in self.runs)
-        file = Path(self.wanted.file)
+        file = Path(self.request.file)
         return (notes_of_file(file),) if file.is_file() else ()
 
     def stamp(self) -> object:
         """Return a token that changes when the source grows."""
         if self.runs:
-            return tuple((run.telemetry.count if self.wanted.telemetry else run.output.length) for run in self.runs)
+            return tuple((run.telemetry.count if self.request.telemetry else run.output.length) for run in self.runs)
         try:
-            return Path(self.wanted.file).stat().st_size
+            return Path(self.request.file).stat().st_size
         except OSError:
             return None
 
 
-def opening(wanted: LogRequest) -> Iterator[OpenedLog]:
+def opening(request: LogRequest) -> Iterator[OpenedLog]:
     """Open a log; yield what has been read, soon after the start and then repeatedly.
 
     Slow for a large file: call it in a thread.
@@ -83,15 +83,15 @@ def opening(wanted: LogRequest) -> Iterator[OpenedLog]:
     from tuisim.logs.reader import log_of_runs, read_pieces, telemetry_log
     from tuisim.runs.store import RunStore
 
-    if not wanted.file:
+    if not request.file:
         store = RunStore()
-        runs = tuple(store.load_run(word) for word in wanted.runs)
-        log = telemetry_log(runs[0]) if wanted.telemetry else log_of_runs(runs)
-        yield OpenedLog(wanted, log, runs[:1] if wanted.telemetry else runs)
+        runs = tuple(store.load_run(word) for word in request.runs)
+        log = telemetry_log(runs[0]) if request.telemetry else log_of_runs(runs)
+        yield OpenedLog(request, log, runs[:1] if request.telemetry else runs)
         return
-    for loaded in read_pieces(wanted.file, wanted.time, wanted.values, wanted.unit):
+    for loaded in read_pieces(request.file, request.time, request.values, request.unit):
         if loaded.log is not None:
-            yield OpenedLog(wanted, loaded.log, (), loaded.part, loaded.done)
+            yield OpenedLog(request, loaded.log, (), loaded.part, loaded.done)
 
 
 NOTES_FILE = "notes.jsonl"

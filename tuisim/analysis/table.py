@@ -58,12 +58,12 @@ def conditions_of(text: str, columns: list[str]) -> list[Comparison]:
 class TableView:
     """Which rows of a log a table shows, in which order."""
 
-    conditions: tuple[Comparison, ...]
-    fulfilled: IntArray | None
+    conditions: tuple[Comparison, ...] = ()
+    fulfilled: IntArray | None = None
     """Rows that match the filter, increasing; None for all."""
-    sorted_by: str
-    descending: bool
-    order: IntArray | None
+    sorted_by: str = ""
+    descending: bool = False
+    order: IntArray | None = None
     """These rows in display order; None for all in the order of the log."""
 
 
@@ -78,15 +78,10 @@ class Rows:
         """Number of pinned columns at the left."""
         self.column = 0
         """Position of the chosen one in `columns`."""
-        self.conditions: tuple[Comparison, ...] = ()
-        self.sorted_by = ""
-        self.descending = False
-        self._fulfilled: IntArray | None = None
-        self._order: IntArray | None = None
-        """Rows of the log that are shown, in order; None for all as they are."""
+        self.view = TableView()
 
     def __len__(self) -> int:
-        return self._log.rows if self._order is None else len(self._order)
+        return self._log.rows if self.view.order is None else len(self.view.order)
 
     @property
     def chosen(self) -> str:
@@ -95,16 +90,16 @@ class Rows:
 
     def row(self, place: int) -> int:
         """Return the row of the log at a position of the table."""
-        return place if self._order is None else int(self._order[place])
+        return place if self.view.order is None else int(self.view.order[place])
 
     def place(self, row: int) -> int:
         """Return the position of a row of the log, or the nearest one."""
-        if self._order is None or not len(self._order):
+        if self.view.order is None or not len(self.view.order):
             return row
-        if self.sorted_by:
-            found = np.flatnonzero(self._order == row)
+        if self.view.sorted_by:
+            found = np.flatnonzero(self.view.order == row)
             return int(found[0]) if len(found) else 0
-        return min(int(np.searchsorted(self._order, row)), len(self._order) - 1)
+        return min(int(np.searchsorted(self.view.order, row)), len(self.view.order) - 1)
 
     def text(self, row: int, column: str) -> str:
         """Return a cell as text."""
@@ -113,7 +108,7 @@ class Rows:
     def shown(self) -> LogTable:
         """Return the rows and columns shown as a table."""
         table = self._log.table.select(self.columns)
-        return table if self._order is None else table.take(self._order)
+        return table if self.view.order is None else table.take(self.view.order)
 
     # Which rows, in which order
 
@@ -123,11 +118,11 @@ class Rows:
         Raises:
             LogError: a value does not fit its column.
         """
-        self.arrange(self.filtered(conditions))
+        self.view = self.filtered(conditions)
 
     def sort(self, column: str, descending: bool) -> None:
         """Sort the rows by a column; empty for the order of the log."""
-        self.arrange(self.sorted(column, descending))
+        self.view = self.sorted(column, descending)
 
     def filtered(self, conditions: tuple[Comparison, ...]) -> TableView:
         """Return the rows that meet all conditions, in the current order. Slow for a long log.
@@ -137,17 +132,11 @@ class Rows:
         """
         masks = [mask_of(self._log.table.column(condition.name), condition) for condition in conditions]
         fulfilled = np.flatnonzero(np.logical_and.reduce(masks)) if masks else None
-        return self._arrangement(conditions, fulfilled, self.sorted_by, self.descending)
+        return self._arrangement(conditions, fulfilled, self.view.sorted_by, self.view.descending)
 
     def sorted(self, column: str, descending: bool) -> TableView:
         """Return the same rows sorted by a column; empty for the order of the log. Slow for a long log."""
-        return self._arrangement(self.conditions, self._fulfilled, column, descending)
-
-    def arrange(self, arrangement: TableView) -> None:
-        """Show rows that have been filtered and sorted."""
-        self.conditions, self._fulfilled = arrangement.conditions, arrangement.fulfilled
-        self.sorted_by, self.descending = arrangement.sorted_by, arrangement.descending
-        self._order = arrangement.order
+        return self._arrangement(self.view.conditions, self.view.fulfilled, column, descending)
 
     def _arrangement(
         self, conditions: tuple[Comparison, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
@@ -188,7 +177,7 @@ class Rows:
             self.frozen += 1
         self.columns.insert(self.column, name)
 
-    def take_log(self, log: Log) -> None:
+    def set_log(self, log: Log) -> None:
         """Switch to the same log with other columns; new ones are shown."""
         before, names = self._log.table.column_names, log.table.column_names
         chosen = self.chosen
@@ -197,16 +186,17 @@ class Rows:
         self.columns = [name for name in self.columns if name in names] or list(names)
         self.columns += [name for name in names if name not in before and name not in self.columns]
         self.column = self.columns.index(chosen) if chosen in self.columns else 0
-        gone = [at for at in (self.sorted_by, *(one.name for one in self.conditions)) if at and at not in names]
+        view = self.view
+        gone = {view.sorted_by, *(one.name for one in view.conditions)}.difference(names, [""])
         if gone:
-            self.sorted_by = "" if self.sorted_by in gone else self.sorted_by
-            self.filter(tuple(one for one in self.conditions if one.name not in gone))
+            self.view = replace(view, sorted_by="" if view.sorted_by in gone else view.sorted_by)
+            self.filter(tuple(one for one in view.conditions if one.name not in gone))
 
-    def take_over(self, other: Rows) -> None:
+    def restore(self, other: Rows) -> None:
         """Show the same columns and conditions as another table of the same log."""
         self.columns, self.frozen, self.column = other.columns, other.frozen, other.column
-        self.sorted_by, self.descending = other.sorted_by, other.descending
-        self.filter(other.conditions)
+        self.view = replace(self.view, sorted_by=other.view.sorted_by, descending=other.view.descending)
+        self.filter(other.view.conditions)
 
     # Search
 
@@ -235,7 +225,7 @@ class Rows:
     def _places_with(self, text: str, first: int, last: int) -> IntArray:
         """Return the positions from `first` to before `last` whose rows contain a text."""
         table = self._log.table.select(self.columns)
-        part = table.slice(first, last - first) if self._order is None else table.take(self._order[first:last])
+        part = table.slice(first, last - first) if self.view.order is None else table.take(self.view.order[first:last])
         found = np.zeros(last - first, bool)
         for column in part.columns:
             found |= contains(column, text)

@@ -127,7 +127,7 @@ class LogTraces(Traces):
         self._by_log_name = {name: LogTrace(log, name, number) for number, name in enumerate(names)}
         self._show_light_columns()
 
-    def take_log(self, log: Log) -> None:
+    def set_log(self, log: Log) -> None:
         """Switch to the same log with other derived variables; new ones become visible."""
         kept = [trace for trace in self if trace.name in log.names and not trace.is_derived_otherwise(log)]
         known = {trace.name for trace in kept}

@@ -75,14 +75,9 @@ def has_time_word(name: str) -> bool:
 
 
 def unit_since_1970_s(column: pa.ChunkedArray, unit_s: float | None) -> float | None:
-    """Return the unit of a column with times since the beginning of 1970.
+    """Return the unit in seconds of a column of numbers; None if they are not times since the beginning of 1970.
 
-    Args:
-        column: Numbers.
-        unit_s: Unit in seconds, None to guess it from the size of the numbers.
-
-    Returns:
-        The unit in seconds; None if the numbers are not such times.
+    The unit may be given in seconds; None guesses it from the size of the numbers.
     """
     first = _first(column)
     units: tuple[float, ...] = (1.0, 1e-3, 1e-6, 1e-9) if unit_s is None else (unit_s,)

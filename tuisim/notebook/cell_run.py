@@ -12,7 +12,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby, islice
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import Any, TypeVar
 
 from tuisim.charts.world_image import PenTrace, pen_trace
@@ -70,7 +70,7 @@ class CellRun:
     """Whether speech is not shown either."""
 
 
-def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) -> StoredRun:
+def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) -> StoredRun:
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
     `begun` is called with the run as soon as its recording exists.
@@ -79,16 +79,16 @@ def run_cell(wanted: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) 
         ConfigError: the responder has returned what a program cannot get; the run has been stopped.
     """
     store = RunStore()
-    paced = wanted.speed > 0
+    paced = cell.speed > 0
     options = RunOptions(
-        live=paced, speed=wanted.speed, asks_user=True, time_waits=not paced, replies=wanted.responder is not None
+        live=paced, speed=cell.speed, asks_user=True, time_waits=not paced, replies=cell.responder is not None
     )
-    with Interruption() as interruption, closing(start_run(wanted.program, wanted.spec, options, store)) as handle:
+    with Interruption() as interruption, closing(start_run(cell.program, cell.spec, options, store)) as handle:
         run = store.load_run(handle.run_id)
         begun(run)
-        screen = _Screen(wanted, stage, run)
+        screen = _Screen(cell, stage, run)
         try:
-            _Follower(wanted, handle, screen, interruption).follow()
+            _Follower(cell, handle, screen, interruption).follow()
         except BaseException:  # whatever a responder raises, the program must not outlive the cell
             handle.stop()
             handle.wait(STOP_WAIT_S)
@@ -133,9 +133,7 @@ class Interruption:
             self._before = signal.signal(signal.SIGINT, self._on_signal)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)
 
@@ -158,8 +156,8 @@ class Interruption:
 
 
 class _Follower:
-    def __init__(self, wanted: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
-        self._wanted, self._handle, self._screen, self._interruption = wanted, handle, screen, interruption
+    def __init__(self, cell: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
+        self._cell, self._handle, self._screen, self._interruption = cell, handle, screen, interruption
         self._said: list[Any] = []
         """Answers of the responder that have not been sent to the program."""
         self._stopping = False
@@ -189,12 +187,12 @@ class _Follower:
     def _relay(self) -> bool:
         """Show new output, pass lines to the responder, and return whether there is more."""
         rows = self._handle.output.new_rows(ROWS_AT_ONCE)
-        show_rows(rows, quiet=self._wanted.quiet)
-        if self._wanted.responder is not None:
+        show_rows(rows, quiet=self._cell.quiet)
+        if self._cell.responder is not None:
             for row in rows:
                 if row.stream == Stream.STDOUT and row.text.startswith(FOR_THE_NOTEBOOK):
                     heard = row.text.removeprefix(FOR_THE_NOTEBOOK[0])
-                    answer = self._interruption.call(partial(self._wanted.responder, heard))
+                    answer = self._interruption.call(partial(self._cell.responder, heard))
                     self._said += [] if answer is None else [_message(answer)]
         return len(rows) == ROWS_AT_ONCE
 
@@ -207,7 +205,7 @@ class _Follower:
         if prompt is not None:
             answer = self._interruption.call(partial(_ask, prompt))
             if not self._interruption.count:
-                handle.send(Answer(answer, at_once=self._wanted.speed == 0))
+                handle.send(Answer(answer, at_once=self._cell.speed == 0))
 
     def _finish(self) -> None:
         shown = 0
@@ -221,8 +219,8 @@ class _Follower:
 
 
 class _Screen:
-    def __init__(self, wanted: CellRun, stage: Stage, run: StoredRun) -> None:
-        self._wanted, self._stage, self._run = wanted, stage, run
+    def __init__(self, cell: CellRun, stage: Stage, run: StoredRun) -> None:
+        self._cell, self._stage, self._run = cell, stage, run
         self._due = 0.0
         self._samples: list[Sample] = []
         self._position = 0
@@ -232,20 +230,20 @@ class _Screen:
         """Draw if the last drawing is missing or old; never if drawings cannot be updated in place."""
         if not self._stage.redraws or time.monotonic() < self._due:
             return
-        self.draw(f"running · {self._run.telemetry.count / self._wanted.spec.profile.tick_hz:.2f} s")
+        self.draw(f"running · {self._run.telemetry.count / self._cell.spec.profile.tick_hz:.2f} s")
         # Counted from the end of the drawing, so that slow drawing does not use up all the time.
-        self._due = time.monotonic() + self._wanted.refresh_s
+        self._due = time.monotonic() + self._cell.refresh_s
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
         """Draw the current state of the run; at most so many new lines, None for all, are searched for samples."""
-        wanted, run = self._wanted, self._run
+        cell, run = self._cell, self._run
         if self._stage.shows("chart"):
             for row, after in islice(run.output.rows_from(self._position), most_rows):
                 self._samples += samples_of((row,))
                 self._position = after
-        last = run.telemetry.last() or start_record(wanted.spec)
-        traces = (*wanted.traces, pen_trace(wanted.spec, run.telemetry.array()))
-        self._stage.show(Scene(wanted.spec, wanted.files, wanted.program.text, last, traces, self._samples), status)
+        last = run.telemetry.last() or start_record(cell.spec)
+        traces = (*cell.traces, pen_trace(cell.spec, run.telemetry.array()))
+        self._stage.show(Scene(cell.spec, cell.files, cell.program.text, last, traces, self._samples), status)
 
 
 def show_rows(rows: Sequence[OutputRow], *, quiet: bool = False) -> None:

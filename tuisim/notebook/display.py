@@ -6,7 +6,7 @@ import html
 import io
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -114,11 +114,6 @@ def _positioning(scene: Scene) -> list[Row]:
     ]
 
 
-def _noise(scene: Scene) -> list[Row]:
-    noise = scene.spec.world.noise
-    return [("light", str(noise.light)), ("motor", str(noise.motor))]
-
-
 def _settings(scene: Scene) -> list[Row]:
     spec = scene.spec
     world, names = spec.world, (spec.robot.name, spec.profile.name)
@@ -126,16 +121,12 @@ def _settings(scene: Scene) -> list[Row]:
     return list(zip(what, (*names, world.background, str(len(world.obstacles)), str(spec.seed)), strict=True))
 
 
-def _code(scene: Scene) -> list[Row]:
-    return [(str(number), line) for number, line in enumerate(source_lines(scene.text), 1)]
-
-
 _TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
     "instrumentation": instrumentation,
     "positioning": _positioning,
-    "noise": _noise,
+    "noise": lambda scene: [(name, str(level)) for name, level in asdict(scene.spec.world.noise).items()],
     "settings": _settings,
-    "code": _code,
+    "code": lambda scene: [(str(number), line) for number, line in enumerate(source_lines(scene.text), 1)],
 }
 """The rows of each panel's table."""
 

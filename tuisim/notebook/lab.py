@@ -180,7 +180,7 @@ class Lab:
 
         assert plan.program is not None
         responder = self.responder if words.collaborative else None
-        wanted = CellRun(
+        cell = CellRun(
             plan.program, plan.spec, plan.files, plan.settings.speed or 0.0, words.refresh_s, self._traces, responder,
             plan.settings.quiet,
         )  # fmt: skip
@@ -191,7 +191,7 @@ class Lab:
             self._last, self._runs[places[0] : places[0] + 1] = run, [run]
 
         try:
-            run_cell(wanted, stage, note)
+            run_cell(cell, stage, note)
         finally:
             # Also after a responder's error has ended the run.
             if self._last is not None:

@@ -84,10 +84,10 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     derive(model, "v = wave + 2")
     assert model.trace.at(0.0) == pytest.approx(3.0)
     grown = model_of(wide_log(200))
-    grown.take_over(model)
+    grown.restore(model)
     assert len(grown.log.series("v").values) == 200
     other = model_of(long_log())
-    other.take_over(model)
+    other.restore(model)
     assert [trace.name for trace in other.traces] == ["Colour", "Left"]
     model.rows.sort("v", True)
     derive(model, "v =")

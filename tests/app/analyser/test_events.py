@@ -57,7 +57,7 @@ def test_events_stand_where_they_are_in_the_chart_and_in_the_pane() -> None:
     pane = PANES["events"]
     assert list(pane.rows(model)[0]) == ["Colour #1", "below", "4.500", "–", "40", "11", "45"]
     grown = model_of(long_log(runs=3))
-    grown.take_over(model)
+    grown.restore(model)
     assert len(grown.events.found(grown.log)) == 3
 
 

@@ -197,7 +197,7 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
     (["F", "=value<90", "enter"], lambda _, model: filtered(model)),
     (["U"], lambda _, model: len(model.rows) == model.log.rows),
     (["F", "=x", "enter", "escape"], lambda _, model: len(model.rows) == model.log.rows),
-    ([">", "o", "o"], lambda _, model: (model.rows.sorted_by, model.rows.descending) == ("variable", True)),
+    ([">", "o", "o"], lambda _, model: (model.rows.view.sorted_by, model.rows.view.descending) == ("variable", True)),
     (["U", "slash", "=82.7", "enter"], lambda _, model: model.rows.text(model.row, "value").startswith("82.7")),
     (["space"], lambda _, model: not model.traces.ticked()),
     (["space", "x", "X", "H"], lambda screen, _: screen.chart.options.facets and screen.chart.options.hold),

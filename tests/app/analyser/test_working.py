@@ -20,9 +20,9 @@ from tuisim.app.analyser.app import AnalyserApp
 
 STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
     (["F", "=value < 50 and name == a", "enter"], lambda model: len(model.rows) == 50),
-    (["o"], lambda model: model.rows.sorted_by == "time"),
-    (["U", "o"], lambda model: model.rows.sorted_by == "time" and len(model.rows) == 200),
-    (["o"], lambda model: model.rows.descending and model.rows.row(0) == 199),
+    (["o"], lambda model: model.rows.view.sorted_by == "time"),
+    (["U", "o"], lambda model: model.rows.view.sorted_by == "time" and len(model.rows) == 200),
+    (["o"], lambda model: model.rows.view.descending and model.rows.row(0) == 199),
     (["U", "slash", "=77", "enter"], lambda model: model.row == 154),
     (["d", "=v = slope(a)", "enter"], lambda model: model.selected == "v"),
     (["c", "=a > 50", "enter"], lambda model: model.row == 100),
@@ -36,7 +36,7 @@ async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeyp
     file.write_text("\n".join(("time,name,value", *lines)) + "\n")
     async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(120, 40)) as pilot:
         screen, _ = await opened(pilot)
-        await until(pilot, lambda: screen.is_open and screen.model.subject.done)
+        await until(pilot, lambda: screen.is_open and screen.model.opened.done)
         model = screen.model
         assert model is not None
         for keys, so in STEPS:
@@ -61,8 +61,8 @@ def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(rows_module, "_STRETCH", 3)
     model = model_of(long_log())
     rows = model.rows
-    rows.arrange(rows.filtered(tuple(conditions_of("variable == Colour", rows.columns))))
-    rows.arrange(rows.sorted("value", False))
+    rows.view = rows.filtered(tuple(conditions_of("variable == Colour", rows.columns)))
+    rows.view = rows.sorted("value", False)
     values = [rows.text(rows.row(place), "value") for place in range(len(rows))]
     assert values == [str(value) for value in range(0, 100, 10)]
     for here in random.Random(1).sample(range(10), 10):

@@ -134,7 +134,7 @@ def _notes(model: Model) -> list[Cells]:
             f"{note.start_s:.2f}",
             f"{note.stop_s:.2f}" if note.stop_s > note.start_s else "",
             note.variable,
-            str(model.subject.runs[run].number) if len(model.subject.runs) > 1 else "",
+            str(model.opened.runs[run].number) if len(model.opened.runs) > 1 else "",
             note.text,
         )
         for run, note in model.notes
@@ -144,12 +144,12 @@ def _notes(model: Model) -> list[Cells]:
 def _runs(model: Model) -> list[Cells]:
     return [
         (
-            f"#{at}" if len(model.subject.runs) > 1 else "",
+            f"#{at}" if len(model.opened.runs) > 1 else "",
             str(run.number or run.id), run.program.name, run.spec.world.background, end_label(run.state),
             f"{max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz:.2f}", run.spec.profile.name,
             str(run.spec.seed),
         )
-        for at, run in enumerate(model.subject.runs, 1)
+        for at, run in enumerate(model.opened.runs, 1)
     ]  # fmt: skip
 
 
@@ -294,7 +294,7 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
     columns, widths = _fitting(model, shown, width - number_width - 2)
     head: Line = [(" " * (number_width + 2), HEAD)]
     for column, wide in zip(columns, widths, strict=True):
-        arrow = ("↓" if rows.descending else "↑") if column == rows.sorted_by else ""
+        arrow = ("↓" if rows.view.descending else "↑") if column == rows.view.sorted_by else ""
         text = cut(column + arrow, wide).ljust(wide)
         head += [(text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD), ("  ", HEAD)]
     lines = [head]
@@ -422,5 +422,5 @@ def _find_bands(model: Model, names: list[str]) -> None:
 def _summary(model: Model) -> str:
     rows, total = model.rows, model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
-    conditions = " and ".join(map(str, rows.conditions))
+    conditions = " and ".join(map(str, rows.view.conditions))
     return f"{words}: {conditions}".replace("[", "\\[") if conditions else words

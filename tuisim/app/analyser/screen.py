@@ -120,11 +120,11 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         background.run(self, work, lambda _: None, failed, group="log", exclusive=True)
 
     def _open(self, request: LogRequest) -> None:
-        for subject in opening(request):
+        for opened in opening(request):
             if request is not self.request or not self.is_running:
                 return
-            model, before = Model(subject), self._model
-            if before is not None and before.subject.wanted is request:
+            model, before = Model(opened), self._model
+            if before is not None and before.opened.request is request:
                 model.define_as(before)
             # Data for the first chart of a long log is computed here, in the background.
             model.traces.span_s()
@@ -138,30 +138,30 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         if self._model is None:
             self.dismiss(None)
         else:
-            self.request = self._model.subject.wanted
+            self.request = self._model.opened.request
             self.update()
 
     def set_model(self, model: Model) -> None:
         """Show the log that was read, unless another one was requested since."""
-        subject, before = model.subject, self._model
-        if subject.wanted is not self.request:
+        opened, before = model.opened, self._model
+        if opened.request is not self.request:
             return
-        if subject.done:
+        if opened.done:
             now_s = monotonic()
             self._reading, self._next_poll_s = False, now_s + _PATIENCE * (now_s - self._began_s)
-            self._stamp = subject.stamp()
+            self._stamp = opened.stamp()
         self._model = model
-        if before is not None and before.subject.wanted is subject.wanted:
-            model.take_over(before)
+        if before is not None and before.opened.request is opened.request:
+            model.restore(before)
         else:
             self.chart.options.against = None
         self.redraw_chart()
         self.world.set_model(model)
         self.update()
-        if before is None and subject.wanted.file and not model.log.layout.sure and self.is_current:
+        if before is None and opened.request.file and not model.log.layout.sure and self.is_current:
             self.ask_columns()
-        if subject.done and (before is None or before.subject.log.notes != subject.log.notes):
-            for note in subject.log.notes:
+        if opened.done and (before is None or before.opened.log.notes != opened.log.notes):
+            for note in opened.log.notes:
                 self.say(note)
 
     def poll(self) -> None:
@@ -169,9 +169,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         model = self._model
         if self.job is not None:
             self._show_title(self._progress())
-        if model is None or not model.subject.done or self._reading or monotonic() < self._next_poll_s:
+        if model is None or not model.opened.done or self._reading or monotonic() < self._next_poll_s:
             return
-        if model.subject.stamp() != self._stamp:
+        if model.opened.stamp() != self._stamp:
             self.open(self.request)
 
     # Display
@@ -208,10 +208,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.update()
 
     def _progress(self) -> str:
-        subject = self._model.subject if self._model else None
-        if subject is None or subject.done:
+        opened = self._model.opened if self._model else None
+        if opened is None or opened.done:
             return ""
-        return f"reading {subject.part:.0%} …" if subject.part == subject.part else "reading …"
+        return f"reading {opened.part:.0%} …" if opened.part == opened.part else "reading …"
 
     def _show_title(self, progress: str) -> None:
         model, position = self._model, ""
@@ -229,7 +229,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         model, name = self.model, self.pane.name_shown
         bands, notes = model.bands() if name == "bands" else [], model.notes if name == "notes" else []
         events = model.events.found(model.log) if name == "events" else []
-        count = len(bands or notes or events) or len(model.subject.runs if name == "runs" else model.traces.ticked())
+        count = len(bands or notes or events) or len(model.opened.runs if name == "runs" else model.traces.ticked())
         self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
         if bands:
             model.selected = bands[number].variable
@@ -290,7 +290,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def ask_columns(self) -> None:
         """Ask for the meaning of the file's columns."""
         model = self.model
-        if not model.subject.wanted.file:
+        if not model.opened.request.file:
             self.say("Columns can be chosen only in a file: those of a run are fixed")
         elif not candidates(model.log.table):
             self.say("There is no numeric column")
@@ -300,9 +300,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def _set_columns(self, chosen: Columns | None) -> None:
         if chosen is None:
             return
-        subject, log = self.model.subject, self.model.log
-        request = replace(subject.wanted, time=chosen.time, values=chosen.values, unit=chosen.unit)
-        if not subject.done:
+        opened, log = self.model.opened, self.model.log
+        request = replace(opened.request, time=chosen.time, values=chosen.values, unit=chosen.unit)
+        if not opened.done:
             self.open(request)
             return
         # All of it has been read: the same rows have another meaning now.

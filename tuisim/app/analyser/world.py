@@ -100,36 +100,36 @@ class WorldAt:
         )
 
 
-def has_poses(subject: OpenedLog) -> bool:
+def has_poses(opened: OpenedLog) -> bool:
     """Return whether a log has poses of a robot."""
-    if subject.runs:
+    if opened.runs:
         return True
-    named = set(_POSE) <= set(subject.log.table.column_names)
-    return named and _spec_in(subject.log.metadata, 0) is not None
+    named = set(_POSE) <= set(opened.log.table.column_names)
+    return named and _spec_in(opened.log.metadata, 0) is not None
 
 
-def world_at(subject: OpenedLog, run: int) -> WorldAt | None:
+def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
     """Return the world of a run of a log, None if it is unknown. Blocks, long the first time for each mat.
 
     Args:
-        subject: The log.
+        opened: The log.
         run: Which of its runs, from 0.
     """
-    if run < len(subject.runs):
-        stored = subject.runs[run]
+    if run < len(opened.runs):
+        stored = opened.runs[run]
         try:
             mat = prepare_mat_of(stored)
         except TuisimError:
             mat = blank_mat(stored.spec)
-        return WorldAt(stored.spec, mat, stored, subject.log)
-    spec = _spec_in(subject.log.metadata, run)
-    if spec is None or not set(_POSE) <= set(subject.log.table.column_names):
+        return WorldAt(stored.spec, mat, stored, opened.log)
+    spec = _spec_in(opened.log.metadata, run)
+    if spec is None or not set(_POSE) <= set(opened.log.table.column_names):
         return None
     try:
         mat = prepare_mat(spec)
     except TuisimError:
         mat = blank_mat(spec)
-    return WorldAt(spec, mat, None, subject.log)
+    return WorldAt(spec, mat, None, opened.log)
 
 
 def _spec_in(metadata: Mapping[str, Any], run: int) -> RunSpec | None:
@@ -185,7 +185,7 @@ class WorldPane(Vertical):
         self._model, self._shown = model, None
         self._worlds.clear()
         self._requested.clear()
-        self.display = self.is_on and has_poses(model.subject)
+        self.display = self.is_on and has_poses(model.opened)
         self.show(model)
 
     def show(self, model: Model) -> None:
@@ -196,7 +196,7 @@ class WorldPane(Vertical):
         run = model.run_of(model.row)
         if run not in self._requested:
             self._requested.add(run)
-            work = partial(world_at, model.subject, run)
+            work = partial(world_at, model.opened, run)
             background.run(self, work, partial(self._prepared, model, run), group="worlds")
         world = self._worlds.get(run)
         if world is None:

@@ -111,20 +111,20 @@ def report(screen: LogScreen) -> None:
     """Ask for the file to write the report to."""
     from tuisim.analysis.report import check_report, default_name
 
-    subject = screen.model.subject
+    opened = screen.model.opened
     names = [trace.name for trace in screen.model.traces.ticked()]
 
     def save(target: Path) -> None:
-        work, notice = partial(_write_report, subject, target, names), f"Report saved to {target}"
+        work, notice = partial(_write_report, opened, target, names), f"Report saved to {target}"
         background.run(screen, work, lambda _: screen.say(notice), screen.complain, group="report")
 
-    screen.app.push_screen(SaveDialog("report", default_name(subject), save, ".html", check_report, _REPORT, False))
+    screen.app.push_screen(SaveDialog("report", default_name(opened), save, ".html", check_report, _REPORT, False))
 
 
-def _write_report(subject: OpenedLog, target: Path, names: Sequence[str]) -> None:
+def _write_report(opened: OpenedLog, target: Path, names: Sequence[str]) -> None:
     from tuisim.analysis.report import write_report
     from tuisim.logs.plateaus import plateaus, plateaus_aside
 
     worker = get_current_worker()
     aside = partial(plateaus_aside, stopped=lambda: worker.is_cancelled)
-    write_report(subject, target, names, aside if subject.log.rows > _MANY_ROWS else plateaus)
+    write_report(opened, target, names, aside if opened.log.rows > _MANY_ROWS else plateaus)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from tuisim.analysis.model import RECKONING, Model, derive, take, with_definition
+from tuisim.analysis.model import RECKONING, Model, apply_definition, derive, with_definition
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.dialogs.question import Form
@@ -61,7 +61,7 @@ def derived(screen: LogScreen) -> None:
         of, text, log = result
         model = screen.model
         if model is of:
-            take(model, text, log)
+            apply_definition(model, text, log)
         else:
             # The log may have grown meanwhile.
             derive(model, text)
@@ -128,7 +128,7 @@ def delete_note(screen: LogScreen) -> None:
 
 def differences(screen: LogScreen) -> None:
     """Show the differences between the first two open runs; with a single run, ask for the other one."""
-    runs = screen.model.subject.runs
+    runs = screen.model.opened.runs
     if not runs:
         screen.say("A file has no recording to compare: R opens stored runs")
     elif len(runs) > 1:

@@ -45,7 +45,7 @@ def _search(screen: LogScreen, text: str) -> None:
 
     def found(result: tuple[Log, tuple[Threshold, ...], list[Event]]) -> None:
         # The log may have grown meanwhile: search again.
-        screen.model.events.take(*result)
+        screen.model.events.set(*result)
         screen.choose(0)
         screen.update()
 
@@ -61,7 +61,7 @@ def larger(screen: LogScreen) -> None:
 def world(screen: LogScreen) -> None:
     """Show or hide the world beside the log."""
     pane = screen.world
-    if not has_poses(screen.model.subject):
+    if not has_poses(screen.model.opened):
         screen.say(NO_POSES)
         return
     pane.display = pane.is_on = not pane.display
@@ -85,10 +85,10 @@ def choose(screen: LogScreen, step: int) -> None:
 def sort(screen: LogScreen) -> None:
     """Sort by the selected column: ascending, descending, not at all."""
     model, rows = screen.model, screen.model.rows
-    if rows.sorted_by != rows.chosen:
+    if rows.view.sorted_by != rows.chosen:
         order = rows.chosen, False
     else:
-        order = ("", False) if rows.descending else (rows.chosen, True)
+        order = ("", False) if rows.view.descending else (rows.chosen, True)
     screen.work("sorting …", len(rows), lambda _: rows.sorted(*order), partial(_arrange, screen, model))
 
 
@@ -97,8 +97,8 @@ def _arrange(screen: LogScreen, model: Model, arrangement: TableView) -> None:
     if screen.model is not model:
         return
     rows = model.rows
-    rows.arrange(arrangement)
-    if rows.conditions and len(rows):
+    rows.view = arrangement
+    if rows.view.conditions and len(rows):
         model.go_to_row(rows.row(rows.place(model.row)))
     screen.update()
 
@@ -112,7 +112,7 @@ def select(screen: LogScreen) -> None:
         then = partial(_arrange, screen, model)
         screen.work("filtering …", model.log.rows, lambda _: model.rows.filtered(conditions), then)
 
-    screen.ask("Filter", keep, " and ".join(map(str, screen.model.rows.conditions)), _FILTERS)
+    screen.ask("Filter", keep, " and ".join(map(str, screen.model.rows.view.conditions)), _FILTERS)
 
 
 def show_all(screen: LogScreen) -> None:
