@@ -51,7 +51,6 @@ COMMANDS: Mapping[str, Entry] = {
     "kernel": Entry("commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
     "completion": Entry("cli:completion", "Print a script that completes commands in your shell"),
 }
-"""Every command."""
 
 _COMPLETE = "_TUISIM_COMPLETE"
 """The environment variable with which a completion script asks for words."""

@@ -19,10 +19,10 @@ from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import reading
 from tuisim.core.spec import ColorSensorSpec, NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.core.state import Instant
-from tuisim.core.tick_record import TICK_RECORD
+from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.runs.frames import SAMPLE_COLUMNS, quiet_color_columns, samples_frame, telemetry_frame
-from tuisim.runs.records import TELEMETRY_FILE, TICK_FIELDS
+from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.views import instant_of
 

@@ -15,14 +15,13 @@ import pytest
 
 from tests.runs.run_recorder import Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.tick_record import TICK_RECORD
+from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
     OUTPUT_ROW,
     TELEMETRY_FILE,
-    TICK_FIELDS,
     OutputWriter,
     Stream,
     TelemetryWriter,
@@ -33,7 +32,7 @@ from tuisim.runs.views import OutputView, TelemetryView, TickRecord, instant_of
 CHILD = """
 import sys
 from pathlib import Path
-from tuisim.core.tick_record import TICK_RECORD
+from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.runs.records import HEADER_BYTES, OutputWriter, TelemetryWriter
 telemetry, output = TelemetryWriter(Path(sys.argv[1])), OutputWriter(Path(sys.argv[1]))
 for tick in range(int(sys.argv[2])):
@@ -57,6 +56,7 @@ def put(writer: TelemetryWriter, count: int) -> None:
 
 
 def test_fields_are_those_of_the_record() -> None:
+    assert TICK_RECORD.format == "<IIdddddfffHH"
     assert np.dtype(list(TICK_FIELDS)).itemsize == TICK_RECORD.size
     assert [field.name for field in fields(TickRecord)] == [name for name, _ in TICK_FIELDS]
 

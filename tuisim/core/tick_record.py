@@ -6,14 +6,18 @@ from mmap import mmap
 from struct import Struct
 from typing import Protocol, TypeAlias
 
-TICK_RECORD = Struct("<IIdddddfffHH")
-"""tick, line, x_mm, y_mm, heading_deg, left_position_deg, right_position_deg,
-left_speed_dps, right_speed_dps, gyro_zero_deg, flags, actions.
+TICK_FIELDS = (
+    ("tick", "<I"), ("line", "<I"), ("x_mm", "<d"), ("y_mm", "<d"), ("heading_deg", "<d"),
+    ("left_position_deg", "<d"), ("right_position_deg", "<d"), ("left_speed_dps", "<f"), ("right_speed_dps", "<f"),
+    ("gyro_zero_deg", "<f"), ("flags", "<H"), ("actions", "<H"),
+)  # fmt: skip
+"""Name and type of each field of a record, the type as `struct` and numpy write it.
 
 `line` is the program's own line that spent the time (0: none). `gyro_deg` is
 gyro_zero_deg - heading_deg. `actions` counts the user actions applied before this tick."""
 
-POSITION_FIELDS = Struct("<IIddddd")
+TICK_RECORD = Struct("<" + "".join(kind[1:] for _, kind in TICK_FIELDS))
+POSITION_FIELDS = Struct("<" + "".join(kind[1:] for _, kind in TICK_FIELDS[:7]))
 """The first fields of `TICK_RECORD`, up to right_position_deg: those that change while the speeds are steady."""
 
 FLAG_LEFT_RUNNING = 1

@@ -60,7 +60,6 @@ class RunInfo:
     created: str
     """ISO 8601, UTC."""
     program: str
-    """Program name."""
     background: str
     profile: str
     seed: int
@@ -68,7 +67,6 @@ class RunInfo:
     """How the run ended, or its state without an end; None, and empty in the file, until that is known."""
     ticks: int | None = None
     time_s: float | None = None
-    """Simulated time in seconds."""
     samples: int | None = None
     """None in the file until they are counted."""
     summary: str = ""

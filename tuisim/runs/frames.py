@@ -18,8 +18,9 @@ from tuisim.core.sensors import SENSORS, mounted
 from tuisim.core.sensors.color import columns as color_columns
 from tuisim.core.sensors.color import disc_pixels_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
+from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.protocol import SetNoise, UserAction
-from tuisim.runs.records import TELEMETRY_FILE, TICK_FIELDS
+from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.run_folder import StoredRun, noise_at, open_mat
 from tuisim.runs.samples import samples_of
 from tuisim.runs.views import TickRecord, instant_of
@@ -149,7 +150,7 @@ def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[UserAction],
     """Return the columns of every mounted sensor, in the order of the telemetry frame.
 
     Args:
-        records: Telemetry, structured as `records.TICK_FIELDS`, shape (n,).
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         spec: The specification of the run.
         actions: The user's actions, which may have changed the noise.
         field: The mat.
@@ -175,7 +176,7 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -
     """Return red, green and blue of a colour sensor at every tick, for a run without light noise.
 
     Args:
-        records: Telemetry, structured as `records.TICK_FIELDS`, shape (n,).
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         sensor: The sensor.
         field: The mat; it must have sums of the sensor's diameter.
     """

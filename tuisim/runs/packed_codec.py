@@ -18,7 +18,8 @@ import numpy as np
 
 from tuisim.core.drive import mm_per_degree
 from tuisim.core.spec import RunSpec
-from tuisim.runs.records import OUTPUT_ROW, TICK_FIELDS
+from tuisim.core.tick_record import TICK_FIELDS
+from tuisim.runs.records import OUTPUT_ROW
 
 Column = np.ndarray[Any, Any]
 Numbers = np.ndarray[Any, np.dtype[np.float64]]

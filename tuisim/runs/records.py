@@ -32,22 +32,6 @@ FORMAT_VERSION = 1
 TELEMETRY_MAGIC = b"TUISIMTL"
 OUTPUT_MAGIC = b"TUISIMOU"
 
-TICK_FIELDS = (
-    ("tick", "<u4"),
-    ("line", "<u4"),
-    ("x_mm", "<f8"),
-    ("y_mm", "<f8"),
-    ("heading_deg", "<f8"),
-    ("left_position_deg", "<f8"),
-    ("right_position_deg", "<f8"),
-    ("left_speed_dps", "<f4"),
-    ("right_speed_dps", "<f4"),
-    ("gyro_zero_deg", "<f4"),
-    ("flags", "<u2"),
-    ("actions", "<u2"),
-)
-"""Name and numpy type of each field of `core.tick_record.TICK_RECORD`."""
-
 OUTPUT_ROW = Struct("<IIqIB3x")
 """Number of bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
 

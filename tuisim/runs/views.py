@@ -19,7 +19,7 @@ from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
-from tuisim.core.tick_record import TICK_RECORD
+from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError, counted
 from tuisim.runs.packed_files import Packed, find_packed
 from tuisim.runs.records import (
@@ -28,7 +28,6 @@ from tuisim.runs.records import (
     OUTPUT_MAGIC,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
-    TICK_FIELDS,
     OutputRow,
     output_rows,
     published_length,
@@ -114,7 +113,7 @@ class _View(ABC):
         there = self._extent()
         if self._damage or self._published == there:
             return self._damage
-        return f"{self._path.name} was cut off: {self._lost(self._published - there)}"
+        return f"{self._path.name} was truncated: {self._lost(self._published - there)}"
 
     @abstractmethod
     def _lost(self, count: int) -> str:
@@ -233,7 +232,7 @@ class TelemetryView(_View):
         return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + index * TICK_RECORD.size))
 
     def array(self) -> np.ndarray[Any, Any]:
-        """Return all records as a structured array of `records.TICK_FIELDS`, shape (count,), read-only.
+        """Return all records as a structured array of `TICK_FIELDS`, shape (count,), read-only.
 
         It is a view, not a copy; later records require another call.
         """

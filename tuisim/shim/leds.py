@@ -63,7 +63,6 @@ class Light:
     def __init__(self, lights: Lights, green: bool) -> None:
         self._lights = lights
         self.shining = MAX_BRIGHTNESS if green else 0
-        """Current brightness."""
         self._trigger = "default-on" if green else "none"
         self._blink_brightness = 0
         self._delays_ms = {"delay_on": 0, "delay_off": 0}
