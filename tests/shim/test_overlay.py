@@ -61,7 +61,7 @@ ROWS: dict[str, Row] = {
         "Sound().set_volume(40), Sound().get_volume()", "(None, 40)", "TypeError: invalid cmd type (<class 'list'>"
     ),
     "`Sound.speak()` with `'` in the text": Row('Sound().speak("It\'s")', "None", "ValueError: No closing quotation"),
-    "a part that is not there": same(
+    "a missing part": same(
         "LargeMotor(OUTPUT_A)",
         "DeviceNotFound: LargeMotor(ev3-ports:outA) is not connected. This robot has: outB lego-ev3-l-motor",
     ),
