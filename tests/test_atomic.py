@@ -14,11 +14,11 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-@pytest.mark.parametrize("lasting", [True, False], ids=["lasting", "quick"])
-def test_a_file_comes_whole_and_nothing_stays_beside_it(tmp_path: Path, lasting: bool) -> None:
+@pytest.mark.parametrize("durable", [True, False], ids=["durable", "quick"])
+def test_a_file_comes_whole_and_nothing_stays_beside_it(tmp_path: Path, durable: bool) -> None:
     path = tmp_path / "log.csv"
     path.write_bytes(b"old")
-    with replacing(path, lasting=lasting) as handle:
+    with replacing(path, durable=durable) as handle:
         handle.write(b"new")
         assert path.read_bytes() == b"old"
     assert (path.read_bytes(), names(tmp_path)) == (b"new", ["log.csv"])

@@ -36,7 +36,7 @@ def make_private_folder(folder: Path) -> None:
 
 
 @contextmanager
-def replacing(path: Path, *, lasting: bool = True, owner_only: bool = False) -> Iterator[BinaryIO]:
+def replacing(path: Path, *, durable: bool = True, owner_only: bool = False) -> Iterator[BinaryIO]:
     """Open a new file that replaces `path` when the block ends without an exception.
 
     If the block raises, or a write fails, `path` is unchanged and no temporary file is left.
@@ -44,7 +44,7 @@ def replacing(path: Path, *, lasting: bool = True, owner_only: bool = False) -> 
 
     Args:
         path: The file; its folder must exist.
-        lasting: Whether to `fsync`, so that the file survives a power cut; False is faster.
+        durable: Whether to `fsync`, so that the file survives a power cut; False is faster.
         owner_only: Use owner-only permissions regardless of the umask, as for everything in `TUISIM_HOME`.
 
     Raises:
@@ -58,7 +58,7 @@ def replacing(path: Path, *, lasting: bool = True, owner_only: bool = False) -> 
         with open(beside, "xb", opener=private if owner_only else None) as handle:
             yield handle
             handle.flush()
-            if lasting:
+            if durable:
                 os.fsync(handle.fileno())
         os.replace(beside, target)
     finally:

@@ -36,7 +36,7 @@ class Asking:
         run = start_run(Program("bench.py", LOG, "preloaded"), spec, RunOptions(time_limit_s=RUN_S))
         run.wait()
         self.recording = Recording(load_run(run.run_id))
-        self.stand_in = ReplayDebugger(self._arrived, self._failed, self._passed)
+        self.replay_debugger = ReplayDebugger(self._arrived, self._failed, self._passed)
         self._there = False
 
     def _arrived(self, paused: Paused, looked: Inspected) -> None:
@@ -58,17 +58,17 @@ class Asking:
         self._there, start = False, time.monotonic()
         ask()
         while not self._there:
-            self.stand_in.beat()
+            self.replay_debugger.poll()
             time.sleep(LOOK_EVERY_S)
         return time.monotonic() - start
 
     def look_s(self, at: Position) -> float:
         """Return how long it takes to know the variables of an instant."""
-        return self.took_s(lambda: self.stand_in.go(self.recording, at, Inspect()))
+        return self.took_s(lambda: self.replay_debugger.go(self.recording, at, Inspect()))
 
     def back_s(self, at: Position) -> float:
         """Return how long it takes to go a line back from an instant."""
-        return self.took_s(lambda: self.stand_in.lines_back(self.recording, at, 1, Inspect()))
+        return self.took_s(lambda: self.replay_debugger.lines_back(self.recording, at, 1, Inspect()))
 
 
 def variables(effort: Effort) -> Iterator[Figure]:
@@ -78,7 +78,7 @@ def variables(effort: Effort) -> Iterator[Figure]:
         places = asking.places(effort.repeats * PLACES_A_REPEAT)
         known = [asking.look_s(at) for at in places]
         back = [asking.back_s(at) for at in places]
-        asking.stand_in.close()
+        asking.replay_debugger.close()
         ratio = loop_time(median(known), RUN_S)
         yield Figure(
             f"variables of any instant of 10 minutes, {words}", 1e3 * median(known), "ms", most=40, ratio=ratio

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import Command
-from tuisim.commands.echo import Progress, aside, echo, echo_error, tell
+from tuisim.commands.echo import Progress, echo, echo_error, progress_hidden, tell
 
 PATIENCE_S = 20.0
 
@@ -88,7 +88,7 @@ def test_stdout_that_goes_elsewhere_does_not_hide_the_bar(show: Show) -> None:
     with Progress("working"):
         terminal.until("working")
         shown = terminal.getvalue().count("\x1b[?25l")
-        with aside(io.StringIO()):
+        with progress_hidden(io.StringIO()):
             pass
         assert terminal.getvalue().count("\x1b[?25l") == shown
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tuisim.analysis.model import Model
-from tuisim.analysis.traces import DISTANCE, LogTrace, held
+from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
 from tuisim.charts.axes import Limits, column_of, value_limits
 from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
 from tuisim.charts.layout import Chart, Line, with_unit
@@ -61,7 +61,7 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
 
 def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
     xs, ys = min_max(trace.times_s, trace.values, x_limits, columns)
-    xs, ys = _clipped(*(held(xs, ys) if hold else (xs, ys)), x_limits)
+    xs, ys = _clipped(*(sample_and_hold(xs, ys) if hold else (xs, ys)), x_limits)
     return Line(trace.name, xs, ys, number, trace.other_scale)
 
 

@@ -18,7 +18,7 @@ from tuisim.charts.axes import Limits
 from tuisim.errors import LogError, listed
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
 from tuisim.logs.columns import is_numeric
-from tuisim.logs.derived import RECKONED, definition_of, derived, reckoned_series
+from tuisim.logs.derived import RECKONED_COLUMNS, definition_of, derived, reckoned_series
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
@@ -366,7 +366,7 @@ def apply_definition(model: Model, text: str, log: Log) -> None:
     if text == RECKONING or definition_of(text).expression:
         model.definitions[name] = text
     model.set_log(log)
-    shown = RECKONED[-1] if name == RECKONING else name
+    shown = RECKONED_COLUMNS[-1] if name == RECKONING else name
     model.selected = next((one for one in log.derived if one.partition(" #")[0] == shown), model.selected)
 
 
@@ -379,7 +379,7 @@ def with_definition(model: Model, text: str) -> tuple[str, Log]:
     text = text.strip()
     log = model.log
     if text == RECKONING:
-        for column in RECKONED:
+        for column in RECKONED_COLUMNS:
             log = log.without_derived(column)
         for series in reckoned_series(log):
             log = log.with_derived(series.name, [series])

@@ -62,7 +62,7 @@ def write_report(opened: OpenedLog, path: Path, names: Sequence[str] = (), searc
 
     Args:
         names: Variables of chart and bands, none for those that the analyser shows first.
-        search: Finds the bands; `analysis.aside` has one that leaves the other threads their time.
+        search: Finds the bands, such as `plateaus`, or `plateaus_in_subprocess` for long logs.
 
     Raises:
         ExportError: the file cannot be written; an existing one is unchanged.

@@ -90,7 +90,7 @@ class LogTrace(Trace):
     def prepare(self, x_limits: Limits, columns: int, hold: bool) -> None:
         """Select the points to draw at this chart width."""
         times_s, values = self.pyramid.points(x_limits, columns)
-        self._shown = held(times_s, values) if hold else (times_s, values)
+        self._shown = sample_and_hold(times_s, values) if hold else (times_s, values)
 
     @property
     def times_s(self) -> FloatArray:
@@ -110,7 +110,7 @@ class LogTrace(Trace):
         return float(value_at(found.times_s, found.values, np.array([time_s]))[0])
 
 
-def held(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def sample_and_hold(times_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the corners of a step line."""
     if len(times_s) < 2:
         return times_s, values

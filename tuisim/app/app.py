@@ -137,7 +137,7 @@ class LabApp(PanelMessages):
         self.run_controller.propose = partial(time_travel.propose_branch, self.workspace)
         self.brick_hint = BrickHint(self._hint_at_brick)
         self._run_when_ready = settings.autorun and settings.replay is None
-        self._beats: Timer | None = None
+        self._frame_timer: Timer | None = None
         self._awake_until_s = 0.0
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
@@ -166,7 +166,7 @@ class LabApp(PanelMessages):
         self.document.begin()
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugger.program_changed(self.run_controller.program)
-        self._beats = self.set_interval(1 / self.settings.fps, self._beat)
+        self._frame_timer = self.set_interval(1 / self.settings.fps, self._on_frame_timer)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
 
@@ -243,30 +243,30 @@ class LabApp(PanelMessages):
         self.debugger.run_changed()
         self.situation_changed()
 
-    def _beat(self) -> None:
+    def _on_frame_timer(self) -> None:
         """Process what the run has written, and draw a frame if the terminal has shown the last one."""
         try:
             news = self.run_controller.poll()
             self._process(news)
-            time_travel.beat(self.workspace)
-            self.debugger.beat()
+            time_travel.advance_playback(self.workspace)
+            self.debugger.poll()
             # A frame that has to wait counts as drawn.
             drew = not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
                 self._wake()
         except TuisimError as error:
-            # What cannot be read now cannot be read at the next beat either.
+            # What cannot be read now cannot be read at the next frame either.
             self.run_controller.close()
             self.complain(error)
             self.situation_changed()
 
-        if self._beats is not None and not self._is_awake:
-            self._beats.pause()
+        if self._frame_timer is not None and not self._is_awake:
+            self._frame_timer.pause()
 
     def _seldom(self) -> None:
-        # A beat between two others would leave the next one no time for a frame.
+        # An extra call between two frames would leave the next one no time.
         if not self._is_awake:
-            self._beat()
+            self._on_frame_timer()
 
     @property
     def _is_awake(self) -> bool:
@@ -275,8 +275,8 @@ class LabApp(PanelMessages):
     def _wake(self) -> None:
         """Poll the run at frame rate for a while: something has happened."""
         self._awake_until_s = time.monotonic() + _AWAKE_S
-        if self._beats is not None:
-            self._beats.resume()
+        if self._frame_timer is not None:
+            self._frame_timer.resume()
 
     async def on_event(self, event: events.Event) -> None:
         if isinstance(event, events.InputEvent):

@@ -314,9 +314,9 @@ class AppDebugger:
         elif self._paused is not None:
             self._run_controller.debug(self.inspect_request)
 
-    def beat(self) -> None:
+    def poll(self) -> None:
         """Follow the instant in view and process what has been computed."""
-        self._replay_debugger.beat()
+        self._replay_debugger.poll()
         timeline = self._run_controller.timeline
         if self._position is not None and timeline.at not in (None, self._position.tick):
             self._position = None

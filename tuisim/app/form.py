@@ -312,9 +312,9 @@ class Slider(Widget, can_focus=True):
 
     def render(self) -> Text:
         knob, width = self._knob(), self.size.width
-        filled, empty, held = (
+        filled, empty, knob_style = (
             self.get_component_rich_style(f"slider--{part}", partial=True) for part in ("filled", "empty", "knob")
         )
         # A different glyph shows the focus, so that it is visible without colours too.
-        mark = Text("◆" if self.has_focus else "●", held + Style(bold=True))
+        mark = Text("◆" if self.has_focus else "●", knob_style + Style(bold=True))
         return Text.assemble(("━" * knob, filled), mark, ("─" * (width - knob - 1), empty), no_wrap=True, end="")

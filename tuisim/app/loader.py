@@ -435,8 +435,8 @@ def _is_file_word(word: str) -> bool:
 def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a file that have changed; removed ones get their default."""
     bare = Settings()
-    gone = {field: getattr(bare, field) for field in before.keys() - now.keys() if field in plans.WORLD_FIELDS}
-    return gone | {field: value for field, value in now.items() if field not in before or before[field] != value}
+    removed = {field: getattr(bare, field) for field in before.keys() - now.keys() if field in plans.WORLD_FIELDS}
+    return removed | {field: value for field, value in now.items() if field not in before or before[field] != value}
 
 
 PERIOD_S = 1.0

@@ -182,8 +182,8 @@ def snapshot_of(
     next_spec: RunSpec | None = None,
 ) -> Snapshot:
     """Return the snapshot of one moment, with every sensor measured."""
-    sonar = spec.robot.ultrasonic
-    rays = tuple(ultrasonic.rays_mm(instant.pose, sonar, spec.world)) if sonar else ()
+    ultrasonic_spec = spec.robot.ultrasonic
+    rays = tuple(ultrasonic.rays_mm(instant.pose, ultrasonic_spec, spec.world)) if ultrasonic_spec else ()
     has_gyro = spec.robot.gyro is not None
     return Snapshot(
         state=state,
@@ -195,7 +195,7 @@ def snapshot_of(
         line=line,
         speed=speed,
         colors={s.name: color.reading(s, instant, field) for s in spec.robot.color_sensors} if field else {},
-        ultrasonic_mm=ultrasonic.reading_mm(sonar, instant, spec.world) if sonar else None,
+        ultrasonic_mm=ultrasonic.reading_mm(ultrasonic_spec, instant, spec.world) if ultrasonic_spec else None,
         rays=rays,
         gyro_deg=gyro.angle_deg(instant) if has_gyro else 0,
         gyro_rate_dps=gyro.rate_dps(instant) if has_gyro else 0,

@@ -112,7 +112,7 @@ class Timeline:
         """Stop playback."""
         self._played_s = None
 
-    def beat(self, wall_s: float, speed: float) -> bool:
+    def advance_playback(self, wall_s: float, speed: float) -> bool:
         """Continue playback. Return whether the newest instant has just been reached.
 
         Args:

@@ -24,26 +24,26 @@ if TYPE_CHECKING:
 
 def echo(line: str = "") -> None:
     """Write one line to stdout."""
-    with aside(sys.stdout):
+    with progress_hidden(sys.stdout):
         print(printable(line))
 
 
 def echo_lines(text: str) -> None:
     """Write a text of any number of lines to stdout."""
-    with aside(sys.stdout):
+    with progress_hidden(sys.stdout):
         for line in text.split("\n"):
             print(printable(line))
 
 
 def echo_json(data: Any, *, flush: bool = False) -> None:
     """Write data to stdout as one line of JSON, with control characters escaped."""
-    with aside(sys.stdout):
+    with progress_hidden(sys.stdout):
         print(_json(data), flush=flush)
 
 
 def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> None:
     """Write one JSON object to stdout: a list under a key, streamed item by item, then the other keys."""
-    with aside(sys.stdout):
+    with progress_hidden(sys.stdout):
         sys.stdout.write(f'{{"{key}": [')
         for number, item in enumerate(items):
             sys.stdout.write((", " if number else "") + _json(item))
@@ -56,20 +56,20 @@ def _json(data: Any) -> str:
 
 def echo_error(line: str) -> None:
     """Write one line to stderr."""
-    with aside(sys.stderr):
+    with progress_hidden(sys.stderr):
         print(printable(line), file=sys.stderr, flush=True)
 
 
 def echo_error_lines(text: str) -> None:
     """Write a text of any number of lines to stderr."""
-    with aside(sys.stderr):
+    with progress_hidden(sys.stderr):
         for line in text.split("\n"):
             print(printable(line), file=sys.stderr, flush=True)
 
 
 def echo_chart(text: str) -> None:
     """Write a chart with its colour codes to stdout; its texts must already be printable."""
-    with aside(sys.stdout):
+    with progress_hidden(sys.stdout):
         sys.stdout.write(text)
 
 
@@ -78,7 +78,7 @@ class CsvOut:
 
     def write(self, text: str) -> None:
         """Write text."""
-        with aside(sys.stdout):
+        with progress_hidden(sys.stdout):
             sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)
 
 
@@ -115,7 +115,7 @@ _active: list[Progress] = []
 
 
 @contextmanager
-def aside(stream: TextIO) -> Iterator[None]:
+def progress_hidden(stream: TextIO) -> Iterator[None]:
     """Hide the bar, if any, while text is written to a stream that may be the same terminal."""
     if _active and stream.isatty():
         with _active[-1].away():

@@ -9,7 +9,7 @@ from itertools import groupby
 from types import FrameType
 from typing import Self, TextIO
 
-from tuisim.commands.echo import aside, echo_error, tell
+from tuisim.commands.echo import echo_error, progress_hidden, tell
 from tuisim.commands.exit_status import EXIT_BROKEN_PIPE
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle
@@ -104,13 +104,13 @@ class Follower:
         """Write rows to stdout and stderr in their original order."""
         for to_stdout, group in groupby(rows, key=lambda row: row.stream == Stream.STDOUT):
             if to_stdout:
-                with aside(self._out):
+                with progress_hidden(self._out):
                     self._write("".join(row.text + "\n" for row in group))
                 continue
             for row in group:
                 # Printed text is passed on unchanged; speech becomes a line of tuisim's own.
                 if row.stream == Stream.STDERR:
-                    with aside(sys.stderr):
+                    with progress_hidden(sys.stderr):
                         sys.stderr.write(row.text + "\n")
                 elif row.stream == Stream.SPEECH:
                     echo_error(line_of(row))

@@ -165,7 +165,7 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 
 def _store(path: Path, array: NDArray[Any]) -> None:
-    with replacing(path, lasting=False, owner_only=True) as stream:
+    with replacing(path, durable=False, owner_only=True) as stream:
         stream.write(array.data)
 
 

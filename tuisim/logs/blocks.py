@@ -69,9 +69,9 @@ class LineCutter:
             data = data.replace(b"\0", b"")
         if b"\r" in data:
             # A carriage return alone ends a line, too; the line feed of one at the very end may still follow.
-            held = data.endswith(b"\r")
+            carried_cr = data.endswith(b"\r")
             data = data.replace(b"\r\n", b"\n")
-            data = data[:-1].replace(b"\r", b"\n") + b"\r" if held and data else data.replace(b"\r", b"\n")
+            data = data[:-1].replace(b"\r", b"\n") + b"\r" if carried_cr and data else data.replace(b"\r", b"\n")
         if self._rest.endswith(b"\r") and data:
             self._rest = self._rest[:-1] + (b"" if data.startswith(b"\n") else b"\n")
         end = data.rfind(b"\n") + 1

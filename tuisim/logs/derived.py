@@ -140,7 +140,7 @@ def _resampled_within(values: Any, period_s: Any) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True)
-class Reckoned:
+class DeadReckoning:
     """Poses from wheel counts, each array of shape (n,)."""
 
     x_mm: FloatArray
@@ -150,7 +150,7 @@ class Reckoned:
 
 def dead_reckoning(
     left_position_deg: FloatArray, right_position_deg: FloatArray, start: Pose, robot: RobotSpec
-) -> Reckoned:
+) -> DeadReckoning:
     """Return the poses of the robot if its wheels do not slip.
 
     Between two counts the robot drives an arc, whose chord points halfway between the
@@ -169,24 +169,24 @@ def dead_reckoning(
     halfway = heading_rad - turn_rad / 2.0
     # A chord is shorter than its arc; sinc is sin(pi x) / (pi x).
     chord = (left + right) / 2.0 * np.sinc(turn_rad / (2.0 * np.pi))
-    return Reckoned(
+    return DeadReckoning(
         start.x_mm + np.cumsum(chord * np.cos(halfway)),
         start.y_mm + np.cumsum(chord * np.sin(halfway)),
         np.degrees(heading_rad),
     )
 
 
-def error_mm(reckoned: Reckoned, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
+def error_mm(reckoned: DeadReckoning, x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
     """Return the distances between the dead-reckoning positions and the true ones in mm, shape (n,)."""
     return np.hypot(reckoned.x_mm - x_mm, reckoned.y_mm - y_mm)
 
 
 NEEDED = ("left_position_deg", "right_position_deg", "x_mm", "y_mm", "heading_deg")
-RECKONED = ("reckoned_x_mm", "reckoned_y_mm", "reckoned_heading_deg", "error_mm")
+RECKONED_COLUMNS = ("reckoned_x_mm", "reckoned_y_mm", "reckoned_heading_deg", "error_mm")
 
 
 def reckoned_series(log: Log) -> list[Series]:
-    """Return a series for each name of `RECKONED`.
+    """Return a series for each name of `RECKONED_COLUMNS`.
 
     Raises:
         LogError: the log is not telemetry, or has no metadata of the robot.
@@ -205,4 +205,4 @@ def reckoned_series(log: Log) -> list[Series]:
     base = next((log.series(name) for name in log.names if len(log.series(name).rows) == log.rows), None)
     time_s = base.time_s if base else np.arange(log.rows, dtype=np.float64)
     rows = base.rows if base else np.arange(log.rows)
-    return [Series(name, time_s, values, rows) for name, values in zip(RECKONED, columns, strict=True)]
+    return [Series(name, time_s, values, rows) for name, values in zip(RECKONED_COLUMNS, columns, strict=True)]

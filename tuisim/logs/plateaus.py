@@ -406,7 +406,7 @@ _FIELDS = 6
 """Numbers of a plateau; a float holds each of them exactly."""
 
 
-def plateaus_aside(values: FloatArray, stopped: Callable[[], bool]) -> list[Plateau]:
+def plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> list[Plateau]:
     """Return the plateaus of a log, as `plateaus` does, from a process of its own.
 
     A search in a thread would hold up every key for a second.

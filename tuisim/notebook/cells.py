@@ -13,7 +13,7 @@ from typing import Any
 from tuisim.config.files import read_bytes
 from tuisim.config.program_file import ProgramSource, beside
 from tuisim.errors import ConfigError, nearest
-from tuisim.notebook.magic_line import lasting_after, parse_line
+from tuisim.notebook.magic_line import parse_line, persistent_after
 from tuisim.source import PRELUDES, Program, source_lines
 
 MAX_NOTEBOOK_BYTES = 64 << 20
@@ -94,7 +94,7 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
         ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
     """
     found: list[NotebookProgram] = []
-    title, lasting, notes = "", dict[str, Any](), list[str]()
+    title, persistent, notes = "", dict[str, Any](), list[str]()
     folder = os.path.dirname(os.path.abspath(path))
     for place, (kind, text) in enumerate(_cells(path), 1):
         if kind == "markdown":
@@ -105,14 +105,14 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
         where = f"{path}, cell {place}"
         for words in _magics(text, where):
             said = beside(path.parent, words.settings)
-            lasting = lasting_after(lasting, said)
+            persistent = persistent_after(persistent, said)
             if words.magic["cell"]:
                 number = len(found) + 1
                 # The magic's line is left empty, so that line numbers are those of the cell.
                 at = text.index("%%")
                 body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
                 prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
-                options = {**lasting, **said}
+                options = {**persistent, **said}
                 source = ProgramSource(Program(f"{path.name}#{number}", body, prelude, module_folder=folder), options)
                 found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()

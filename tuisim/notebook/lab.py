@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 class _Plan:
     """The validated settings of a cell."""
 
-    lasting: Mapping[str, Any]
+    persistent: Mapping[str, Any]
     settings: Settings
     spec: RunSpec
     files: FieldFiles
@@ -51,7 +51,7 @@ class Lab:
 
         A return value other than None is an answer; `pyState()` in the program returns all of them.
         """
-        self._lasting: Mapping[str, Any] = {}
+        self._persistent: Mapping[str, Any] = {}
         self._program: Program | None = None
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
@@ -95,7 +95,7 @@ class Lab:
         from tuisim.config.build import build_run_spec
         from tuisim.config.options import settings_of
 
-        return self._spec or build_run_spec(settings_of(self._lasting))
+        return self._spec or build_run_spec(settings_of(self._persistent))
 
     @property
     def state(self) -> dict[str, Any]:
@@ -146,7 +146,7 @@ class Lab:
         same_mat = (before.background, before.background_fit) == (
             plan.spec.world.background, plan.spec.world.background_fit)  # fmt: skip
         self._traces = self._traces if same_mat and not plan.settings.clear_trace else ()
-        self._lasting, self._program, self._spec = plan.lasting, plan.program, plan.spec
+        self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
         stage = Stage(plan.settings)
         if runs:
             self._run(plan, stage, words)
@@ -158,21 +158,21 @@ class Lab:
         from tuisim.config.build import build_run_spec
         from tuisim.config.options import settings_of
         from tuisim.config.robots import choose_robot
-        from tuisim.notebook.magic_line import lasting_after
+        from tuisim.notebook.magic_line import persistent_after
         from tuisim.runs.run_folder import field_files
         from tuisim.source import Program
 
         if isinstance(robot := words.settings.get("robot"), str):
             for note in choose_robot(robot, "-r").notes:
                 print(f"tuisim: note: {note}", file=sys.stderr)
-        lasting = lasting_after(self._lasting, words.settings)
-        settings = settings_of(lasting, words.settings)
+        persistent = persistent_after(self._persistent, words.settings)
+        settings = settings_of(persistent, words.settings)
         spec = build_run_spec(settings)
         program = self._program
         if text is not None:
             # The first line is that of the magic, so that line numbers are those of the cell.
             program = Program("cell", "\n" + text, settings.preload or prelude)
-        return _Plan(lasting, settings, spec, field_files(spec), program)
+        return _Plan(persistent, settings, spec, field_files(spec), program)
 
     def _run(self, plan: _Plan, stage: Stage, words: MagicWords) -> None:
         from tuisim.charts.world_image import pen_trace

@@ -15,7 +15,7 @@ MAX_INDEX = 1_000_000
 MIN_REFRESH_S, MAX_REFRESH_S = 0.02, 60.0
 DEFAULT_REFRESH_S = 0.2
 
-LASTING = frozenset(
+PERSISTENT = frozenset(
     {
         "background", "mats", "background_fit", "robot", "obstacles", "walls", "solid", "x_mm", "y_mm", "heading_deg",
         "light_noise", "motor_noise", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
@@ -139,9 +139,9 @@ def parse_log_line(line: str, magic: str) -> Arguments:
     return found
 
 
-def lasting_after(before: Mapping[str, Any], said: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the lasting settings after a cell that has said these settings; another mat drops `OF_THE_MAT`."""
+def persistent_after(before: Mapping[str, Any], said: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the persistent settings after a cell that has said these settings; another mat drops `OF_THE_MAT`."""
     kept = dict(before)
     if "background" in said:
         kept = {field: value for field, value in kept.items() if field not in OF_THE_MAT}
-    return {**kept, **{field: value for field, value in said.items() if field in LASTING}}
+    return {**kept, **{field: value for field, value in said.items() if field in PERSISTENT}}

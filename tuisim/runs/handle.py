@@ -160,7 +160,7 @@ class RunHandle:
         if self.ended is not None:
             return []
         # Checked before reading: all output of a child that has exited is in the pipe then.
-        gone = self._process.poll() is not None
+        exited = self._process.poll() is not None
         events = self._read_events()
         for event in events:
             match event:
@@ -183,7 +183,7 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         self._enforce_stop()
-        final = self._final_event(gone)
+        final = self._final_event(exited)
         kept = [event for event in events if not isinstance(event, Ended)]
         if final is None:
             return kept
@@ -206,12 +206,12 @@ class RunHandle:
             self.kill()
             raise
 
-    def _final_event(self, gone: bool) -> Ended | None:
+    def _final_event(self, exited: bool) -> Ended | None:
         if self._announced is not None:
-            if not gone and time.monotonic() - self._announced_at > ENDED_CHILD_S:
+            if not exited and time.monotonic() - self._announced_at > ENDED_CHILD_S:
                 end_group(self._process.pid)
-            return self._announced if gone else None
-        if not gone:
+            return self._announced if exited else None
+        if not exited:
             return None
         last = self.telemetry.last()
         tick = last.tick if last else 0

@@ -135,7 +135,7 @@ class ReplayDebugger:
             self.busy = False
             self._failed(str(error))
 
-    def beat(self) -> None:
+    def poll(self) -> None:
         """Process events; never blocks."""
         run = self._run
         if run is None:

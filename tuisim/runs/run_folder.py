@@ -163,7 +163,7 @@ def read_run(folder: Path) -> StoredRun:
     data = read_run_file(folder)
     # The intact parts of a damaged run are readable: its program, its world, and the other recording.
     telemetry, output = TelemetryView(folder, may_be_damaged=True), OutputView(folder, may_be_damaged=True)
-    actions, torn = read_actions(folder)
+    actions, cut = read_actions(folder)
     try:
         program: dict[str, Any] = {
             key: _typed(data["program"][key], str, key) for key in ("name", "path", "text", "prelude")
@@ -187,7 +187,7 @@ def read_run(folder: Path) -> StoredRun:
             tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
             end=None if data["end"] is None else _end_of(data["end"]),
             actions=actions,
-            notes=tuple(filter(None, (telemetry.note, output.note, torn, _model_note(data["spec"]["profile"])))),
+            notes=tuple(filter(None, (telemetry.note, output.note, cut, _model_note(data["spec"]["profile"])))),
             telemetry=telemetry,
             output=output,
         )

@@ -81,7 +81,7 @@ class Scheduler:
         self._order = 0
         self._alive: list[ScheduledThread] = []
         session.sleep_threaded = self.sleep_until
-        session.aside = self.spawn_daemon
+        session.spawn_daemon = self.spawn_daemon
 
     # Waiting
 

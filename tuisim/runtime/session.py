@@ -161,7 +161,7 @@ class Session:
         """Set once there is a program to debug."""
         self.sleep_threaded: Callable[[int, bool], None] | None = None
         """Set by the scheduler: blocks until a time (or a motor change) while other threads run."""
-        self.aside: Callable[[Callable[[], None]], None]
+        self.spawn_daemon: Callable[[Callable[[], None]], None]
         """Set by the scheduler: runs a function in the background while the program continues."""
 
     # What the shim calls

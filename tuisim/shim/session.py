@@ -47,5 +47,5 @@ class Session(Protocol):
     def show(self, row: str, stream: Stream) -> None:
         """Record what the brick shows; `row` has the format of `runs.brick_state`."""
 
-    def aside(self, work: Callable[[], None]) -> None:
+    def spawn_daemon(self, work: Callable[[], None]) -> None:
         """Run `work` in the background while the program continues."""

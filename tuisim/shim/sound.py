@@ -149,13 +149,13 @@ def patch_sound_module(session: Session, module: types.ModuleType, mixer: Mixer)
 
 def _patch_playing(session: Session, sound: Any, speaker: Loudspeaker) -> None:
     give_command = sound.Sound._audio_command
-    mended = session.sim.spec.profile.mend_library
+    fixes_library = session.sim.spec.profile.mend_library
 
     @wraps(give_command)
     def audio_command(self: Any, command: str, play_type: int) -> PlayedSound | None:
         if play_type not in sound.Sound.PLAY_TYPES:
             give_command(self, command, play_type)
-        if not mended:
+        if not fixes_library:
             # The library splits a command at each | before it handles quotes.
             for part in command.split("|"):
                 shlex.split(part)

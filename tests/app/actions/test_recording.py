@@ -99,11 +99,11 @@ def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     assert timeline.marks() == [(40, "break")]
     timeline.go(30)
     timeline.play(10.0)
-    assert not timeline.beat(10.2, 1.0)
+    assert not timeline.advance_playback(10.2, 1.0)
     assert timeline.at == 50
-    assert not timeline.beat(10.3, 2.0)
+    assert not timeline.advance_playback(10.3, 2.0)
     assert timeline.at == 70
-    assert timeline.beat(12.0, 0.0)
+    assert timeline.advance_playback(12.0, 0.0)
     assert not timeline.playing
     assert timeline.record() is None
 

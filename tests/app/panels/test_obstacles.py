@@ -76,7 +76,7 @@ async def test_add_type_and_remove() -> None:
         await until(pilot, lambda: boxes(app) == ())
         await pilot.pause()
         await pilot.press("delete")
-        assert "There is no obstacle to remove" in screen_text(app)
+        assert "No obstacle to remove" in screen_text(app)
 
 
 async def test_no_box_is_lost_when_two_are_added_at_once() -> None:

@@ -248,6 +248,7 @@ def test_the_bar_of_a_run_at_work_ends_at_a_round_time() -> None:
 def test_a_timeline_without_a_run_stands_still() -> None:
     timeline = Timeline()
     timeline.step(-1)
-    assert (timeline.at, timeline.record(), timeline.marks(), timeline.beat(1.0, 1.0)) == (None, None, [], False)
+    assert (timeline.at, timeline.record(), timeline.marks()) == (None, None, [])
+    assert not timeline.advance_playback(1.0, 1.0)
     with pytest.raises(ConfigError, match="no run yet"):
         find("1", timeline)

@@ -86,7 +86,7 @@ def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
 
     drawn = made.paint(VIEW, scene)
     again = made.paint(whole_field(80, 38), scene)
-    made.trace.wipe()
+    made.trace.clear()
     gone = made.paint(VIEW, scene)
 
     assert [at(drawn, 250, y) for y in (300, 340, 600, 640)] == [

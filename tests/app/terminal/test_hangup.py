@@ -154,7 +154,7 @@ def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_an
         screen = Screen(outer)
         screen.wait(b"quit")
         os.write(outer, b"\x1a")
-        screen.wait(b"No shell could")
+        screen.wait(b"cannot be suspended")
         os.kill(app.pid, signal.SIGSTOP)
         os.kill(app.pid, signal.SIGCONT)
         screen.wait(b"\x1b[?1049h")

@@ -67,7 +67,7 @@ class Line:
     ("bytes_s", "round_trip_s", "least", "most"),
     [
         pytest.param(inf, 0.002, 19, 21, id="at once"),
-        pytest.param(inf, 0.070, 19, 21, id="a little too late for the next beat"),
+        pytest.param(inf, 0.070, 19, 21, id="a little too late for the next frame"),
         # Without more than one frame on the way there would be 8.
         pytest.param(inf, 0.120, 15, 21, id="a long way"),
         pytest.param(inf, 0.400, 6, 9, id="a very long way"),

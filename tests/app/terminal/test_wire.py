@@ -75,7 +75,7 @@ async def sent_for_a_while(pilot: Pilot[Any]) -> str:
     if isinstance(app, LabApp):
         app.pacer = Pacer(app.settings.fps, clock=partial(next, count(0.0, 1.0)))
         for _ in range(BEATS):
-            app._beat()
+            app._on_frame_timer()
     # Whatever has a timer of its own is due sooner or later.
     for timer in {timer for node in pilot.app.screen.walk_children(with_self=True) for timer in node._timers}:
         if timer._callback and is_active(timer) and timer._repeat != 0:
@@ -122,11 +122,11 @@ async def test_the_analyser_at_rest_sends_nothing(tmp_path: Path) -> None:
 async def test_the_app_rests_when_nothing_happens_and_wakes_at_a_key() -> None:
     async with on_wire(LabApp(settings())) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: not is_active(app._beats))
+        await until(pilot, lambda: not is_active(app._frame_timer))
 
         await pilot.press("p")
 
-        await until(pilot, lambda: is_active(app._beats))
+        await until(pilot, lambda: is_active(app._frame_timer))
 
 
 async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -137,6 +137,6 @@ async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch
         drawn: list[bool] = []
         monkeypatch.setattr(app, "draw", lambda: drawn.append(True))
 
-        app._beat()
+        app._on_frame_timer()
 
         assert drawn

@@ -115,9 +115,9 @@ def stop_time(workspace: Workspace) -> None:
         workspace.run_controller.pause()
 
 
-def beat(workspace: Workspace) -> None:
+def advance_playback(workspace: Workspace) -> None:
     """Continue playback; a paused run that has been played to its newest instant resumes automatically."""
-    if workspace.run_controller.timeline.beat(time.monotonic(), workspace.run_controller.speed):
+    if workspace.run_controller.timeline.advance_playback(time.monotonic(), workspace.run_controller.speed):
         if workspace.run_controller.state == RunPhase.PAUSED:
             workspace.run_controller.resume()
         elif workspace.run_controller.state == RunPhase.ENDED:

@@ -26,7 +26,7 @@ from tuisim.app.terminal.cell_view import LinesView
 from tuisim.charts.text_runs import Line, cut
 from tuisim.errors import TuisimError, counted
 from tuisim.logs.bands import Band
-from tuisim.logs.plateaus import plateaus_aside
+from tuisim.logs.plateaus import plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ _SEARCHED_AT_ONCE = 20_000
 EMPTY = (
     "This log is empty. To log a value, print it with a name:",
     "    print('Colour: ' + str(value))",
-    "Then run it again. T shows the telemetry, one row per tick.",
+    "Then run again; T shows the telemetry.",
 )
 
 
@@ -416,7 +416,7 @@ class PaneView(Widget):
 
 def _find_bands(model: Model, names: list[str]) -> None:
     worker = get_current_worker()
-    model.find_bands(names, partial(plateaus_aside, stopped=lambda: worker.is_cancelled))
+    model.find_bands(names, partial(plateaus_in_subprocess, stopped=lambda: worker.is_cancelled))
 
 
 def _summary(model: Model) -> str:

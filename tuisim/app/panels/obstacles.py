@@ -172,7 +172,7 @@ class Obstacles(Vertical):
 
     def action_remove(self) -> None:
         if self.at is None:
-            self._say("There is no obstacle to remove")
+            self._say("No obstacle to remove")
             return
         self.post_message(self.Edited(partial(_replaced, self.at, ())))
 

@@ -206,7 +206,7 @@ class WorldView(PixelView):
 
     def clear_trace(self) -> None:
         """Clear the trace."""
-        self.trace.wipe()
+        self.trace.clear()
         self.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:

@@ -75,7 +75,7 @@ class ScenePainter:
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return mat, obstacles, beacon and trace."""
-        key = (view, scene.obstacles, scene.marked, scene.beacon, self.trace, self.trace.wiped)
+        key = (view, scene.obstacles, scene.marked, scene.beacon, self.trace, self.trace.clears)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
             draw_obstacles(self._ground, view, scene.obstacles, scene.marked)
@@ -255,7 +255,7 @@ class PenTrace:
         self._pieces: list[Piece] = []
         self.count = 0
         """Number of points ever added; grows with every change but clearing."""
-        self.wiped = 0
+        self.clears = 0
         """How often the trace was cleared."""
 
     def add(self, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> None:
@@ -269,10 +269,10 @@ class PenTrace:
             xs_mm, ys_mm = np.concatenate((last.xs_mm[-1:], xs_mm)), np.concatenate((last.ys_mm[-1:], ys_mm))
         self._pieces.append(Piece(xs_mm, ys_mm, rgb, width_mm))
 
-    def wipe(self) -> None:
+    def clear(self) -> None:
         """Clear the trace."""
         self._pieces.clear()
-        self.wiped += 1
+        self.clears += 1
 
     def pieces(self, first: int) -> Iterator[Piece]:
         """Return the pieces from index `first` on."""

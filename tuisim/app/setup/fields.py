@@ -295,10 +295,10 @@ def _angles(text: str) -> tuple[float, ...]:
 
 
 def _ultrasonic_fields(plan: NextRun) -> tuple[Field, ...]:
-    sonar = plan.robot_choice.spec.ultrasonic
-    fresh = sonar or plan.robot.spec.ultrasonic or UltrasonicSpec()
+    mounted = plan.robot_choice.spec.ultrasonic
+    fresh = mounted or plan.robot.spec.ultrasonic or UltrasonicSpec()
     used = _single_used(fresh.name, "ultrasonic", fresh)
-    if sonar is None:
+    if mounted is None:
         return (used,)
     labels = (
         ("x_mm", "x mm"), ("y_mm", "y mm"), ("angle_deg", "Angle °"), ("max_range_mm", "Range mm"),
@@ -312,11 +312,11 @@ def _ultrasonic_fields(plan: NextRun) -> tuple[Field, ...]:
     def fan(robot: RobotSpec) -> str:
         return " ".join(map(_shown, robot.ultrasonic.ray_angles_deg)) if robot.ultrasonic else ""
 
-    rays = _robot_field(f"{sonar.name}.ray_angles_deg", "Rays °", fan, fanned)
+    rays = _robot_field(f"{mounted.name}.ray_angles_deg", "Rays °", fan, fanned)
     return (
         used,
-        _sensor_port_field(sonar.name),
-        *(_sensor_field(sonar.name, key, label) for key, label in labels),
+        _sensor_port_field(mounted.name),
+        *(_sensor_field(mounted.name, key, label) for key, label in labels),
         rays,
     )
 

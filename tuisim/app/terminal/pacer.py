@@ -140,5 +140,5 @@ class Pacer:
         if took_s > self._round_trip_s + 2 * self._gap_s:
             self._allowed = 1
         else:
-            # At least two, or an answer that arrives just after a beat would cost the next frame.
+            # At least two, or an answer that arrives just after a frame timer would cost the next frame.
             self._allowed = min(self._allowed + 1, MAX_ON_THE_WAY, 2 + int(self._round_trip_s / self._gap_s))

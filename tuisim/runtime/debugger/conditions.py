@@ -224,8 +224,8 @@ class Watcher:
                     color = sensor
                     return lambda: seen(reading(color, sim.instant(), session.field))
                 case UltrasonicSpec():
-                    sonar = sensor
-                    return lambda: float(ultrasonic.reading_mm(sonar, sim.instant(), sim.spec.world))
+                    distance_sensor = sensor
+                    return lambda: float(ultrasonic.reading_mm(distance_sensor, sim.instant(), sim.spec.world))
                 case GyroSpec():
                     measure = gyro.rate_dps if part == "rate" else gyro.angle_deg
                     return lambda: float(measure(sim.instant()))

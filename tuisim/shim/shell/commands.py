@@ -104,9 +104,9 @@ class Shell:
         status = 0
         for job in jobs:
             steps = self._job(job, streams, folder)
-            if job.aside:
+            if job.background:
                 Running(self.session, steps, several=len(job.pipelines) > 1)
-            status = 0 if job.aside else (yield from steps)
+            status = 0 if job.background else (yield from steps)
         return status
 
     def program(self, words: Sequence[str], streams: Streams, folder: str) -> Steps:
@@ -183,7 +183,7 @@ class Running:
         """Whether they wait for their standard input."""
         self.go_on()
         if several and self.status is None:
-            session.aside(self._finish)
+            session.spawn_daemon(self._finish)
 
     def go_on(self) -> None:
         """Run what is due."""

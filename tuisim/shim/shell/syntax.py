@@ -56,7 +56,7 @@ class Job:
     """Pipelines that run in sequence, each depending on its operator and the exit status before it."""
 
     pipelines: tuple[Pipeline, ...]
-    aside: bool = False
+    background: bool = False
     """Whether the shell does not wait for it (`&`)."""
 
 

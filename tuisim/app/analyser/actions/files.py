@@ -123,8 +123,8 @@ def report(screen: LogScreen) -> None:
 
 def _write_report(opened: OpenedLog, target: Path, names: Sequence[str]) -> None:
     from tuisim.analysis.report import write_report
-    from tuisim.logs.plateaus import plateaus, plateaus_aside
+    from tuisim.logs.plateaus import plateaus, plateaus_in_subprocess
 
     worker = get_current_worker()
-    aside = partial(plateaus_aside, stopped=lambda: worker.is_cancelled)
-    write_report(opened, target, names, aside if opened.log.rows > _MANY_ROWS else plateaus)
+    search = partial(plateaus_in_subprocess, stopped=lambda: worker.is_cancelled)
+    write_report(opened, target, names, search if opened.log.rows > _MANY_ROWS else plateaus)
