@@ -75,7 +75,7 @@ ROWS: dict[str, Row] = {
         "(None, None, None)",
         setup="from ev3dev2.led import Leds\nleds = Leds()",
     ),
-    "`Led.trigger`, read": Row(
+    "reading `Led.trigger`": Row(
         "light.trigger",
         "'default-on'",
         "ValueError: too many values to unpack",
@@ -89,9 +89,9 @@ ROWS: dict[str, Row] = {
         "[round(value) for value in (*c.lab, *c.hls)]", "[9342, 0, 0, 0, 255, 0]", setup="c = ColorSensor()"
     ),
     "`play_song()` with `/`": same("ms(lambda: Sound().play_song([('C4', 'q/2')], delay=0))", "1000"),
-    "`play_note()` in lower case": same("Sound().play_note('a4', 1)", "ValueError: invalid note (a4)"),
+    "`play_note()` with a lower-case note": same("Sound().play_note('a4', 1)", "ValueError: invalid note (a4)"),
     "`GyroSensor.circle_angle()`": same("g.circle_angle()", "360", setup="g = GyroSensor(); g._init_angle = 270"),
-    "`MotorSet.run_to_rel_pos()` and its like": same(
+    "`MotorSet.run_to_rel_pos()` and similar methods": same(
         "t.run_to_rel_pos(position_sp=90, speed_sp=200), t.wait_while('running'), t.left_motor.position",
         "(None, None, 180)",
         "plain",
