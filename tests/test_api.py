@@ -48,7 +48,7 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
 
 
 @pytest.mark.parametrize(
-    ("choices", "told"),
+    ("choices", "expected"),
     [
         pytest.param({"backgrond": "Loop"}, "did you mean background", id="unknown argument"),
         pytest.param({"background": "Nope"}, "no such mat", id="unknown mat"),
@@ -57,8 +57,8 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
         pytest.param({"timeout_s": 0}, "must be above 0", id="no time"),
     ],
 )
-def test_bad_choices_are_refused(choices: dict[str, Any], told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_bad_choices_are_refused(choices: dict[str, Any], expected: str) -> None:
+    with pytest.raises(ConfigError, match=expected):
         tuisim.simulate(LOGGER, **choices)
 
 

@@ -36,22 +36,22 @@ TABLES = {
 }
 
 
-def told(name: str) -> bool:
-    """Whether a name stands in backticks; a key of several letters may also stand in a list of them."""
+def is_documented(name: str) -> bool:
+    """Whether a name is in backticks; a key of several letters may also be in a list of keys."""
     return name in QUOTED | WORDS or (len(name) > 1 and re.search(rf"[ |]{re.escape(name)}[ ,|]", README) is not None)
 
 
 @pytest.mark.parametrize("what", TABLES)
-def test_everything_in_a_table_is_told(what: str) -> None:
-    assert [name for name in TABLES[what] if not told(name)] == []
+def test_everything_in_a_table_is_documented(what: str) -> None:
+    assert [name for name in TABLES[what] if not is_documented(name)] == []
 
 
-def test_every_sensor_of_a_robots_file_is_told() -> None:
+def test_every_sensor_of_a_robot_file_is_documented() -> None:
     found = {mount.key: re.search(rf"^{mount.key} =|\[{mount.key}[.\]]", README, re.MULTILINE) for mount in MOUNTS}
     assert [key for key, place in found.items() if place is None] == []
 
 
-def test_where_things_are_added_is_there() -> None:
+def test_places_to_add_things_exist() -> None:
     sources = [*(ROOT / "tuisim").rglob("*.py"), *(ROOT / "backgrounds").glob("*.py")]
     code = "\n".join(path.read_text(encoding="utf-8") for path in sources)
     assert len(HOW_TO_ADD) > 8
@@ -77,14 +77,14 @@ def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(tmp_path: P
         assert (done.returncode, done.stdout.splitlines()[0]) == (0, "Colour: 100.0"), done.stderr
 
 
-def test_logs_and_runs_are_read_as_told(tmp_path: Path, here: Command) -> None:
+def test_logs_and_runs_are_read_as_documented(tmp_path: Path, here: Command) -> None:
     assert here("run", "log_greys", "--export", "greys.csv", "--export", "greys.jsonl").returncode == 0
     names: dict[str, Any] = {}
     exec(block("python", "read_log("), names)
     assert names["df"]["variable"].unique().tolist() == ["Colour"]
     ends = [line for line in block("python", "load_run(").splitlines() if "load_run(" in line]
-    for told_of in re.findall(r"run(?:\.\w+)+", ends[0].partition("#")[2]):
-        assert eval(told_of, names) is not None, told_of
+    for expression in re.findall(r"run(?:\.\w+)+", ends[0].partition("#")[2]):
+        assert eval(expression, names) is not None, expression
     beside = {path.name for path in tmp_path.glob("greys.*.json")}
     assert beside == {"greys.csv.json", "greys.jsonl.json"}
     assert all(name.replace("greys", "NAME") in QUOTED for name in beside)

@@ -12,7 +12,7 @@ class Frame(App[None]):
     def __init__(self) -> None:
         super().__init__()
         self.slider = Slider(128, id="it")
-        self.told: list[int] = []
+        self.values: list[int] = []
 
     def compose(self) -> ComposeResult:
         """The slider alone."""
@@ -20,11 +20,11 @@ class Frame(App[None]):
 
     def on_slider_changed(self, message: Slider.Changed) -> None:
         """Keep what it says."""
-        self.told.append(message.value)
+        self.values.append(message.value)
 
 
 @pytest.mark.parametrize(
-    ("keys", "told"),
+    ("keys", "expected"),
     [
         (["right", "right", "left"], [1, 2, 1]),
         (["left"], []),
@@ -34,14 +34,14 @@ class Frame(App[None]):
     ],
     ids=["one", "not below 0", "ten", "not above the end", "ends"],
 )
-async def test_keys(keys: list[str], told: list[int]) -> None:
+async def test_keys(keys: list[str], expected: list[int]) -> None:
     async with Frame().run_test(size=(40, 3)) as pilot:
         app = pilot.app
         assert isinstance(app, Frame)
         app.slider.focus()
         await pilot.press(*keys)
         await pilot.pause()
-        assert app.told == told
+        assert app.values == expected
 
 
 async def test_a_click_and_a_drag_past_the_end() -> None:
@@ -56,7 +56,7 @@ async def test_a_click_and_a_drag_past_the_end() -> None:
         assert app.slider.value == 128
         await pilot.hover(Slider, offset=(0, 0))
         assert app.slider.value == 128
-        assert app.told == [64, 64, 128, 128]
+        assert app.values == [64, 64, 128, 128]
 
 
 async def test_setting_it_tells_nobody_and_keeps_to_the_ends() -> None:
@@ -65,7 +65,7 @@ async def test_setting_it_tells_nobody_and_keeps_to_the_ends() -> None:
         assert isinstance(app, Frame)
         app.slider.value = 500
         await pilot.pause()
-        assert (app.slider.value, app.told) == (128, [])
+        assert (app.slider.value, app.values) == (128, [])
 
 
 @pytest.mark.parametrize("value", [0, 1, 64, 127, 128])

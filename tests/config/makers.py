@@ -42,25 +42,25 @@ presses = st.builds(
 
 @st.composite
 def robots(draw: st.DrawFn) -> RobotSpec:
-    """Robots of every make: with and without each sensor, on any ports, eyes in any order."""
+    """Robots of every make: with and without each sensor, on any ports, colour sensors in any order."""
     ports = draw(st.permutations(INPUT_PORTS))
-    eyes = draw(st.lists(st.sampled_from(["left", "right", "middle", "A_1"]), unique=True, max_size=2))
+    sensor_names = draw(st.lists(st.sampled_from(["left", "right", "middle", "A_1"]), unique=True, max_size=2))
     colors = tuple(
         ColorSensorSpec(
             name, port, draw(places), draw(places), draw(st.integers(2, 100)), draw(st.sampled_from(STRATEGIES))
         )
-        for name, port in zip(eyes, ports, strict=False)
+        for name, port in zip(sensor_names, ports, strict=False)
     )
-    sonar = st.builds(UltrasonicSpec, port=st.just(ports[2]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360),
+    ultrasonic = st.builds(UltrasonicSpec, port=st.just(ports[2]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360),
                       max_range_mm=mm(1, 1e4), noise_mm=mm(0, 1000),
                       ray_angles_deg=st.lists(mm(-360, 360), min_size=1, max_size=5).map(tuple))  # fmt: skip
     left, right, *free = draw(st.permutations(OUTPUT_PORTS))
     motors = draw(st.lists(st.sampled_from(free), unique=True, max_size=2))
     spare = ports[len(colors) : 2]
-    further = draw(st.sampled_from(["touch", "sonar", "none"])) if spare else "none"
+    further = draw(st.sampled_from(["touch", "ultrasonic", "none"])) if spare else "none"
     touch = st.builds(TouchSpec, st.just("bumper"), st.sampled_from(spare or ["in1"]), places, places, mm(1, 500))
     second = st.builds(UltrasonicSpec, st.just("back"), st.sampled_from(spare or ["in1"]), places, places)
-    eye = st.builds(InfraredSpec, port=st.just(ports[3]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360))
+    infrared = st.builds(InfraredSpec, port=st.just(ports[3]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360))
     at_last = draw(st.sampled_from(["gyro", "infrared", "none"]))
     return RobotSpec(
         name=draw(names),
@@ -72,11 +72,11 @@ def robots(draw: st.DrawFn) -> RobotSpec:
         left_port=left,
         right_port=right,
         color_sensors=colors,
-        ultrasonic=draw(st.none() | sonar),
+        ultrasonic=draw(st.none() | ultrasonic),
         gyro=GyroSpec(port=ports[3]) if at_last == "gyro" else None,
         pen=draw(pens),
         extra_motors=tuple(MotorSpec(port, draw(st.sampled_from(MOTOR_KINDS))) for port in motors),
-        extra_ultrasonics=(draw(second),) if further == "sonar" else (),
+        extra_ultrasonics=(draw(second),) if further == "ultrasonic" else (),
         touch_sensors=(draw(touch),) if further == "touch" else (),
-        infrared=draw(eye) if at_last == "infrared" else None,
+        infrared=draw(infrared) if at_last == "infrared" else None,
     )

@@ -242,7 +242,7 @@ def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(words:
 
 
 @pytest.mark.parametrize(
-    ("text", "eyes"),
+    ("text", "xs_mm"),
     [
         ("wheel_diameter_mm = 40", [-60.0, 60.0]),
         ("[color_sensors.left]\ndiameter_mm = 30", [-60.0, 60.0]),
@@ -251,10 +251,10 @@ def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(words:
     ids=["wheels", "diameter", "place"],
 )
 def test_eyes_that_a_file_places_stay_on_a_mat_with_places_of_its_own(
-    text: str, eyes: list[float], write: Write
+    text: str, xs_mm: list[float], write: Write
 ) -> None:
     spec = build_run_spec(Settings(background="Radial_grey", robot=write("mine.toml", text)))
-    assert [sensor.x_mm for sensor in spec.robot.color_sensors] == eyes
+    assert [sensor.x_mm for sensor in spec.robot.color_sensors] == xs_mm
 
 
 @pytest.mark.parametrize(

@@ -129,7 +129,7 @@ def test_the_switch_works_in_a_magic_line_from_the_programs_folder(here: Command
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "expected"),
     [
         pytest.param("-b FLL_2018_Into_Orbit", "save it as FLL2018.jpg or FLL_2018_Into_Orbit.png in {own}", id="none"),
         pytest.param("-b FLL_2018_into_orbit", "did you mean FLL_2018_Into_Orbit?", id="a wrong name"),
@@ -139,13 +139,13 @@ def test_the_switch_works_in_a_magic_line_from_the_programs_folder(here: Command
         pytest.param("-b text --mats pics", "text.png: is not a readable image", id="no picture"),
     ],
 )
-def test_what_is_not_there_is_told(words: str, told: str, here: Command, own: Path, tmp_path: Path) -> None:
+def test_what_is_not_there_is_told(words: str, expected: str, here: Command, own: Path, tmp_path: Path) -> None:
     paint(tmp_path / "pics" / "maze.png")
     (tmp_path / "pics" / "text.png").write_text("no picture")
     (tmp_path / "p.py").write_text(READ)
     done = here("run", "p.py", *words.split())
     assert (done.returncode, done.stdout) == (2, "")
-    assert told.format(own=own) in done.stderr
+    assert expected.format(own=own) in done.stderr
 
 
 def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Path) -> None:
@@ -167,7 +167,7 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize(
-    ("folder", "told"),
+    ("folder", "expected"),
     [
         pytest.param("nowhere", "nowhere: cannot be read: No such file", id="missing"),
         pytest.param("p.py", "p.py: cannot be read: Not a directory", id="a file"),
@@ -176,7 +176,7 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
     ],
 )
 def test_a_folder_without_originals_changes_nothing(
-    folder: str, told: str, here: Command, own: Path, tmp_path: Path
+    folder: str, expected: str, here: Command, own: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "p.py").write_text(READ)
     (tmp_path / "empty").mkdir()
@@ -184,4 +184,4 @@ def test_a_folder_without_originals_changes_nothing(
     (tmp_path / "broken" / "_square.png").write_text("no picture")
     done = here("backgrounds", "--use-originals", folder)
     assert (done.returncode, done.stdout, own.exists()) == (2, "", False)
-    assert told in done.stderr
+    assert expected in done.stderr

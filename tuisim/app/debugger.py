@@ -358,7 +358,7 @@ class AppDebugger:
             self._position = here
             timeline.go(paused.tick)
         elif timeline.at != self._wanted.tick:
-            # The user has gone elsewhere meanwhile.
+            # The user has gone to another instant since.
             self._wanted = None
             return
         self._set_paused(PauseView(paused, inspected, True))

@@ -35,7 +35,7 @@ Now = TypeVar("Now")
 
 
 class Act(Message):
-    """Posted when a word that stands for an action was clicked."""
+    """Posted when a word that triggers an action was clicked."""
 
     def __init__(self, action: str) -> None:
         super().__init__()
@@ -59,7 +59,7 @@ class Action(Generic[Host, Now]):
     shown_key: str = ""
     """Display name of the key, if it differs from that of `key`."""
     footer_key: str = ""
-    """Display name in the footer, if that entry stands for two keys."""
+    """Display name in the footer, if that entry represents two keys."""
 
     @property
     def key_label(self) -> str:

@@ -311,7 +311,7 @@ class RunController(RunView):
             early = paused.tick < branch.tick
             self._send(protocol.SetSpeed(self.speed))
             if branch.of.pressed_at(branch.tick + 1) and not early:
-                # Buttons that were held then have been released meanwhile.
+                # Buttons that were held then have been released since.
                 self._send(protocol.SetButtons(()))
             if branch.then is not None and not early:
                 self._send(branch.then)

@@ -59,7 +59,7 @@ def wav_of(tones: Sequence[Sequence[float]]) -> bytes:
 
 
 class Voice:
-    """Plays one sound at a time; sounds that arrive meanwhile are only shown.
+    """Plays one sound at a time; sounds that arrive while it plays are only shown.
 
     Args:
         quiet: Never make a sound.

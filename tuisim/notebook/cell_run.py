@@ -163,7 +163,7 @@ class _Follower:
         self._stopping = False
 
     def follow(self) -> None:
-        """Block until the run ends; relay its output and events meanwhile."""
+        """Block until the run ends; relay its output and events until then."""
         handle, interruption = self._handle, self._interruption
         # Before anything is printed, so that the order of a cell's outputs does not depend on the program's speed.
         self._screen.draw_if_due()

@@ -389,7 +389,7 @@ def compact_run(run: StoredRun) -> tuple[int, int]:
 
 
 def bytes_in(folder: Path) -> int:
-    """Return the total size of a run's files in bytes; files deleted meanwhile do not count."""
+    """Return the total size of a run's files in bytes; files deleted during the call do not count."""
     found = 0
     with suppress(FileNotFoundError), os.scandir(folder) as entries:
         for entry in entries:

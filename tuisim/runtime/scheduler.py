@@ -19,7 +19,7 @@ from tuisim.runtime.limits import limit_memory
 from tuisim.runtime.session import Deadlock, Session, StopProgram
 
 MOST_THREADS = 1000
-"""Each is a real thread, and a machine has only so many."""
+"""Each is a real thread, and a machine limits their number."""
 FOREVER = -1
 """A wait without a time limit."""
 

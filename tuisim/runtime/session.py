@@ -222,7 +222,7 @@ class Session:
             again: The caller only waits again after the timeout.
         """
         if again and not self.flags & THREADS:
-            # Nothing else can change meanwhile, so many short waits are equivalent to one long wait.
+            # Nothing else can change during the wait, so many short waits are equivalent to one long wait.
             timeout_ns *= max(1, REPEATED_WAIT_NS // max(1, timeout_ns))
         self._pass(self.now + timeout_ns, True)
 

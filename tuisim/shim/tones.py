@@ -140,7 +140,7 @@ def beep_heard(words: Sequence[str]) -> Heard:
     try:
         tones = parse_beep(words)
     except ValueError as error:
-        # The real program prints its usage where nobody reads it, and makes no sound.
+        # The real program prints its usage to a stream that nobody reads, and makes no sound.
         return Heard(f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),), refused=True)
     if not words:
         text = "[beep]"

@@ -12,7 +12,7 @@ DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "expected"),
     [
         ("import time\nfrom ev3dev2.button import Button\n", True),
         ("from ev3dev2 import button\n", True),
@@ -21,8 +21,8 @@ DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
         ("from ev3dev2.motor import MoveTank\nbutton = 3\n", False),
     ],
 )
-def test_a_program_that_looks_at_the_buttons(text: str, told: bool) -> None:
-    assert looks_at_buttons(text) == told
+def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:
+    assert looks_at_buttons(text) == expected
 
 
 @pytest.mark.usefixtures("home")
@@ -32,5 +32,5 @@ async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
         for _ in range(2):
             await pilot.press("R")
             await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words)
-        told = [notice for notice in notices(app) if notice.startswith("The program")]
-        assert told == ["The program uses the brick's display: K opens its panel"]
+        expected = [notice for notice in notices(app) if notice.startswith("The program")]
+        assert expected == ["The program uses the brick's display: K opens its panel"]

@@ -21,8 +21,8 @@ from tuisim.errors import ConfigError
 BOX = (Obstacle(1, 2, 3, 4),)
 
 
-def eyes(plan: NextRun) -> list[float]:
-    return [eye.x_mm for eye in plan.spec.robot.color_sensors]
+def sensor_xs_mm(plan: NextRun) -> list[float]:
+    return [sensor.x_mm for sensor in plan.spec.robot.color_sensors]
 
 
 def edited(plan: NextRun, field: str, text: str) -> NextRun:
@@ -31,9 +31,9 @@ def edited(plan: NextRun, field: str, text: str) -> NextRun:
     return edit.write(plan, text)
 
 
-# What is done after starting on Grey_bands, and where the eyes are then.
+# What is done after starting on Grey_bands, and where the sensors are then.
 WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
-    "a mat moves the eyes": ([lambda p: plans.with_mat(p, "Radial_grey")], [-60, 60]),
+    "a mat moves the sensors": ([lambda p: plans.with_mat(p, "Radial_grey")], [-60, 60]),
     "and they go back": (
         [lambda p: plans.with_mat(p, "Radial_grey"), lambda p: plans.with_mat(p, "Loop")],
         [-20, 20],
@@ -54,7 +54,7 @@ WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
         ],
         [-20, 20],
     ),
-    "an eye that was placed there stays": (
+    "a sensor that was placed there stays": (
         [
             lambda p: plans.with_mat(p, "Radial_grey"),
             lambda p: edited(p, "left.x_mm", "-33"),
@@ -79,7 +79,7 @@ def test_sensor_places_never_leak(steps: list[Callable[[NextRun], NextRun]], exp
     plan = plan_of(Settings(background="Grey_bands"))
     for step in steps:
         plan = step(plan)
-    assert eyes(plan) == expected
+    assert sensor_xs_mm(plan) == expected
 
 
 @pytest.mark.parametrize("name", list(ROBOTS))
@@ -146,7 +146,7 @@ def test_a_plan_of_a_run_of_which_nothing_else_is_known() -> None:
     spec = build_run_spec(Settings(background="Radial_grey", x_mm=5, light_noise=3))
     plan = plan_of_spec(spec)
     assert plan.spec == spec
-    assert eyes(plans.with_mat(plan, "Loop")) == [-20, 20]
+    assert sensor_xs_mm(plans.with_mat(plan, "Loop")) == [-20, 20]
 
 
 # Field, what is typed, and what is said.

@@ -21,7 +21,7 @@ def test_the_message_fits_in_every_size() -> None:
 
 
 @pytest.mark.parametrize(
-    ("size", "told"),
+    ("size", "expected"),
     [
         (Size(20, 5), "Too small: tuisim needs 60×18, this terminal has 20×5."),
         (
@@ -33,8 +33,8 @@ def test_the_message_fits_in_every_size() -> None:
     ],
     ids=["20x5", "59x40", "12x3", "9x1"],
 )
-def test_the_message_says_as_much_as_fits(size: Size, told: str) -> None:
-    assert " ".join(message_lines(size)) == told
+def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
+    assert " ".join(message_lines(size)) == expected
 
 
 @pytest.mark.parametrize("size", [(20, 5), (1, 1), (300, 8)], ids=["20x5", "1x1", "300x8"])

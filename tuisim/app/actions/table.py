@@ -149,7 +149,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
         Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
-        Action("home", "m", "Move the robot back to its start pose", ROBOT, robot.home, footer="start"),
+        Action("home", "m", "Move the robot to its start pose", ROBOT, robot.home, footer="start"),
         Action("random", "j", "Move the robot to a random pose", ROBOT, robot.random_place),
         Action("poses", "P", "Saved poses: go to, save, delete", ROBOT, robot.saved_poses),
         Action("robot", "r", "Choose a robot", ROBOT, robot.choose_robot, _can_change_world, "robot"),

@@ -247,7 +247,7 @@ class MatPicker(ListDialog):
         self.call_after_refresh(self._show_again)
 
     def _show_again(self) -> None:
-        # Show the current selection: it may have changed meanwhile.
+        # Show the current selection: it may have changed since the call was scheduled.
         self._show(self._shown)
 
     @on(OptionList.OptionHighlighted)

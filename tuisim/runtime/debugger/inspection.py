@@ -76,7 +76,7 @@ class Looker:
 
         Args:
             wanted: The request.
-            go_on: Called when a command arrives meanwhile; False cancels the values.
+            go_on: Called when a command arrives before it returns; False cancels the values.
         """
         tops = sys._current_frames()
         place = self._place(wanted, tops)

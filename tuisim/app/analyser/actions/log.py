@@ -63,7 +63,7 @@ def derived(screen: LogScreen) -> None:
         if model is of:
             apply_definition(model, text, log)
         else:
-            # The log may have grown meanwhile.
+            # The log may have grown while it was computed.
             derive(model, text)
         screen.redraw_chart()
         screen.update()

@@ -44,7 +44,7 @@ def _search(screen: LogScreen, text: str) -> None:
     thresholds = thresholds_of(text, log)
 
     def found(result: tuple[Log, tuple[Threshold, ...], list[Event]]) -> None:
-        # The log may have grown meanwhile: search again.
+        # The log may have grown during the search: search again.
         screen.model.events.set(*result)
         screen.choose(0)
         screen.update()
