@@ -24,7 +24,7 @@ HELP_MAY_NOT_LOAD = ("numpy", "pandas", "pyarrow", "PIL", "plotext", "textual", 
 CHILD_MAY_NOT_LOAD = (*HELP_MAY_NOT_LOAD, "argparse", "click")
 PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
 """Files of the commands that may write to the terminal by themselves."""
-TEXTUAL_CALLS = re.compile(r"compose|render|(on|action)_\w+")
+TEXTUAL_CALLS = re.compile(r"compose|content|render|(on|action)_\w+")
 UNFINISHED = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" + "Error"))
 PLACES = "|".join(f"/{place}/" for place in ("work", "farm", "root", "home"))
 LEFT_OPEN = re.compile(rf"\b({UNFINISHED})\b|(?<![\w.$])({PLACES})")
@@ -134,7 +134,7 @@ def public(body: list[ast.stmt], prefix: str = "") -> Iterator[tuple[str, Functi
 
 def explained_elsewhere(node: ast.stmt) -> bool:
     """Whether this is a member of a Protocol that repeats another class, the setter of a property, or a method that
-    Textual calls by its name, which says when."""
+    Textual or a dialog calls by its name, which says when."""
     match node:
         case (
             ast.FunctionDef(name=name, args=ast.arguments(args=[ast.arg(arg="self"), *_]))

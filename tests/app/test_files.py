@@ -46,7 +46,7 @@ def with_file(path: Path, **changes: Any) -> AppSettings:
     """What the command makes of `tuisim PROGRAM`."""
     chosen = Settings(background="Grey_bands", **changes)
     given = Program(path.name, path.read_text(), "preloaded", str(path))
-    return AppSettings(spec=build_run_spec(chosen), settings=chosen, program=given, background="Grey_bands")
+    return AppSettings(spec=build_run_spec(chosen), settings=chosen, program=given)
 
 
 async def open_path(pilot: Pilot[Any], path: str) -> LabApp:
@@ -288,7 +288,6 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
         settings=prepared.settings,
         world_file=prepared.world.path,
         program=prepared.program,
-        background=prepared.spec.world.background,
     )
     async with LabApp(opened).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

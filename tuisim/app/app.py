@@ -72,8 +72,6 @@ class AppSettings:
     """None opens the app without a program."""
     replay: StoredRun | None = None
     """A stored run to show; spec and program are its own."""
-    background: str = "Empty_Map"
-    """Name of the mat; `spec.world.background` agrees with it."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
     """Ids of panels shown whatever the size of the terminal."""
     panels_off: frozenset[str] = field(default_factory=frozenset)
@@ -107,8 +105,6 @@ class LabApp(PanelMessages):
     """
 
     CSS_PATH = "tuisim.tcss"
-    TITLE = "tuisim"
-    NOTIFICATION_TIMEOUT = 4
     ACTIONS = ACTIONS
     BINDINGS: ClassVar[list[BindingType]] = [
         *key_bindings(ACTIONS.values()),
@@ -307,7 +303,7 @@ class LabApp(PanelMessages):
     def _process_rows(self, news: RunUpdate) -> None:
         self.brick_hint.shown(news.rows)
         if self.panel_area.output:
-            self.panel_area.output.add(news.rows, news.skipped)
+            self.panel_area.output.add(news.rows)
         self._append(sample_series(news.rows))
 
     def _append(self, series: Series) -> None:
@@ -393,7 +389,6 @@ class LabApp(PanelMessages):
         return Situation(runs.state, runs.program is not None, bool(runs.run_id), runs.in_past, self.debugger.is_away)
 
     def action_target(self) -> Workspace:
-        """Return what the functions behind the keys get."""
         return self.workspace
 
     def state(self) -> AppState:
@@ -460,7 +455,6 @@ class LabApp(PanelMessages):
         self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
-        """The user answered `input()`."""
         self.run_controller.answer(message.text)
         self.action_leave_field()
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tuisim import protocol
 from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import UserAction
@@ -77,8 +79,6 @@ class Branch:
 
 def first_difference(before: Recording, now: Recording, tick: int) -> int | None:
     """Return the first tick, up to one that both runs have reached, at which their worlds differ; or None."""
-    import numpy as np
-
     old, new = (run.telemetry.array()[: tick + 1] for run in (before, now))
     both = min(len(old), len(new))
     differs = np.zeros(both, bool)

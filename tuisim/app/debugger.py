@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
-from tuisim.app.snapshot import DebugState, PauseView, RunPhase
-from tuisim.atomic import make_private_folder, replacing
+from tuisim.app.editor.text_file import file_of_program, write_json
+from tuisim.app.editor.text_lines import same_lines
+from tuisim.app.snapshot import DebugState, PauseView
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
@@ -38,12 +37,6 @@ class Kept:
     watches: tuple[str, ...] = ()
 
 
-def _file(program: str) -> Path:
-    from tuisim.config.folders import home_folder
-
-    return home_folder() / FOLDER / f"{hashlib.sha256(program.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
-
-
 def load_kept(program: str) -> Kept:
     """Return what is stored for a program; empty if there is nothing or it cannot be read.
 
@@ -51,7 +44,7 @@ def load_kept(program: str) -> Kept:
         program: Its path, or its name if it is in no file.
     """
     try:
-        data = json.loads(_file(program).read_bytes())
+        data = json.loads(file_of_program(FOLDER, program).read_bytes())
         breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
         return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, ConfigError):
@@ -64,12 +57,10 @@ def keep(program: str, kept: Kept) -> None:
     Raises:
         ConfigError: they cannot be written.
     """
-    file = _file(program)
+    file = file_of_program(FOLDER, program)
     data = {"program": program, "breaks": [one.written() for one in kept.breaks], "watches": list(kept.watches)}
     try:
-        make_private_folder(file.parent)
-        with replacing(file, owner_only=True) as handle:
-            handle.write(json.dumps(data).encode("ascii"))
+        write_json(file, data)
     except OSError as error:
         raise ConfigError(f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)) from None
 
@@ -80,9 +71,7 @@ def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Br
     shift = len(new) - len(old)
     if not shift:
         return breaks
-    same = 0
-    while same < min(len(old), len(new)) and old[same] == new[same]:
-        same += 1
+    same = same_lines(old, new)
     kept = []
     for one in breaks:
         line = break_line_of(one)
@@ -452,8 +441,7 @@ class AppDebugger:
         elif self._replay_debugger.busy:
             self._more_back += count
         else:
-            if self._run_controller.in_run and self._run_controller.state != RunPhase.PAUSED:
-                self._run_controller.pause()
+            self._run_controller.pause()
             self._open_panels()
             self._position, self._wanted = None, None
             count, self._more_back = count + self._more_back, 0

@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import numpy.typing as npt
+
 from tuisim.app.snapshot import telemetry_traces
 from tuisim.charts.world_image import pen_points_mm
 from tuisim.core.field import Field
@@ -13,11 +16,9 @@ from tuisim.core.spec import RobotSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.runs.records import OutputRow
 from tuisim.runs.samples import samples_of
+from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.timeline import Timeline
     from tuisim.runs.recording import Recording
@@ -66,8 +67,6 @@ class Feed:
 
     def chart_series(self, mat: Field) -> Series:
         """Return telemetry traces of the ticks since the last call; of a long stretch, only the first part."""
-        from tuisim.runs.views import instant_of
-
         run = self.recording
         count = run.telemetry.count
         stride = max(1, (count - self._charted) // POINTS_OF_A_RUN)
@@ -86,8 +85,6 @@ class Feed:
 
     def trace_points(self) -> Points:
         """Return where the pen drew since the last call."""
-        import numpy as np
-
         records = self.recording.telemetry.array()[self._traced :]
         if not len(records):
             return [], []
@@ -105,8 +102,6 @@ class Feed:
 
 def trace_until(run: Recording, tick: int) -> Points:
     """Return where the pen of a run had drawn by the end of a tick, thinned in the same way for all ticks."""
-    import numpy as np
-
     records = run.telemetry.array()
     stride = max(1, len(records) // TRACE_POINTS_A_FEED)
     records = records[: tick + 1]
@@ -121,8 +116,6 @@ def trace_until(run: Recording, tick: int) -> Points:
 
 def _jumps(records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None) -> npt.NDArray[np.int64]:
     """Count the placements of the robot up to each record."""
-    import numpy as np
-
     before_x, before_y = before_mm or (np.nan, np.nan)
     way = np.hypot(np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y))
     # NaN, before the first record, counts as a jump, so that the traces of two runs are not joined.
@@ -133,8 +126,6 @@ def _pen_points(
     records: np.ndarray[Any, Any], robot: RobotSpec
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
     """Return where the pen was at each record (NaN where it was up) and whether it was up."""
-    import numpy as np
-
     xs, ys = pen_points_mm(robot, records)
     lifted = (records["flags"] & FLAG_PEN_DOWN) == 0
     xs[lifted] = ys[lifted] = np.nan
@@ -142,8 +133,6 @@ def _pen_points(
 
 
 def _with_gaps(xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: npt.NDArray[np.int64]) -> Points:
-    import numpy as np
-
     gaps = np.flatnonzero(np.diff(jumps, prepend=0))
     return np.insert(xs, gaps, np.nan).tolist(), np.insert(ys, gaps, np.nan).tolist()
 

@@ -12,6 +12,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
+from textual.reactive import reactive
 from textual.widget import Widget
 from textual.widgets import Input, Label, Static
 
@@ -39,11 +40,22 @@ def typed_number(text: str, error: type[ConfigError]) -> float:
         raise error(f"must be a number, got {text.strip()[:20]!r}") from None
 
 
-class Choice(Widget, can_focus=True):
+class _Control(Widget, can_focus=True):
+    """A widget that looks different while it has the focus."""
+
+    ALLOW_SELECT = False
+
+    def on_focus(self) -> None:
+        self.refresh()
+
+    def on_blur(self) -> None:
+        self.refresh()
+
+
+class Choice(_Control):
     """One of several words, changed by ← → or a click."""
 
     DEFAULT_CSS = "Choice { height: 1; width: 1fr; }"
-    ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("left", "step(-1)", "Before", show=False),
         Binding("right,enter,space", "step(1)", "Next", show=False),
@@ -56,23 +68,10 @@ class Choice(Widget, can_focus=True):
         choice: Choice
         by: int
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._word = ""
-
-    @property
-    def value(self) -> str:
-        """The word shown; setting it posts no message."""
-        return self._word
-
-    @value.setter
-    def value(self, word: str) -> None:
-        if word != self._word:
-            self._word = word
-            self.refresh()
+    value = reactive("")
+    """The word shown; setting it posts no message."""
 
     def action_step(self, by: int) -> None:
-        """Ask for the choice `by` steps further on."""
         self.post_message(self.Stepped(self, by))
 
     def on_click(self, event: events.Click) -> None:
@@ -80,17 +79,35 @@ class Choice(Widget, can_focus=True):
         event.stop()
         self.action_step(-1 if event.x == 0 else 1)
 
-    def on_focus(self) -> None:
-        self.refresh()
-
-    def on_blur(self) -> None:
-        self.refresh()
-
     def render(self) -> Text:
-        line = Text(f"‹ {self._word}", no_wrap=True, end="")
+        line = Text(f"‹ {self.value}", no_wrap=True, end="")
         line.truncate(max(self.size.width - 2, 1), overflow="ellipsis")
         line.append(" ›")
         return line
+
+
+class EntryPanel(Vertical):
+    """A panel with text fields, each applied by Enter and when it loses the focus, and a last line for errors."""
+
+    USE: ClassVar[str] = ""
+    """The last line while there is no error."""
+
+    @on(Input.Submitted)
+    def _submitted(self, event: Input.Submitted) -> None:
+        event.stop()
+        self._apply(event.input)
+
+    def on_descendant_blur(self, event: events.DescendantBlur) -> None:
+        if isinstance(event.widget, Input) and not event.widget.disabled:
+            self._apply(event.widget)
+
+    def _apply(self, entry: Input) -> None:
+        """Apply the value of a field, or say why it is invalid."""
+
+    def say(self, wrong: str) -> None:
+        """Show an error; empty removes it."""
+        self.query_one("#message", Static).update(wrong or self.USE)
+        self.set_class(bool(wrong), "-wrong")
 
 
 class Row(Vertical):
@@ -193,7 +210,7 @@ class NumberInput(Input):
 STEP, LONG_STEP = 1, 10
 
 
-class Slider(Widget, can_focus=True):
+class Slider(_Control):
     """One row with a knob on a bar.
 
     Args:
@@ -202,7 +219,6 @@ class Slider(Widget, can_focus=True):
     """
 
     DEFAULT_CSS = "Slider { height: 1; width: 1fr; min-width: 6; }"
-    ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {"slider--filled", "slider--empty", "slider--knob"}
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("left", f"move({-STEP})", "Less", show=False),
@@ -227,32 +243,26 @@ class Slider(Widget, can_focus=True):
             """The slider, so that handlers can select it by id."""
             return self.slider
 
+    value = reactive(0)
+    """The number; setting it posts no message."""
+
     def __init__(self, maximum: int, id: str) -> None:  # noqa: A002 (as every widget's)
         super().__init__(id=id)
         self.maximum = maximum
-        self._value = 0
         self.dragging = False
 
-    @property
-    def value(self) -> int:
-        """The number; setting it posts no message."""
-        return self._value
-
-    @value.setter
-    def value(self, value: int) -> None:
-        value = min(max(value, 0), self.maximum)
-        if value != self._value:
-            self._value = value
-            self.refresh()
+    def validate_value(self, value: int) -> int:
+        """Return the nearest possible number."""
+        return min(max(value, 0), self.maximum)
 
     def _choose(self, value: int) -> None:
-        before = self._value
+        before = self.value
         self.value = value
-        if self._value != before:
-            self.post_message(self.Changed(self, self._value, not self.dragging))
+        if self.value != before:
+            self.post_message(self.Changed(self, self.value, not self.dragging))
 
     def action_move(self, step: int) -> None:
-        self._choose(self._value + step)
+        self._choose(self.value + step)
 
     def action_put(self, value: int) -> None:
         self._choose(value)
@@ -261,7 +271,7 @@ class Slider(Widget, can_focus=True):
         self._choose(self.maximum)
 
     def _knob(self) -> int:
-        return round(self._value / self.maximum * (self.size.width - 1))
+        return round(self.value / self.maximum * (self.size.width - 1))
 
     def _under(self, event: events.MouseEvent) -> int:
         last = max(self.size.width - 1, 1)
@@ -294,21 +304,15 @@ class Slider(Widget, can_focus=True):
 
     def _let_go(self) -> None:
         self.dragging = False
-        self.post_message(self.Changed(self, self._value))
+        self.post_message(self.Changed(self, self.value))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         event.stop()
-        self._choose(self._value + STEP)
+        self._choose(self.value + STEP)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
         event.stop()
-        self._choose(self._value - STEP)
-
-    def on_focus(self) -> None:
-        self.refresh()
-
-    def on_blur(self) -> None:
-        self.refresh()
+        self._choose(self.value - STEP)
 
     def render(self) -> Text:
         knob, width = self._knob(), self.size.width

@@ -34,12 +34,11 @@ Host = TypeVar("Host")
 Now = TypeVar("Now")
 
 
+@dataclass
 class Act(Message):
     """Posted when a word that triggers an action was clicked."""
 
-    def __init__(self, action: str) -> None:
-        super().__init__()
-        self.action = action
+    action: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,11 +206,21 @@ def _key(action: Action[Any, Any]) -> str:
     return action.footer_key or action.key_label
 
 
-class KeyFooter(Widget):
+class ActionWords(Widget):
+    """A widget with words that stand for actions, named in their style; a click runs one."""
+
+    ALLOW_SELECT = False
+
+    def on_click(self, event: events.Click) -> None:
+        if name := event.style.meta.get(ACT):
+            event.stop()
+            self.post_message(Act(name))
+
+
+class KeyFooter(ActionWords):
     """The bottom row of the screen."""
 
     DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
-    ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--failed", "footer--off"}
 
     def __init__(self) -> None:
@@ -261,11 +270,6 @@ class KeyFooter(Widget):
         name = "footer--failed" if self._failed else "footer--status"
         line.append(status, self.get_component_rich_style(name, partial=True))
         return line
-
-    def on_click(self, event: events.Click) -> None:
-        if name := event.style.meta.get(ACT):
-            event.stop()
-            self.post_message(Act(name))
 
     def _word_style(self, action: Action[Any, Any]) -> Style:
         return self.get_component_rich_style("footer--off", partial=True) if action.id in self._off else Style()
@@ -360,7 +364,6 @@ class KeyHelp(Dialog[None]):
         self._groups = groups
 
     def content(self) -> ComposeResult:
-        """Return the text, scrolled if necessary."""
         with VerticalScroll():
             yield Static(self._start, classes="start", markup=False)
             yield _KeyTable(self._groups)

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.app import background
 from tuisim.app.setup import next_run as plans
-from tuisim.app.setup.mat import mat_key, prepare_mat
+from tuisim.app.setup.mat import Mat, blank_mat, mat_key, prepare_mat, prepare_mat_of
 from tuisim.app.setup.next_run import NextRun, plan_of_run, with_arguments
 from tuisim.app.snapshot import end_label
+from tuisim.config.files import means_file
 from tuisim.config.options import Settings
 from tuisim.errors import LogError, TuisimError
 from tuisim.runs.handle import program_again
+from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 if TYPE_CHECKING:
@@ -24,10 +26,8 @@ if TYPE_CHECKING:
     from tuisim.app.render.mat import Pixels
     from tuisim.app.run_controller import RunController
     from tuisim.app.services import AppServices
-    from tuisim.app.setup.mat import Mat
     from tuisim.core.spec import RunSpec
     from tuisim.runs.run_folder import StoredRun
-    from tuisim.source import Program
 
 NOT_NOW = "Not available during a run: S stops it"
 
@@ -109,11 +109,8 @@ class Loader:
         self._preparing = False
         self._app.complain(error)
         run_controller = self._run_controller
-        if (
-            self._good is not None
-            and not run_controller.in_run
-            and mat_key(run_controller.next_run.spec) == mat_key(spec)
-        ):
+        is_wanted = mat_key(run_controller.next_run.spec) == mat_key(spec)
+        if self._good is not None and is_wanted and not run_controller.in_run:
             plan, run_controller.mat = self._good
             self._load(plan, run_controller.program)
 
@@ -266,7 +263,7 @@ class Loader:
         run_controller, words = self._run_controller, self._run_controller.next_run.words
         paths = [Path(run_controller.program.path)] if run_controller.program and run_controller.program.path else []
         paths += [self.world_file, *self._world_refers] if self.world_file else []
-        paths += [Path(word).expanduser() for word in words.values() if _is_file_word(word)]
+        paths += [Path(word).expanduser() for word in words.values() if means_file(word)]
         self._watch.follow(dict.fromkeys(paths))
 
     def saved(self, path: Path) -> None:
@@ -295,10 +292,8 @@ class Loader:
                     self._changed_in_run.append(path)
                     self._app.say(f"{path.name} changed on disk: reloaded when the run ends")
             return
-        changed, self._changed_in_run = (
-            [*self._changed_in_run, *(path for path in changed if path not in self._changed_in_run)],
-            [],
-        )
+        changed = [*dict.fromkeys((*self._changed_in_run, *changed))]
+        self._changed_in_run = []
         for path in changed:
             if not conflicts(path):
                 self.reload(path)
@@ -325,9 +320,7 @@ class Loader:
             self._read_world(path)
             self._apply_changed(_differences(before, self._world_settings), program)
             return True
-        fields = [
-            field for field, word in plan.words.items() if _is_file_word(word) and Path(word).expanduser() == path
-        ]
+        fields = [field for field, word in plan.words.items() if means_file(word) and Path(word).expanduser() == path]
         for field in fields:
             self.set_next_run(plans.with_choices(plan, {field: plan.words[field]}))
         if path in self._world_refers and str(path) == plan.spec.world.background:
@@ -426,12 +419,6 @@ def _panels_in(said: Mapping[str, Any]) -> dict[str, bool]:
     return {**dict.fromkeys(said.get("panels_on", ()), True), **dict.fromkeys(said.get("panels_off", ()), False)}
 
 
-def _is_file_word(word: str) -> bool:
-    from tuisim.config.files import means_file
-
-    return means_file(word)
-
-
 def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a file that have changed; removed ones get their default."""
     bare = Settings()
@@ -497,9 +484,6 @@ def program_of(run: StoredRun) -> Program:
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:
     """Return a run with its mat, or with a blank one and the reason for that. Reads both."""
-    from tuisim.app.setup.mat import blank_mat, prepare_mat_of
-    from tuisim.runs.store import RunStore
-
     run = RunStore().load_run(word) if isinstance(word, str) else word
     if not run.telemetry.count:
         raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))

@@ -51,12 +51,11 @@ class PanelArea(Container):
     class Rearranged(Message):
         """Posted when panels were shown, hidden or moved."""
 
+    @dataclass
     class Added(Message):
         """Posted when a panel was mounted."""
 
-        def __init__(self, panel: str) -> None:
-            super().__init__()
-            self.panel = panel
+        panel: str
 
     def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
         super().__init__(id="panel-area")
@@ -69,7 +68,6 @@ class PanelArea(Container):
         """Id of the maximized panel, empty for none."""
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
-        self._left_out: tuple[str, ...] = ()
 
     # A hidden panel is still fed; one that was never shown is None.
 
@@ -160,12 +158,12 @@ class PanelArea(Container):
                 styles = self._panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
-        self._left_out = arrangement.left_out
         self.post_message(self.Rearranged())
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:
             widget = cast(Widget, PANELS[panel].load()())
+            widget.border_title = PANELS[panel].title
             widget.add_class("panel")
             self.panels[panel] = widget
             self.mount(widget)

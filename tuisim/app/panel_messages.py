@@ -69,7 +69,6 @@ class PanelMessages(ActionHost, TerminalApp):
         self.call_later(self.situation_changed)
 
     def on_descendant_blur(self) -> None:
-        """Update the footer: other keys may be available."""
         self.call_later(self.situation_changed)
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
@@ -101,18 +100,15 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def mark_box(self) -> None:
         """Show in the world which obstacle is selected, and whether the mouse draws obstacles."""
-        on = self.workspace.panel_area.shown("obstacles")
-        if world := self.workspace.panel_area.world:
-            world.edit_boxes(
-                on, self.workspace.panel_area.obstacles.at if on and self.workspace.panel_area.obstacles else None
-            )
+        area = self.workspace.panel_area
+        on = area.shown("obstacles")
+        if area.world:
+            area.world.edit_boxes(on, area.obstacles.at if on and area.obstacles else None)
 
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
-        if (
-            self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
-            and self.workspace.panel_area.obstacles
-        ):
-            self.workspace.panel_area.obstacles.mark(message.index)
+        panel = self.workspace.panel_area.obstacles
+        if self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and panel:
+            panel.mark(message.index)
 
     def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
         self.workspace.debugger.toggle_line(message.line)
@@ -124,11 +120,10 @@ class PanelMessages(ActionHost, TerminalApp):
         self.workspace.debugger.choose_thread()
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
-        if message.buttons <= self.workspace.run_controller.pressed or (
-            self.workspace.run_controller.in_run and not self.workspace.run_controller.in_past
-        ):
-            self.workspace.run_controller.press(message.buttons)
-        elif self.workspace.run_controller.in_run:
+        runs = self.workspace.run_controller
+        if message.buttons <= runs.pressed or (runs.in_run and not runs.in_past):
+            runs.press(message.buttons)
+        elif runs.in_run:
             self.notify("The brick's buttons work only in the present: end returns to it", timeout=3)
         else:
             self.notify("The brick's buttons work only while a program runs: R runs it", timeout=3)

@@ -17,8 +17,11 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.protocol import RunState
+from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recording import Recording
 from tuisim.runs.records import OutputRow
+from tuisim.runs.store import RunStore
+from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
     from tuisim.app.branch import Branch
@@ -85,7 +88,6 @@ class RunView:
     def __init__(self, program: Program | None, next_run: NextRun, speed: float) -> None:
         self.program = program
         self.next_run = next_run
-        """The settings of the next run."""
         self.home: Pose = self.next_run.spec.world.start
         """The pose that `back to start` uses."""
         self.speed = speed
@@ -203,8 +205,6 @@ class RunView:
         recording = self.timeline.recording
         if record is None or recording is None:
             return self._still, 0, self.next_run.spec.robot.pen.down
-        from tuisim.runs.views import instant_of
-
         noise = recording.noise_at(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is where the next run will have it.
         down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.next_run.spec.robot.pen.down
@@ -239,13 +239,7 @@ ROWS_A_POLL = 4000
 
 
 class RunController(RunView):
-    """The current run, or the robot before a run.
-
-    Args:
-        program: The program that runs next; None for none yet.
-        next_run: The settings of the next run.
-        speed: 1.0 real time, 0 as fast as possible.
-    """
+    """The current run, or the robot before a run; its arguments are those of `RunView`."""
 
     def __init__(self, program: Program | None, next_run: NextRun, speed: float) -> None:
         super().__init__(program, next_run, speed)
@@ -264,19 +258,18 @@ class RunController(RunView):
         Raises:
             TuisimError: the run cannot be started.
         """
-        from tuisim.runs.handle import RunOptions, start_run
-
         if self.program is None or self.in_run:
             return
-        options = RunOptions(
-            live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True,
-            breaks=breaks, hold_at=FIRST_LINE if paused else None,
-        )  # fmt: skip
         program = replace(self.program, arguments=self.next_run.settings.arguments)
+        options = replace(self._options, breaks=breaks, hold_at=FIRST_LINE if paused else None)
         run = start_run(program, self.next_run.spec, options)
         self.close()
         self.run, self._end = run, None
         self._show_recording(Recording(self.run))
+
+    @property
+    def _options(self) -> RunOptions:
+        return RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)
 
     def branch(self, branch: Branch) -> None:
         """Repeat a run as fast as possible up to an instant of it, and continue from there. Ends the current run.
@@ -284,14 +277,9 @@ class RunController(RunView):
         Raises:
             TuisimError: the run cannot be started.
         """
-        from tuisim.runs.handle import RunOptions, start_run
-        from tuisim.runs.store import RunStore
-
         noise = branch.noise
-        options = RunOptions(
-            live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True,
-            answers=branch.of.answers, actions=branch.script(), hold_at=(branch.tick, protocol.BEFORE_NEXT_TICK),
-        )  # fmt: skip
+        hold_at = branch.tick, protocol.BEFORE_NEXT_TICK
+        options = replace(self._options, answers=branch.of.answers, actions=branch.script(), hold_at=hold_at)
         run = start_run(branch.runs, branch.of.spec, options)
         RunStore().tag(run.run_id, branch.tags)
         self.close()
@@ -342,8 +330,9 @@ class RunController(RunView):
             self.run.close()
 
     def pause(self) -> None:
-        """Pause the run."""
-        self._send(protocol.Pause())
+        """Pause the run, unless there is none or it is paused already."""
+        if self.in_run and self.state is not RunPhase.PAUSED:
+            self._send(protocol.Pause())
 
     def resume(self) -> None:
         """Resume the run."""
@@ -489,7 +478,7 @@ class RunController(RunView):
                     spoken.append(event)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
-        return RunUpdate(rows, 0, ended, tuple(spoken), prompt, branched, tuple(pauses))
+        return RunUpdate(rows, ended, tuple(spoken), prompt, branched, tuple(pauses))
 
 
 @dataclass(frozen=True, slots=True)
@@ -497,8 +486,6 @@ class RunUpdate:
     """What has come from the run since the last poll."""
 
     rows: list[OutputRow]
-    skipped: int = 0
-    """Rows left out before `rows`."""
     ended: protocol.Ended | None = None
     """Set once, in the poll that receives the end."""
     spoken: tuple[protocol.Spoke, ...] = ()

@@ -120,11 +120,6 @@ class DebugState:
     busy: bool = False
     """Whether a past instant is still being computed."""
 
-    @property
-    def is_away(self) -> bool:
-        """Whether a past instant is viewed, or will be once it is computed."""
-        return self.looks_back or self.busy
-
 
 @dataclass(frozen=True, slots=True)
 class Situation:

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tuisim.core.comparison import COMPARE, Comparison, comparison_form, comparison_in, finite_number, spelled
 from tuisim.errors import ConfigError
 from tuisim.runs.brick_state import BrickState, face_after
@@ -55,6 +57,11 @@ class Timeline:
         return self.recording.newest if self.recording else -1
 
     @property
+    def tick(self) -> int:
+        """Tick in view: the newest one for now."""
+        return self.newest if self.at is None else self.at
+
+    @property
     def tick_hz(self) -> int:
         """Ticks per second."""
         return self.recording.spec.profile.tick_hz if self.recording else 1
@@ -62,7 +69,7 @@ class Timeline:
     @property
     def time_s(self) -> float:
         """Simulated time in view."""
-        return max(0, self.newest if self.at is None else self.at) / self.tick_hz
+        return max(0, self.tick) / self.tick_hz
 
     @property
     def playing(self) -> bool:
@@ -79,7 +86,7 @@ class Timeline:
         """Return what the brick shows at the instant in view."""
         if self.recording is None:
             return BrickState()
-        numbers = self.recording.rows.face_numbers(self.newest if self.at is None else self.at)
+        numbers = self.recording.rows.face_numbers(self.tick)
         if numbers != self._face_numbers:
             self._face_numbers = numbers
             self._face = face_after(BrickState(), [self.recording.rows.row(number) for number in numbers])
@@ -101,7 +108,7 @@ class Timeline:
 
     def step(self, ticks: int) -> None:
         """Go forward by a number of ticks; negative goes back."""
-        self.go((self.newest if self.at is None else self.at) + ticks)
+        self.go(self.tick + ticks)
 
     def play(self, wall_s: float) -> None:
         """Start to play the recording from the instant in view."""
@@ -200,9 +207,8 @@ def find(text: str, timeline: Timeline) -> int:
         return _within(round(float(seconds[1]) * timeline.tick_hz), recording)
     if not back and word == "tick" and rest.isdecimal():
         return _within(int(rest), recording)
-    at = recording.newest if timeline.at is None else timeline.at
     # Nothing can be found after the newest instant.
-    search = _Search(recording, at, bool(back) or at >= recording.newest)
+    search = _Search(recording, timeline.tick, bool(back) or timeline.tick >= recording.newest)
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
     if word == "sample" and re.fullmatch(_NAME, rest):
@@ -223,8 +229,6 @@ def _within(tick: int, recording: Recording) -> int:
 
 
 def _line(search: _Search, line: int) -> int:
-    import numpy as np
-
     lines = len(source_lines(search.recording.program.text))
     if not 1 <= line <= lines:
         raise ConfigError(f"the program has no line {line}", f"1 … {lines}")

@@ -66,7 +66,6 @@ def open_app(**given: Any) -> int:
         replay=replay,
         world_file=prepared.world.path if prepared.world else None,
         program=prepared.program,
-        background=prepared.spec.world.background,
         panels_on=frozenset(settings.panels_on),
         panels_off=frozenset(settings.panels_off),
         autorun=settings.autorun,

@@ -9,8 +9,7 @@ import pytest
 from textual.app import App
 from textual.screen import Screen
 
-from tuisim.app.dialogs.breakpoints import BreaksDialog, WatchesDialog
-from tuisim.app.dialogs.poses import SavedPoses
+from tuisim.app.dialogs.entries import BreaksDialog, SavedPoses, WatchesDialog
 from tuisim.app.dialogs.runs import Differences
 from tuisim.app.setup.poses import save_pose
 from tuisim.breakpoints import parse_break

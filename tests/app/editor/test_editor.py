@@ -34,7 +34,7 @@ def own(path: Path, text: str = TEXT) -> AppSettings:
         path.write_text(text)
     program = read_program(path).program
     spec = build_run_spec(Settings(background="Empty_Map"))
-    return AppSettings(spec=spec, program=program, background="Empty_Map")
+    return AppSettings(spec=spec, program=program)
 
 
 async def begun(pilot: Pilot[Any]) -> tuple[LabApp, Code]:

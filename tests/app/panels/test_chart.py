@@ -17,7 +17,7 @@ def fill(chart: Chart) -> None:
 
 
 def rows(app: PanelApp[Chart]) -> list[str]:
-    app.panel._draw_now()
+    app.panel._redraw()
     return screen_text(app)
 
 

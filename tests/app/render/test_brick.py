@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tuisim.app.render.brick import draw_brick, led_name, shrunk
+from tuisim.app.render.brick import draw_brick, led_name
+from tuisim.app.render.mat import shrunk
 from tuisim.protocol import BUTTONS
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
 

@@ -24,7 +24,7 @@ from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
 from tests.app.app_help import ready, settings
 from tests.running import PATIENCE_S
 from tuisim.app.app import LabApp
-from tuisim.app.dialogs.poses import SavedPoses
+from tuisim.app.dialogs.entries import SavedPoses
 from tuisim.app.terminal.terminal_app import ResilientOutput, TerminalApp
 from tuisim.core.geometry import Pose
 

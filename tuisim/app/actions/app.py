@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tuisim.app.keys import KeyHelp, key_groups
 from tuisim.app.panels import PANELS
 
 if TYPE_CHECKING:
@@ -20,17 +21,11 @@ def toggle(workspace: Workspace, panel: str) -> None:
 
 def enlarge(workspace: Workspace) -> None:
     """Maximize the panel with the focus, or restore the layout."""
-    focused = workspace.panel_area.screen.focused
-    panel = next(
-        (
-            name
-            for name, widget in workspace.panel_area.panels.items()
-            if focused and widget in focused.ancestors_with_self
-        ),
-        "",
-    )
-    if panel or workspace.panel_area.alone:
-        workspace.panel_area.maximize("" if workspace.panel_area.alone else panel)
+    area = workspace.panel_area
+    around = area.screen.focused.ancestors_with_self if area.screen.focused else []
+    panel = next((name for name, widget in area.panels.items() if widget in around), "")
+    if panel or area.alone:
+        area.maximize("" if area.alone else panel)
     else:
         workspace.app.say("No panel has the focus: press tab, or click a panel")
 
@@ -68,7 +63,6 @@ _EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("
 def show_help(workspace: Workspace) -> None:
     """Show every key of the app, of the editor, and those that work everywhere."""
     from tuisim.app.editor.area import EDITOR_KEYS
-    from tuisim.app.keys import KeyHelp, key_groups
 
     groups = key_groups(action for action in workspace.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES

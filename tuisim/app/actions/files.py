@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,6 +10,8 @@ from typing import TYPE_CHECKING
 from tuisim.app import background
 from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.setup import next_run as plans
+from tuisim.config.obstacles import save_obstacles as write
+from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
@@ -40,33 +43,29 @@ def open_path(workspace: Workspace, path: str) -> None:
 
 def save_robot(workspace: Workspace) -> None:
     """Ask for a file and write the robot to it."""
-    from tuisim.app.dialogs.save import SaveDialog
     from tuisim.config.robots import save_robot as write
 
-    def save(path: Path) -> None:
-        write(plans.robot_to_save(workspace.run_controller.next_run), path)
-        workspace.loader.saved(path)
-
-    proposed = workspace.run_controller.next_run.words.get("robot", "")
-    name = (
-        proposed if proposed.endswith(".toml") else f"{workspace.run_controller.next_run.robot_choice.spec.name}.toml"
-    )
-    workspace.app.push_screen(SaveDialog("robot", name, save))
+    runs = workspace.run_controller
+    name = f"{runs.next_run.robot_choice.spec.name}.toml"
+    _save(workspace, "robot", name, lambda path: write(plans.robot_to_save(runs.next_run), path))
 
 
 def save_obstacles(workspace: Workspace) -> None:
     """Ask for a file and write the obstacles to it."""
+    runs = workspace.run_controller
+    _save(workspace, "obstacles", "obstacles.toml", lambda path: write(runs.next_run.spec.world.obstacles, path))
+
+
+def _save(workspace: Workspace, what: str, name: str, write: Callable[[Path], None]) -> None:
     from tuisim.app.dialogs.save import SaveDialog
-    from tuisim.config.obstacles import save_obstacles as write
 
     def save(path: Path) -> None:
-        write(workspace.run_controller.next_run.spec.world.obstacles, path)
+        write(path)
         workspace.loader.saved(path)
 
-    proposed = workspace.run_controller.next_run.words.get("obstacles", "")
-    workspace.app.push_screen(
-        SaveDialog("obstacles", proposed if proposed.endswith(".toml") else "obstacles.toml", save)
-    )
+    # The file that it came from, if it came from one.
+    word = workspace.run_controller.next_run.words.get(what, "")
+    workspace.app.push_screen(SaveDialog(what, word if word.endswith(".toml") else name, save))
 
 
 def save_world(workspace: Workspace) -> None:
@@ -133,7 +132,6 @@ def compare(workspace: Workspace) -> None:
 def _diff(run_id: str, other_id: str) -> tuple[str, RunDiff]:
     """Return the name of the other run, and the differences. Reads both runs."""
     from tuisim.runs.diff import diff_runs
-    from tuisim.runs.store import RunStore
 
     store = RunStore()
     other = store.load_run(other_id)

@@ -44,7 +44,8 @@ def pause(workspace: Workspace) -> None:
         workspace.run_controller.pause()
 
 
-def _change_speed(workspace: Workspace, by: int) -> None:
+def change_speed(workspace: Workspace, by: int) -> None:
+    """Go to a higher or lower speed, by a number of steps."""
     speed = workspace.run_controller.speed
     at = SPEEDS.index(speed) if speed in SPEEDS else min(range(6), key=lambda i: abs(SPEEDS[i] - speed))
     to = at + by
@@ -55,29 +56,9 @@ def _change_speed(workspace: Workspace, by: int) -> None:
     workspace.app.situation_changed()
 
 
-def slower(workspace: Workspace) -> None:
-    """Go one step down in speed."""
-    _change_speed(workspace, -1)
-
-
-def faster(workspace: Workspace) -> None:
-    """Go one step up in speed."""
-    _change_speed(workspace, 1)
-
-
-def next_line(workspace: Workspace) -> None:
-    """Step to the next line, over calls."""
-    workspace.debugger.step(protocol.LineStep.OVER)
-
-
-def step_into(workspace: Workspace) -> None:
-    """Step to the next line, into calls."""
-    workspace.debugger.step(protocol.LineStep.INTO)
-
-
-def step_out(workspace: Workspace) -> None:
-    """Continue until the current function returns."""
-    workspace.debugger.step(protocol.LineStep.OUT)
+def step(workspace: Workspace, how: protocol.LineStep) -> None:
+    """Step to the next line: over calls, into calls, or out of the current function."""
+    workspace.debugger.step(how)
 
 
 def line_back(workspace: Workspace) -> None:
@@ -108,7 +89,7 @@ def _cursor_line(workspace: Workspace) -> int:
 
 def list_breaks(workspace: Workspace) -> None:
     """Show the dialog of the breakpoints."""
-    from tuisim.app.dialogs.breakpoints import BreaksDialog
+    from tuisim.app.dialogs.entries import BreaksDialog
 
     workspace.app.push_screen(
         BreaksDialog(workspace.debugger.breaks, workspace.run_controller.spec.robot, workspace.debugger.set_breaks)
@@ -117,6 +98,6 @@ def list_breaks(workspace: Workspace) -> None:
 
 def list_watches(workspace: Workspace) -> None:
     """Show the dialog of the watches."""
-    from tuisim.app.dialogs.breakpoints import WatchesDialog
+    from tuisim.app.dialogs.entries import WatchesDialog
 
     workspace.app.push_screen(WatchesDialog(workspace.debugger.watches, workspace.debugger.set_watches))

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from random import Random
 from typing import TYPE_CHECKING
 
 from tuisim.app.actions.app import world_panel
 from tuisim.app.setup import next_run as plans
-from tuisim.app.setup.next_run import NextRun
+from tuisim.config.mats import mats
 from tuisim.core.geometry import Pose
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
-    from tuisim.app.dialogs.chooser import Chooser
     from tuisim.app.workspace import Workspace
 
 
@@ -41,7 +40,6 @@ def clear_trace(workspace: Workspace) -> None:
 
 def random_place(workspace: Workspace) -> None:
     """Put the robot at a random place on the field."""
-    from random import Random
 
     from tuisim.app.setup.poses import random_pose
 
@@ -53,7 +51,7 @@ def random_place(workspace: Workspace) -> None:
 
 def saved_poses(workspace: Workspace) -> None:
     """Show the dialog of the saved poses."""
-    from tuisim.app.dialogs.poses import SavedPoses
+    from tuisim.app.dialogs.entries import SavedPoses
 
     def go(pose: Pose | None) -> None:
         if pose:
@@ -65,7 +63,6 @@ def saved_poses(workspace: Workspace) -> None:
 def choose_mat(workspace: Workspace) -> None:
     """Ask for a mat and set it."""
     from tuisim.app.dialogs.chooser import MatPicker
-    from tuisim.config.mats import mats
 
     folder = workspace.run_controller.next_run.settings.mats
     try:
@@ -81,33 +78,21 @@ def choose_mat(workspace: Workspace) -> None:
     workspace.app.push_screen(MatPicker(workspace.run_controller.spec.world.background, known, folder), lay)
 
 
-def _choose(workspace: Workspace, chooser: Chooser, change: Callable[[NextRun, str], NextRun]) -> None:
+def choose(workspace: Workspace, what: str) -> None:
+    """Ask for a robot, a profile or a set of obstacles, and apply the choice to the plan."""
+    from tuisim.app.dialogs.chooser import obstacle_chooser, profile_chooser, robot_chooser
+
+    chooser, change = {
+        "robot": (robot_chooser, plans.with_robot),
+        "profile": (profile_chooser, plans.with_profile),
+        "obstacles": (obstacle_chooser, plans.with_obstacle_set),
+    }[what]
+
     def chosen(word: str | None) -> None:
         if word:
             workspace.loader.attempt(lambda plan: change(plan, word))
 
-    workspace.app.push_screen(chooser, chosen)
-
-
-def choose_robot(workspace: Workspace) -> None:
-    """Ask for a robot."""
-    from tuisim.app.dialogs.chooser import robot_chooser
-
-    _choose(workspace, robot_chooser(workspace.run_controller.next_run), plans.with_robot)
-
-
-def choose_profile(workspace: Workspace) -> None:
-    """Ask for a profile."""
-    from tuisim.app.dialogs.chooser import profile_chooser
-
-    _choose(workspace, profile_chooser(workspace.run_controller.next_run), plans.with_profile)
-
-
-def choose_obstacles(workspace: Workspace) -> None:
-    """Ask for a set of obstacles."""
-    from tuisim.app.dialogs.chooser import obstacle_chooser
-
-    _choose(workspace, obstacle_chooser(workspace.run_controller.next_run), plans.with_obstacle_set)
+    workspace.app.push_screen(chooser(workspace.run_controller.next_run), chosen)
 
 
 def reset_robot(workspace: Workspace) -> None:

@@ -16,6 +16,7 @@ from tuisim.app.keys import Action
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
 from tuisim.app.workspace import Workspace
+from tuisim.protocol import LineStep
 
 PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
 FILES, APP = "Files", "App"
@@ -105,10 +106,11 @@ def _can_debug(now: Situation) -> str:
 
 def _debugs() -> list[LabAction]:
     can = _can_debug
+    over, into, out = (partial(program.step, how=how) for how in (LineStep.OVER, LineStep.INTO, LineStep.OUT))
     return [
-        Action("next-line", "n", "Step over: next line", DEBUG, program.next_line, can, "next"),
-        Action("step-into", "s", "Step into a function call", DEBUG, program.step_into, can, "into"),
-        Action("step-out", "u", "Step out of this function", DEBUG, program.step_out, can, "out"),
+        Action("next-line", "n", "Step over: next line", DEBUG, over, can, "next"),
+        Action("step-into", "s", "Step into a function call", DEBUG, into, can, "into"),
+        Action("step-out", "u", "Step out of this function", DEBUG, out, can, "out"),
         Action("line-back", "N", "Step back one line", DEBUG, program.line_back, _can_look_back, "line back"),
         Action("break", "t", "Toggle a breakpoint on the cursor's line", DEBUG, program.toggle_break, can, "break"),
         Action("breaks", "T", "Breakpoints: add, edit, disable, delete", DEBUG, program.list_breaks, can),
@@ -121,18 +123,22 @@ def _travels() -> list[LabAction]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
     go = time_travel
+    second_back, second_on = (partial(go.seconds, by=by) for by in (-1, 1))
+    sample_before, next_sample = (partial(go.to_sample, words=words) for words in ("sample back", "sample"))
     return [
         Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, go.ten_ticks, _can_step),
         Action("now", "end", "Return to the present (also escape)", TIME, go.to_now, _can_come_back, "now"),
-        Action("second-back", "less_than_sign", "One second back", TIME, go.second_back, back, "1 s", "", keys),
-        Action("second-on", "greater_than_sign", "One second forward", TIME, go.second_on, on),
-        Action("sample-before", "left_parenthesis", "Previous sample", TIME, go.sample_before, back),
-        Action("next-sample", "right_parenthesis", "Next sample", TIME, go.next_sample, on),
+        Action("second-back", "less_than_sign", "One second back", TIME, second_back, back, "1 s", "", keys),
+        Action("second-on", "greater_than_sign", "One second forward", TIME, second_on, on),
+        Action("sample-before", "left_parenthesis", "Previous sample", TIME, sample_before, back),
+        Action("next-sample", "right_parenthesis", "Next sample", TIME, next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
         Action("branch", "y", "Branch from this instant", TIME, go.branch_here, _can_branch, "branch"),
         Action("start-of-run", "home", "Start of the run", TIME, go.to_start, back),
     ]
 
+
+_SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
 # The footer shows the actions in this order, as far as they fit; `help` and `quit` always.
 ACTIONS: Mapping[str, LabAction] = {
@@ -152,13 +158,13 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("home", "m", "Move the robot to its start pose", ROBOT, robot.home, footer="start"),
         Action("random", "j", "Move the robot to a random pose", ROBOT, robot.random_place),
         Action("poses", "P", "Saved poses: go to, save, delete", ROBOT, robot.saved_poses),
-        Action("robot", "r", "Choose a robot", ROBOT, robot.choose_robot, _can_change_world, "robot"),
+        Action("robot", "r", "Choose a robot", ROBOT, partial(robot.choose, what="robot"), _can_change_world, "robot"),
         Action("reset-robot", "ctrl+n", "Undo changes to the robot", ROBOT, robot.reset_robot, _can_change_world),
-        Action("obstacles", "k", "Choose obstacles", ROBOT, robot.choose_obstacles, _can_change_world),
-        Action("profile", "F", "Choose a profile", ROBOT, robot.choose_profile, _can_change_world),
+        Action("obstacles", "k", "Choose obstacles", ROBOT, partial(robot.choose, what="obstacles"), _can_change_world),
+        Action("profile", "F", "Choose a profile", ROBOT, partial(robot.choose, what="profile"), _can_change_world),
         Action("pen", "p", "Pen up or down", ROBOT, robot.pen, footer="pen"),
-        Action("slower", "left_square_bracket", "Slower", PROGRAM, program.slower, footer="speed", footer_key="[ ]"),
-        Action("faster", "right_square_bracket", "Faster", PROGRAM, program.faster),
+        Action("slower", "left_square_bracket", "Slower", PROGRAM, _SLOWER, footer="speed", footer_key="[ ]"),
+        Action("faster", "right_square_bracket", "Faster", PROGRAM, _FASTER),
         Action("compare", "equals_sign", "Compare this run with another", FILES, files.compare, _can_look_back),
         Action("runs", "h", "Open a stored run", FILES, files.choose_run, _can_change_world, "runs"),
         Action("analyse", "l", "Analyse the log: table, chart, bands, notes", FILES, analyse, _can_export, "analyse"),

@@ -9,6 +9,7 @@ from tuisim import protocol
 from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
+from tuisim.app.timeline import FORMS, find
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
@@ -24,9 +25,9 @@ def to_tick(workspace: Workspace, tick: int | None) -> None:
     recording = workspace.run_controller.timeline.recording
     if recording is None or (tick is not None and not _is_laid_out(workspace, recording)):
         return
-    if tick is not None and workspace.run_controller.in_run and workspace.run_controller.state != RunPhase.PAUSED:
+    if tick is not None:
         workspace.run_controller.pause()
-    if tick is None:
+    else:
         workspace.debugger.to_now()
     workspace.run_controller.timeline.go(tick)
     refresh(workspace)
@@ -54,7 +55,7 @@ def to_time(workspace: Workspace, time_s: float | None) -> None:
 
 def _by(workspace: Workspace, ticks: int) -> None:
     timeline = workspace.run_controller.timeline
-    at = timeline.newest if timeline.at is None else timeline.at
+    at = timeline.tick
     if ticks < 0 and at <= 0:
         workspace.app.say("This is the start of the run")
         return
@@ -88,14 +89,9 @@ def ten_ticks(workspace: Workspace) -> None:
         workspace.run_controller.debug(protocol.StepTicks(MANY_TICKS))
 
 
-def second_back(workspace: Workspace) -> None:
-    """Go back one second."""
-    _by(workspace, -workspace.run_controller.timeline.tick_hz)
-
-
-def second_on(workspace: Workspace) -> None:
-    """Go forward one second of the recording."""
-    _by(workspace, workspace.run_controller.timeline.tick_hz)
+def seconds(workspace: Workspace, by: int) -> None:
+    """Go forward by a number of seconds of the recording; negative goes back."""
+    _by(workspace, by * workspace.run_controller.timeline.tick_hz)
 
 
 def to_start(workspace: Workspace) -> None:
@@ -111,8 +107,7 @@ def to_now(workspace: Workspace) -> None:
 def stop_time(workspace: Workspace) -> None:
     """Stop playback, and pause a running program."""
     workspace.run_controller.timeline.stop_playback()
-    if workspace.run_controller.in_run and workspace.run_controller.state != RunPhase.PAUSED:
-        workspace.run_controller.pause()
+    workspace.run_controller.pause()
 
 
 def advance_playback(workspace: Workspace) -> None:
@@ -128,7 +123,6 @@ def advance_playback(workspace: Workspace) -> None:
 def ask_where(workspace: Workspace) -> None:
     """Ask for an instant and go there."""
     from tuisim.app.dialogs.question import LinePrompt
-    from tuisim.app.timeline import FORMS, find
 
     timeline = workspace.run_controller.timeline
 
@@ -138,23 +132,12 @@ def ask_where(workspace: Workspace) -> None:
     workspace.app.push_screen(LinePrompt("Go to", go, forms=FORMS, placeholder=f"now at {timeline.time_s:.2f} s"))
 
 
-def _to_sample(workspace: Workspace, words: str) -> None:
-    from tuisim.app.timeline import find
-
+def to_sample(workspace: Workspace, words: str) -> None:
+    """Go to a sample: words that `find` understands."""
     try:
         to_tick(workspace, find(words, workspace.run_controller.timeline))
     except TuisimError as error:
         workspace.app.say(error.message)
-
-
-def next_sample(workspace: Workspace) -> None:
-    """Go to the next sample of any name."""
-    _to_sample(workspace, "sample")
-
-
-def sample_before(workspace: Workspace) -> None:
-    """Go to the previous sample of any name."""
-    _to_sample(workspace, "sample back")
 
 
 def propose_branch(workspace: Workspace, then: protocol.Message | None, restart: bool = False) -> None:
@@ -172,12 +155,9 @@ def propose_branch(workspace: Workspace, then: protocol.Message | None, restart:
     recording, tick = timeline.recording, timeline.at
     if isinstance(workspace.panel_area.app.screen, BranchQuestion):
         return
-    if (
-        recording is None
-        or tick is None
-        or not workspace.document.apply()
-        or (program := run_controller.program) is None
-    ):
+    if recording is None or tick is None or not workspace.document.apply():
+        return
+    if (program := run_controller.program) is None:
         return
     timeline.stop_playback()
     branch = Branch(recording, tick, program, then, run_controller.state is not RunPhase.PAUSED)

@@ -34,9 +34,6 @@ class AnalyserApp(TerminalApp):
     """
 
     CSS_PATH = "../tuisim.tcss"
-    TITLE = "tuisim"
-    NOTIFICATION_TIMEOUT = 4
-    ENABLE_COMMAND_PALETTE: ClassVar[bool] = True
 
     def __init__(self, request: LogRequest) -> None:
         super().__init__()

@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 
 from rich.style import Style
 from textual import events
-from textual.app import ComposeResult
 from textual.message import Message
-from textual.widget import Widget
 
 from tuisim.analysis.chart import event_marks
 from tuisim.analysis.traces import DISTANCE
-from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.text_runs import Run
@@ -51,13 +49,12 @@ class _One(Traces):
         self._by_name[trace.name] = trace
 
 
-class LogChart(Widget):
+class LogChart(LinesPanel):
     """The chart."""
 
     ALLOW_SELECT = False
     DEFAULT_CSS = """
     LogChart { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; border-subtitle-color: #87d7af; }
-    LogChart > LinesView { width: 1fr; height: 1fr; }
     """
 
     @dataclass
@@ -76,13 +73,9 @@ class LogChart(Widget):
         super().__init__()
         self.border_title = "Chart"
         self.options = ChartOptions()
-        self._text = LinesView()
         self._painters: dict[str, ChartPainter] = {}
         self._pictures: list[tuple[int, ChartPicture]] = []
         self._model: Model | None = None
-
-    def compose(self) -> ComposeResult:
-        yield self._text
 
     def set_model(self, model: Model) -> None:
         """Switch to another log, or redraw the same one with other options."""
@@ -146,20 +139,12 @@ class LogChart(Widget):
         low, high = self._model.x_limits() if self._model else (0.0, 1.0)
         return time_s + columns * (high - low) / self.columns()
 
-    def on_resize(self) -> None:
-        self.call_after_refresh(self._again)
-
-    def _again(self) -> None:
+    def _redraw(self) -> None:
         if self._model is not None:
             self.show(self._model)
 
-    def _cell(self, event: events.MouseEvent) -> tuple[int, int]:
-        """Return column and row of the mouse in the text."""
-        origin = self._text.region
-        return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
-
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        column, row = self._cell(event)
+        column, row = self.cell_at(event)
         for first, picture in self._pictures:
             for box in picture.boxes:
                 if box.row == row - first and box.first <= column < box.end:
@@ -170,7 +155,7 @@ class LogChart(Widget):
                 self.post_message(self.Pointed(time_s))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        column, row = self._cell(event)
+        column, row = self.cell_at(event)
         times_s = (picture.time_at(column, row - first) for first, picture in self._pictures)
         self._read(next((time_s for time_s in times_s if time_s is not None), None))
 

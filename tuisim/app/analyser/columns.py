@@ -71,7 +71,6 @@ class ColumnsDialog(Dialog[Columns]):
         self._chosen = columns_of(log)
 
     def content(self) -> ComposeResult:
-        """Return the list of columns, each with its first values."""
         yield OptionList(markup=False)
         yield Static(id="message", classes="wrong", markup=False)
         keys = Table.grid(padding=(0, 2))
@@ -114,7 +113,7 @@ class ColumnsDialog(Dialog[Columns]):
 
     def _choose(self, chosen: Columns) -> None:
         self._chosen = chosen
-        self.query_one("#message", Static).update("")
+        self.say("")
         self._list(self._at)
 
     def action_time(self) -> None:
@@ -141,6 +140,6 @@ class ColumnsDialog(Dialog[Columns]):
                 raise TuisimError("Nothing to draw: space selects a column")
             choose_columns(self._log.table, self._chosen.time, self._chosen.values, self._chosen.unit)
         except TuisimError as error:
-            self.query_one("#message", Static).update(str(error))
+            self.say(str(error), wrong=True)
         else:
             self.dismiss(self._chosen)

@@ -9,12 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from math import isfinite, nan
+from textwrap import wrap
 from typing import TYPE_CHECKING, Generic, TypeVar, overload
 
 from rich.style import Style
-from textual import events
-from textual.app import ComposeResult
-from textual.widget import Widget
 from textual.worker import get_current_worker
 
 from tuisim.analysis.events import Event
@@ -22,7 +20,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
 from tuisim.app.snapshot import end_label
-from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.charts.text_runs import Line, cut
 from tuisim.errors import TuisimError, counted
 from tuisim.logs.bands import Band
@@ -219,7 +217,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
         return [[(line, DIM)] for line in _wrapped([text], width, height)]
     below = _wrapped(pane.below(model), width, max(0, height // 3))
     room = max(height - 1 - len(below), 1)
-    first = _first(chosen, len(rows), room)
+    first = first_shown(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
     used = _fitting_whole([at for at in range(len(widths)) if any(row[at] for row in measured)], widths, width)
@@ -240,8 +238,6 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
 
 def _rows_of(texts: Sequence[str], widths: Sequence[int], style: Style, width: int) -> list[Line]:
     """Return a row as lines: one, or as many as the last text needs in that width; 0 is unlimited."""
-    from textwrap import wrap
-
     margin = sum(widths[:-1]) + 2 * (len(widths) - 1)
     if not width or margin + len(texts[-1]) <= width:
         return [_row(texts, widths, style)]
@@ -260,7 +256,7 @@ def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) ->
     return seen
 
 
-def _first(chosen: int, count: int, room: int) -> int:
+def first_shown(chosen: int, count: int, room: int) -> int:
     """Return the first row shown, so that the selected one is near the middle."""
     return min(max(chosen - room // 2, 0), max(count - room, 0))
 
@@ -275,8 +271,6 @@ def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:
 
 def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
     """Return the first lines of wrapped texts; only the visible part of each is wrapped."""
-    from textwrap import wrap
-
     seen = (text[: (most + 1) * max(width, 10)] for text in texts)
     return [line for text in seen for line in wrap(text, max(width, 10), subsequent_indent="  ")][:most]
 
@@ -288,7 +282,7 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
         return [[("No row matches the filter: U clears it", DIM)]]
     place = rows.place(model.row)
     room = max(height - 1, 1)
-    first = _first(place, len(rows), room)
+    first = first_shown(place, len(rows), room)
     shown = [rows.row(at) for at in range(first, min(first + room, len(rows)))]
     number_width = max(len(f"{shown[-1] + 1:,}"), len(f"{shown[0] + 1:,}"))
     columns, widths = _fitting(model, shown, width - number_width - 2)
@@ -340,7 +334,7 @@ def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], lis
     return columns, [widths[column] for column in columns]
 
 
-class PaneView(Widget):
+class PaneView(LinesPanel):
     """Shows a pane, with the titles of all panes above it; computes its content, for a long log in the background.
 
     Args:
@@ -350,7 +344,6 @@ class PaneView(Widget):
     ALLOW_SELECT = False
     DEFAULT_CSS = """
     PaneView { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; border-subtitle-color: #87d7af; }
-    PaneView > LinesView { width: 1fr; height: 1fr; }
     """
 
     def __init__(self, complain: Callable[[TuisimError], None]) -> None:
@@ -358,14 +351,10 @@ class PaneView(Widget):
         self.name_shown = "table"
         self.chosen = 0
         """Selected row, in all panes but the table."""
-        self._text = LinesView()
         self._model: Model | None = None
         self._complain = complain
         self._busy: dict[str, Model] = {}
         """The log that is being processed, by pane."""
-
-    def compose(self) -> ComposeResult:
-        yield self._text
 
     @property
     def lines(self) -> int:
@@ -404,12 +393,9 @@ class PaneView(Widget):
 
     def _computed(self, pane: str) -> None:
         self._busy.pop(pane, None)
-        self._again()
+        self._redraw()
 
-    def on_resize(self, event: events.Resize) -> None:
-        self.call_after_refresh(self._again)
-
-    def _again(self) -> None:
+    def _redraw(self) -> None:
         if self._model is not None:
             self.show(self._model)
 

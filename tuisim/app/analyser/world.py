@@ -14,6 +14,8 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from tuisim.app import background
+from tuisim.app.analyser.panes import first_shown
+from tuisim.app.panels import PANELS
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
@@ -32,6 +34,7 @@ from tuisim.source import source_lines
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
     from tuisim.analysis.source import OpenedLog
+    from tuisim.core.field import Field
     from tuisim.logs.log import Log
     from tuisim.runs.run_folder import StoredRun
 
@@ -77,9 +80,7 @@ class WorldAt:
         instant = instant_of(record, self.spec, recording.noise_at(record))
         field = recording.field_at(tick, self.mat.field) if self.mat.field else None
         pen = bool(record.flags & FLAG_PEN_DOWN)
-        return snapshot_of(
-            instant, self.spec, field, state=RunPhase.ENDED, end=None, line=record.line, speed=1.0, pen_down=pen
-        )
+        return self._snapshot(instant, field, record.line, pen)
 
     def _logged(self, time_s: float, row: int) -> Snapshot:
         table = self._log.table
@@ -88,16 +89,11 @@ class WorldAt:
         tick = round(time_s * self.spec.profile.tick_hz)
         instant = Instant(tick, pose, noise=self.spec.world.noise, seed=self.spec.seed)
         line = table.column("line")[row].as_py() if "line" in table.column_names else 0
-        return snapshot_of(
-            instant,
-            self.spec,
-            self.mat.field,
-            state=RunPhase.ENDED,
-            end=None,
-            line=int(line or 0),
-            speed=1.0,
-            pen_down=False,
-        )
+        return self._snapshot(instant, self.mat.field, int(line or 0), False)
+
+    def _snapshot(self, instant: Instant, field: Field | None, line: int, pen_down: bool) -> Snapshot:
+        ended = RunPhase.ENDED
+        return snapshot_of(instant, self.spec, field, state=ended, end=None, line=line, speed=1.0, pen_down=pen_down)
 
 
 def has_poses(opened: OpenedLog) -> bool:
@@ -156,10 +152,11 @@ class WorldPane(Vertical):
         self.is_on = True
         """Whether to show it if there is something to show."""
         # The robot is shown where it was; the mouse cannot move it.
-        self._world = WorldView(lambda pose, done: None, lambda boxes, index: None)
+        self._world = WorldView()
         self._world.disabled = True
         self._source = LinesView()
         self._arrays = Arrays()
+        self._arrays.border_title = PANELS["arrays"].title
         self._worlds: dict[int, WorldAt | None] = {}
         self._requested: set[int] = set()
         self._model: Model | None = None
@@ -223,7 +220,7 @@ class WorldPane(Vertical):
         height, width = self._source.size.height, self._source.size.width
         if not texts or not height:
             return [[(f"line {line}", _PLAIN)]]
-        first = min(max(line - 1 - height // 2, 0), max(len(texts) - height, 0))
+        first = first_shown(line - 1, len(texts), height)
         shown: list[list[Run]] = []
         for number, text in enumerate(texts[first : first + height], first + 1):
             here = number == line

@@ -21,6 +21,12 @@ from tuisim.app.dialogs.save import typed_path
 from tuisim.app.render.mat import Pixels, shrink, whole_field
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.terminal.cell_view import PixelView
+from tuisim.config.mat_image import decode, read_file
+from tuisim.config.mats import find_mat, spec_name
+from tuisim.config.obstacles import OBSTACLES, load_obstacles
+from tuisim.config.profiles import load_profile
+from tuisim.config.robots import ROBOTS, load_robot
+from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import TuisimError
 
@@ -114,7 +120,6 @@ class Chooser(ListDialog):
         self._path_hint = path_hint
 
     def content(self) -> ComposeResult:
-        """Return the path field and the list."""
         if self._path_hint:
             yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
         options: list[Option | None] = []
@@ -158,16 +163,12 @@ def program_chooser() -> Chooser:
 
 def robot_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for robots."""
-    from tuisim.config.robots import ROBOTS, load_robot
-
     presets = [(name, name, _robot_title(name)) for name in ROBOTS]
     groups = [Group("", presets), files_here([".toml", ".json"], lambda path: load_robot(str(path)))]
     return Chooser("Robots", groups, plan.words.get("robot", ""), "Path of a robot's .toml or .json file")
 
 
 def _robot_title(name: str) -> str:
-    from tuisim.config.robots import ROBOTS
-
     robot = ROBOTS[name]
     sensors = ", ".join(f"({sensor.x_mm:g}, {sensor.y_mm:g}) ⌀ {sensor.diameter_mm}" for sensor in robot.color_sensors)
     return f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} apart; sensors {sensors}"
@@ -175,8 +176,6 @@ def _robot_title(name: str) -> str:
 
 def obstacle_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for sets of obstacles."""
-    from tuisim.config.obstacles import OBSTACLES, load_obstacles
-
     presets = [
         (name, name, "; ".join(f"{b.width_mm:g}×{b.height_mm:g} at ({b.x_mm:g}, {b.y_mm:g})" for b in boxes) or "none")
         for name, boxes in OBSTACLES.items()
@@ -187,9 +186,6 @@ def obstacle_chooser(plan: NextRun) -> Chooser:
 
 def profile_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for profiles."""
-    from tuisim.config.profiles import load_profile
-    from tuisim.core.profile import PROFILES
-
     presets = [
         (name, name, f"{p.tick_hz} ticks a second, {'solid' if p.solid else 'nothing is solid'}")
         for name, p in PROFILES.items()
@@ -221,9 +217,6 @@ class MatPicker(ListDialog):
         self._pictures: dict[tuple[str, int, int], Pixels] = {}
 
     def content(self) -> ComposeResult:
-        """Return the list, the preview, and a path field."""
-        from tuisim.config.mats import spec_name
-
         listed = OptionList(*(Option(name, id=name) for name in self._mats), markup=False)
         listed.styles.width = min(max(map(len, self._mats), default=0) + 5, WIDEST_NAME)
         names = [spec_name(mat) for mat in self._mats.values()]
@@ -270,9 +263,6 @@ class MatPicker(ListDialog):
             background.run(self, work, then, failed, group="picture", exclusive=True)
 
     def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> Pixels:
-        from tuisim.config.mat_image import decode, read_file
-        from tuisim.config.mats import find_mat
-
         found = find_mat(name, self._folder)
         mat = decode(read_file(found.image), found.image, found.fit or "stretch")
         return shrink(mat, whole_field(width, height), outside_rgb)

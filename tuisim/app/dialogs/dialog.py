@@ -12,6 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.message import Message
 from textual.screen import ModalScreen
+from textual.widgets import Static
 
 Result = TypeVar("Result")
 
@@ -97,6 +98,11 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         """Return the widgets in the frame."""
         yield from ()
 
+    def say(self, text: str, wrong: bool = False) -> None:
+        """Show a text in the dialog's message line; `wrong` marks it as an error."""
+        message = self.query_one("#message", Static)
+        message.update(text)
+        message.set_class(wrong, "wrong")
+
     def action_leave(self) -> None:
-        """Close without a result."""
         self.dismiss(None)

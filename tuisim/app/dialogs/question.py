@@ -41,7 +41,6 @@ class Question(Dialog[str]):
         self._answers = answers
 
     def content(self) -> ComposeResult:
-        """Return the question and its answers."""
         yield Static(self._text, markup=False)
         yield Static()
         words = (f"[@click=screen.answer('{key}')]  {key}  {does}  [/]" for key, does in self._answers)
@@ -88,7 +87,6 @@ class BranchQuestion(Dialog[str]):
         self._text = f"{program} {again}, with all your actions until then, and {then}{change}.{ends}"
 
     def content(self) -> ComposeResult:
-        """Return what would happen, and the answers."""
         yield Static(self._text, markup=False)
         answers = ["[@click=screen.branch]  y  Branch  [/]", "[@click=screen.leave]  n  Stay  [/]"]
         if self._restart:
@@ -96,7 +94,6 @@ class BranchQuestion(Dialog[str]):
         yield Static("   ".join(answers))
 
     def action_branch(self) -> None:
-        """Return `BRANCH`."""
         self.dismiss(BRANCH)
 
     def action_restart(self) -> None:
@@ -116,7 +113,6 @@ class LeaveQuestion(Dialog[bool]):
     ]
 
     def content(self) -> ComposeResult:
-        """The question."""
         yield Static("A program is running. Everything logged so far is kept.", markup=False)
         yield Static("[@click=screen.yes]  y  Stop it and quit  [/]   [@click=screen.leave]  n  Stay  [/]")
 
@@ -209,7 +205,6 @@ class LinePrompt(Dialog[bool]):
         self._forms = forms
 
     def content(self) -> ComposeResult:
-        """Return the field, its error line, and the accepted forms."""
         yield _Line(self._value, self._words, self._placeholder)
         yield Static(id="message", classes="wrong", markup=False)
         yield form_list(self._forms)
@@ -220,6 +215,6 @@ class LinePrompt(Dialog[bool]):
         try:
             self._do(event.value.strip())
         except TuisimError as error:
-            self.query_one("#message", Static).update(str(error))
+            self.say(str(error), wrong=True)
             return
         self.dismiss(True)

@@ -23,6 +23,7 @@ from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
 from tuisim.charts.text_runs import cut
 from tuisim.runs.catalogue import RunInfo
+from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.runs.diff import RunDiff
@@ -99,7 +100,6 @@ class RunChooser(ListDialog):
         self._runs: list[RunInfo] = []
 
     def content(self) -> ComposeResult:
-        """Return the search field and the list."""
         yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
         yield Static(_HEADS, markup=False, classes="heads")
         yield OptionList()
@@ -108,7 +108,7 @@ class RunChooser(ListDialog):
     def on_mount(self) -> None:
         """Read the list in the background: there may be thousands of runs."""
         super().on_mount()
-        background.run(self, _stored_runs, self._fill, lambda error: self._say(str(error)))
+        background.run(self, _stored_runs, self._fill, lambda error: self.say(str(error)))
 
     def _fill(self, runs: list[RunInfo]) -> None:
         self._runs = [run for run in runs if run.id != self._left_out]
@@ -124,9 +124,6 @@ class RunChooser(ListDialog):
         """Return one line of the list."""
         return run_line(run)
 
-    def _say(self, text: str) -> None:
-        self.query_one("#message", Static).update(text)
-
     def _list(self, search: str) -> None:
         found = matching(self._runs, search)
         options = self.query_one(OptionList)
@@ -134,11 +131,11 @@ class RunChooser(ListDialog):
         options.add_options(Option(self.line(run), id=run.id) for run in found[:MOST_LISTED])
         options.highlighted = 0 if found else None
         if not self._runs:
-            self._say("No runs yet: R runs a program, and every run is kept")
+            self.say("No runs yet: R runs a program, and every run is kept")
         elif len(found) > MOST_LISTED:
-            self._say(f"The newest {MOST_LISTED} of {len(found):,} runs: search for the others")
+            self.say(f"The newest {MOST_LISTED} of {len(found):,} runs: search for the others")
         else:
-            self._say(f"{len(found):,} of {len(self._runs):,} runs")
+            self.say(f"{len(found):,} of {len(self._runs):,} runs")
 
     @on(Input.Changed)
     def _search(self, event: Input.Changed) -> None:
@@ -155,8 +152,6 @@ class RunChooser(ListDialog):
 
 
 def _stored_runs() -> list[RunInfo]:
-    from tuisim.runs.store import RunStore
-
     return RunStore().runs()
 
 
@@ -229,7 +224,6 @@ class Differences(Dialog[bool]):
         self._diff = diff
 
     def content(self) -> ComposeResult:
-        """Return one line per difference, those of the recordings first."""
         from tuisim.runs.diff import recording_in_words, setup_in_words
 
         table = Table.grid(padding=(0, 2))

@@ -16,7 +16,8 @@ from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
 from tuisim.errors import ConfigError, TuisimError
-from tuisim.logs.export import LISTED
+from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry
+from tuisim.runs.store import RunStore
 
 
 def typed_path(text: str) -> Path:
@@ -55,7 +56,6 @@ class FileDialog(Dialog[Path]):
         self._writing = False
 
     def content(self) -> ComposeResult:
-        """Return the field, the additional widgets, and an error line."""
         yield Static(f"File ({self.SUFFIXES})", markup=False)
         yield Input(self._proposed, compact=True, select_on_focus=False)
         yield from self.more()
@@ -108,12 +108,6 @@ class FileDialog(Dialog[Path]):
         """Show why nothing was written."""
         self._writing = False
         self.say(text, wrong=True)
-
-    def say(self, text: str, wrong: bool = False) -> None:
-        """Show a message."""
-        message = self.query_one("#message", Static)
-        message.update(text)
-        message.set_class(wrong, "wrong")
 
 
 def _check_no_folder(path: Path) -> None:
@@ -210,8 +204,6 @@ class ExportDialog(FileDialog):
 
     def checked(self, path: Path) -> Path:
         """Raise a TuisimError for a file that no exporter can write."""
-        from tuisim.logs.export import check_target
-
         return check_target(path)
 
     def write(self, target: Path) -> None:
@@ -226,9 +218,6 @@ class ExportDialog(FileDialog):
 
 
 def _write(run_id: str, target: Path, telemetry: bool) -> Path:
-    from tuisim.logs.export import export_samples, export_telemetry
-    from tuisim.runs.store import RunStore
-
     run = RunStore().load_run(run_id)
     export_telemetry(run, target) if telemetry else export_samples([run], target)
     return target

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar
 
@@ -74,19 +75,17 @@ class CodeArea(TextArea):
         Binding("shift+f3", "want('previous')", "Previous match", show=False),
     ]
 
+    @dataclass
     class Wanted(Message):
         """Posted for a key that does more than edit the text."""
 
-        def __init__(self, command: EditorCommand) -> None:
-            super().__init__()
-            self.command = command
+        command: EditorCommand
 
+    @dataclass
     class GutterClicked(Message):
         """Posted when a line number was clicked."""
 
-        def __init__(self, line: int) -> None:
-            super().__init__()
-            self.line = line
+        line: int
 
     def __init__(self) -> None:
         # Needed before the base class asks for the first line.
@@ -358,13 +357,14 @@ class FindBar(Horizontal):
         Binding("up,shift+f3", "go(-1)", "Before", show=False),
     ]
 
+    @dataclass
     class Asked(Message):
         """Posted to find the text, or to go to the line."""
 
-        def __init__(self, mode: str, text: str, by: int) -> None:
-            super().__init__()
-            self.mode, self.text, self.by = mode, text, by
-            """`by`: 1 the next match, -1 the previous one, 0 the one at or after the cursor."""
+        mode: str
+        text: str
+        by: int
+        """1 the next match, -1 the previous one, 0 the one at or after the cursor."""
 
     class Closed(Message):
         """Posted when the focus returns to the text."""
@@ -402,9 +402,6 @@ class FindBar(Horizontal):
         self.post_message(self.Closed())
 
     def action_go(self, by: int) -> None:
-        self._ask(by)
-
-    def _ask(self, by: int) -> None:
         text = self.query_one(Input).value
         if self.mode == FIND:
             self.wanted = text
@@ -413,10 +410,10 @@ class FindBar(Horizontal):
     def on_input_changed(self, event: Input.Changed) -> None:
         event.stop()
         if self.mode == FIND:
-            self._ask(0)
+            self.action_go(0)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         event.stop()
-        self._ask(1)
+        self.action_go(1)
         if self.mode == LINE:
             self.action_close()

@@ -17,7 +17,7 @@ from tuisim.app.editor.text_file import (
     read_text,
     write_text,
 )
-from tuisim.app.editor.text_lines import LineMap
+from tuisim.app.editor.text_lines import LineMap, differing_lines
 from tuisim.errors import ConfigError, TuisimError, counted
 from tuisim.source import source_lines
 
@@ -129,7 +129,7 @@ class Document:
             if self._error_line and not code.error_line:
                 code.mark_run_error(self._error_line)
         if controls := self._panel_area.controls:
-            controls.set_program(self._name)
+            controls.program = self._name
 
     def run_changed(self) -> None:
         """Pass the text of the run in view to the code panel."""
@@ -181,7 +181,6 @@ class Document:
 
     def _offer(self, draft: Draft) -> None:
         from tuisim.app.dialogs.question import Question
-        from tuisim.app.editor.text_lines import differing_lines
 
         name = self._name or NEW_NAME
         when = time.strftime("%d %b %H:%M", time.localtime(draft.written_s))

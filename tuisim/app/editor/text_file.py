@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
+from tuisim.config.folders import home_folder, programs_folder
 from tuisim.errors import ConfigError
 from tuisim.source import decode_source
 
@@ -57,8 +58,6 @@ def write_text(path: Path, text: str, form: Form) -> None:
     Raises:
         ConfigError: the file cannot be written, or not in its encoding.
     """
-    from tuisim.atomic import replacing
-
     data = (codecs.BOM_UTF8 if form.has_mark else b"") + _encoded(text, form, path)
     try:
         mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else None
@@ -88,8 +87,6 @@ def _is_named(encoding: str, text: str) -> bool:
 
 def is_protected(path: Path) -> bool:
     """Return whether a program must not be overwritten: it is an example, or read-only."""
-    from tuisim.config.folders import programs_folder
-
     examples = programs_folder().resolve()
     return path.resolve().parent == examples or (path.exists() and not os.access(path, os.W_OK))
 
@@ -108,10 +105,16 @@ class Draft:
     """When it was stored, in seconds since 1970."""
 
 
-def _file(path: str) -> Path:
-    from tuisim.config.folders import home_folder
+def file_of_program(folder: str, path: str) -> Path:
+    """Return the file, in a folder of the app's data, that belongs to a program, given by its path or name."""
+    return home_folder() / folder / f"{hashlib.sha256(path.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
 
-    return home_folder() / FOLDER / f"{hashlib.sha256(path.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
+
+def write_json(file: Path, data: object) -> None:
+    """Write data atomically to a file that only its owner may read; raises OSError."""
+    make_private_folder(file.parent)
+    with replacing(file, owner_only=True) as handle:
+        handle.write(json.dumps(data).encode("ascii"))
 
 
 def keep_draft(path: str, text: str) -> None:
@@ -120,12 +123,9 @@ def keep_draft(path: str, text: str) -> None:
     Raises:
         ConfigError: the draft cannot be written.
     """
-    file = _file(path)
-    data = json.dumps(asdict(Draft(path, text, time.time()))).encode("ascii")
+    file = file_of_program(FOLDER, path)
     try:
-        make_private_folder(file.parent)
-        with replacing(file, owner_only=True) as handle:
-            handle.write(data)
+        write_json(file, asdict(Draft(path, text, time.time())))
     except OSError as error:
         reason = error.strerror or error
         raise ConfigError(f"unsaved changes cannot be backed up: {reason}", "save it soon", file=str(file)) from None
@@ -134,7 +134,7 @@ def keep_draft(path: str, text: str) -> None:
 def find_draft(path: str) -> Draft | None:
     """Return the draft of a program, None if there is no readable one."""
     try:
-        found = json.loads(_file(path).read_bytes())
+        found = json.loads(file_of_program(FOLDER, path).read_bytes())
         draft = Draft(str(found["path"]), str(found["text"]), float(found["written_s"]))
     except (OSError, ValueError, KeyError, TypeError):
         # Drafts are written atomically; a malformed file has nothing to restore.
@@ -146,4 +146,4 @@ def drop_draft(path: str) -> None:
     """Delete the draft of a program; one that cannot be deleted is offered again."""
     # The folder may be read-only by now; the text itself is safe.
     with suppress(OSError):
-        _file(path).unlink(missing_ok=True)
+        file_of_program(FOLDER, path).unlink(missing_ok=True)

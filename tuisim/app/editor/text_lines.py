@@ -74,11 +74,15 @@ def places(lines: Sequence[str], wanted: str) -> list[tuple[int, int]]:
 
 def differing_lines(one: str, other: str) -> int:
     """Return how many lines differ between two texts."""
-    import difflib
-
-    matcher = difflib.SequenceMatcher(None, source_lines(one), source_lines(other), autojunk=False)
+    matcher = SequenceMatcher(None, source_lines(one), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
     return sum(max(to - start, to_other - start_other) for _, start, to, start_other, to_other in changes)
+
+
+def same_lines(one: Sequence[str], other: Sequence[str]) -> int:
+    """Return how many lines two texts have in common at their start."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((at for at, (ours, theirs) in pairs if ours != theirs), min(len(one), len(other)))
 
 
 MOST_COMPARED = 400
@@ -96,12 +100,8 @@ class LineMap:
     def __init__(self, run: Sequence[str], shown: Sequence[str]) -> None:
         self._to_shown = [0] * (len(run) + 1)
         self._to_run = [0] * (len(shown) + 1)
-        least, same = min(len(run), len(shown)), 0
-        while same < least and run[same] == shown[same]:
-            same += 1
-        last = 0
-        while last < least - same and run[-1 - last] == shown[-1 - last]:
-            last += 1
+        same = same_lines(run, shown)
+        last = same_lines(run[same:][::-1], shown[same:][::-1])
         self._join(0, 0, same)
         self._join(len(run) - last, len(shown) - last, last)
         old, new = run[same : len(run) - last], shown[same : len(shown) - last]

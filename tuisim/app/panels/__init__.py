@@ -1,7 +1,7 @@
 """Panels: one file per panel, and the table of them.
 
-To add a panel: write its file, a `Widget` with `TITLE` and `show(snapshot)`, and add a line to `PANELS`. Its key, its
-place on the screen, the help and the command palette follow from the line.
+To add a panel: write its file, a `Widget` with `show(snapshot)`, and add a line to `PANELS`. Its title, its key,
+its place on the screen, the help and the command palette follow from the line.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from importlib import import_module
-from typing import ClassVar, Protocol, cast, runtime_checkable
+from typing import Protocol, cast, runtime_checkable
 
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
@@ -39,8 +39,6 @@ class PanelPlace(StrEnum):
 
 class Panel(Protocol):
     """The interface of a panel, in addition to `Widget`."""
-
-    TITLE: ClassVar[str]
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment; almost free if nothing has changed."""

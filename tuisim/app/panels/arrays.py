@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
@@ -25,8 +23,6 @@ _LABEL = Style(color="#a8a8a8")
 class Arrays(Widget):
     """The sensor arrays panel: a line of names above the discs if there is room for it."""
 
-    TITLE: ClassVar[str] = "Sensor arrays"
-
     DEFAULT_CSS = """
     Arrays > LinesView { width: 1fr; height: 1; }
     Arrays > PixelView { width: 1fr; height: 1fr; }
@@ -34,7 +30,6 @@ class Arrays(Widget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
         self._names = LinesView()
         self._discs = PixelView()
         self._snapshot: Snapshot | None = None

@@ -7,15 +7,13 @@ from functools import partial
 from typing import ClassVar
 
 from textual import events
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.timer import Timer
-from textual.widget import Widget
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.snapshot import IN_RUN, Snapshot
-from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.protocol import BUTTONS
 
@@ -31,20 +29,14 @@ SEEN_S = 0.05
 _HELP = "arrows ⏎ ⌫ press · shift holds · + size"
 
 
-class Brick(Widget, can_focus=True):
+class Brick(LinesPanel, can_focus=True):
     """The brick panel."""
 
-    PANEL_ID: ClassVar[str] = "brick"
-    TITLE: ClassVar[str] = "Brick"
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
         *(Binding(name, f"tap('{name}')", f"Press {name}", show=False) for name in BUTTONS),
         *(Binding(f"shift+{name}", f"latch('{name}')", f"Hold {name}", show=False) for name in BUTTONS),
     ]
-
-    DEFAULT_CSS = """
-    Brick > LinesView { width: 1fr; height: 1fr; }
-    """
 
     @dataclass
     class Pressed(Message):
@@ -54,8 +46,6 @@ class Brick(Widget, can_focus=True):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
-        self._view = LinesView()
         self._snapshot: Snapshot | None = None
         self._picture = BrickPicture([], ())
         self._tapped: dict[str, Timer] = {}
@@ -64,13 +54,7 @@ class Brick(Widget, can_focus=True):
         """Buttons that are held until they are released in the same way."""
         self._clicked = ""
         """The button that the mouse holds down."""
-        self._throttle = Throttle(self, _PERIOD_S, self._draw)
-
-    def compose(self) -> ComposeResult:
-        yield self._view
-
-    def on_resize(self) -> None:
-        self.call_after_refresh(self._draw)
+        self._throttle = Throttle(self, _PERIOD_S, self._redraw)
 
     def on_focus(self) -> None:
         self.border_subtitle = _HELP
@@ -85,13 +69,13 @@ class Brick(Widget, can_focus=True):
         self._snapshot = snapshot
         self._throttle.ask()
 
-    def _draw(self) -> None:
-        size = self._view.size
+    def _redraw(self) -> None:
+        size = self._text.size
         if self._snapshot is None or not size:
             return
         now = self._snapshot
         self._picture = draw_brick(now.face, now.pressed, max(1, size.width), max(1, size.height))
-        self._view.set_lines(self._picture.lines)
+        self._text.set_lines(self._picture.lines)
 
     # Buttons
 
@@ -157,7 +141,7 @@ class Brick(Widget, can_focus=True):
         self._changed(before)
 
     def _button_at(self, event: events.MouseEvent) -> str:
-        spot = event.get_content_offset(self._view)
+        spot = event.get_content_offset(self._text)
         if spot is None:
             return ""
         hit = (b.name for b in self._picture.buttons if b.row == spot.y and b.first <= spot.x < b.end)

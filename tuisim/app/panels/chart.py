@@ -7,13 +7,11 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from textual import events
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.message import Message
-from textual.widget import Widget
 
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.charts import axes
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
@@ -23,15 +21,11 @@ _PERIOD_S = 0.33
 """Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
 
 
-class Chart(Widget, can_focus=True):
+class Chart(LinesPanel, can_focus=True):
     """The chart panel. Keeps data that arrives while it is hidden."""
 
-    TITLE: ClassVar[str] = "Chart"
     FROZEN: ClassVar[str] = "frozen: f follows again"
 
-    DEFAULT_CSS = """
-    Chart > LinesView { width: 1fr; height: 1fr; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up", "select(-1)", "Previous trace"),
         Binding("down", "select(1)", "Next trace"),
@@ -57,8 +51,6 @@ class Chart(Widget, can_focus=True):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
-        self._text = LinesView()
         self._traces = Traces()
         self._painter = ChartPainter()
         self._state = ChartState()
@@ -66,9 +58,6 @@ class Chart(Widget, can_focus=True):
         self._dirty = True
         self._dragging = False
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
-
-    def compose(self) -> ComposeResult:
-        yield self._text
 
     def append(self, name: str, times_s: Sequence[float], values: Sequence[float]) -> None:
         """Add points to a trace.
@@ -118,18 +107,15 @@ class Chart(Widget, can_focus=True):
         self._picture = self._painter.paint(self._traces, state, self._text.size.width, self._text.size.height)
         self._text.set_lines(self._picture.lines)
 
-    def _draw_now(self) -> None:
+    def _redraw(self) -> None:
         self._dirty = True
         self._throttle.now()
 
-    def on_resize(self) -> None:
-        self.call_after_refresh(self._draw_now)
-
     def on_focus(self) -> None:
-        self._draw_now()
+        self._redraw()
 
     def on_blur(self) -> None:
-        self._draw_now()
+        self._redraw()
 
     # Keys
 
@@ -138,7 +124,7 @@ class Chart(Widget, can_focus=True):
         if names:
             at = names.index(self._state.selected) + step if self._state.selected in names else 0
             self._state = replace(self._state, selected=names[at % len(names)])
-            self._draw_now()
+            self._redraw()
 
     def action_tick(self, number: int = 0) -> None:
         traces = list(self._traces)
@@ -152,13 +138,13 @@ class Chart(Widget, can_focus=True):
     def _switch(self, trace: Trace) -> None:
         trace.on = not trace.on
         self._state = replace(self._state, selected=trace.name)
-        self._draw_now()
+        self._redraw()
 
     def action_freeze(self) -> None:
         frozen = self._state.x_limits is None and self._picture is not None and self._picture.columns > 0
         self._state = replace(self._state, x_limits=self._picture.x_limits if frozen and self._picture else None)
         self._read(None)
-        self._draw_now()
+        self._redraw()
 
     def action_clear(self) -> None:
         self.clear()
@@ -176,27 +162,22 @@ class Chart(Widget, can_focus=True):
         if self._state.cursor_s is not None:
             self._state = replace(self._state, cursor_s=None)
             self.post_message(self.CursorMoved(None))
-            self._draw_now()
+            self._redraw()
 
     def _put_cursor(self, time_s: float) -> None:
         time_s = min(max(time_s, 0.0), self._traces.end_s())
         if time_s != self._state.cursor_s:
             self._state = replace(self._state, cursor_s=time_s)
             self.post_message(self.CursorMoved(time_s))
-            self._draw_now()
+            self._redraw()
 
     # Mouse
-
-    def _cell(self, event: events.MouseEvent) -> tuple[int, int]:
-        """Return column and row of the mouse in the text."""
-        origin = self._text.region
-        return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         picture = self._picture
         if picture is None or event.button != 1:
             return
-        column, row = self._cell(event)
+        column, row = self.cell_at(event)
         for box in picture.boxes:
             if box.row == row and box.first <= column < box.end:
                 self._switch(next(trace for trace in self._traces if trace.name == box.name))
@@ -210,7 +191,7 @@ class Chart(Widget, can_focus=True):
         picture = self._picture
         if picture is None:
             return
-        column, row = self._cell(event)
+        column, row = self.cell_at(event)
         if self._dragging:
             self._cursor_to(column, picture)
         else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar, assert_never
 
@@ -17,12 +18,14 @@ from textual.widgets.text_area import Selection
 
 from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
 from tuisim.app.editor.text_lines import LineMap, places
+from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.source import source_lines
 
 LIT_GAP_S = 0.1
 """Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
 
+_TITLE = PANELS["code"].title
 NOTHING_OPEN = "No program: o opens one, ctrl+t creates one"
 _TYPING_KEYS = "esc done  ^s save  ^r run  ^f find"
 
@@ -41,44 +44,37 @@ class ProgramCommand(StrEnum):
 class Code(Vertical):
     """The code panel."""
 
-    TITLE: ClassVar[str] = "Code"
-
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+s", "want('save')", "Save the program", show=False),
         Binding("f5,ctrl+r", "want('run')", "Run", show=False),
     ]
 
+    @dataclass
     class Edited(Message):
         """Posted when the text was edited here."""
 
-        def __init__(self, text: str) -> None:
-            super().__init__()
-            self.text = text
+        text: str
 
+    @dataclass
     class Wanted(Message):
         """Posted for a key that concerns the whole program."""
 
-        def __init__(self, command: ProgramCommand) -> None:
-            super().__init__()
-            self.command = command
+        command: ProgramCommand
 
+    @dataclass
     class TypingChanged(Message):
         """Posted when typing in the text begins or ends."""
 
-        def __init__(self, typing: bool) -> None:
-            super().__init__()
-            self.typing = typing
+        typing: bool
 
+    @dataclass
     class BreakpointToggled(Message):
         """Posted when a line number, from 1, was clicked."""
 
-        def __init__(self, line: int) -> None:
-            super().__init__()
-            self.line = line
+        line: int
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
         self._area = CodeArea()
         self._bar = FindBar()
         self._key: str | None = None
@@ -90,7 +86,7 @@ class Code(Vertical):
         self._tells_run = self._in_run = False
         self._lit_at_s = 0.0
         self._line = 0
-        self._said = (self.TITLE, "")
+        self._said = (_TITLE, "")
 
     def compose(self) -> ComposeResult:
         self._area.placeholder = NOTHING_OPEN
@@ -136,7 +132,7 @@ class Code(Vertical):
 
     def set_title(self, name: str, edited: bool = False) -> None:
         """Show the name of the program, and whether it has unsaved changes."""
-        self._said = (f"{self.TITLE}: {name}" if name else self.TITLE, " • edited" if edited else "")
+        self._said = (f"{_TITLE}: {name}" if name else _TITLE, " • edited" if edited else "")
         self._say()
 
     def _say(self) -> None:

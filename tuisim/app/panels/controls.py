@@ -7,34 +7,26 @@ from typing import ClassVar, assert_never
 
 from rich.style import Style
 from rich.text import Text
-from textual import events
-from textual.widget import Widget
+from textual.reactive import reactive
 
-from tuisim.app.keys import ACT, Act
+from tuisim.app.keys import ACT, ActionWords
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
 
 _LABEL_CELLS = 9
 
 
-class Controls(Widget, can_focus=False):
+class Controls(ActionWords, can_focus=False):
     """Run, Stop and Pause, speed, program, mat, profile, seed, pen and state."""
 
-    TITLE: ClassVar[str] = "Simulator controls"
-    ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {"controls--button", "controls--off", "controls--failed", "controls--label"}
+
+    program = reactive("")
+    """Name of the program; empty for none."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
-        self._program = ""
         self._shown: tuple[object, ...] = ()
         self._snapshot: Snapshot | None = None
-
-    def set_program(self, name: str) -> None:
-        """Show the name of the program; empty for none."""
-        if name != self._program:
-            self._program = name
-            self.refresh()
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
@@ -50,11 +42,6 @@ class Controls(Widget, can_focus=False):
         name = "controls--button" if works else "controls--off"
         style = self.get_component_rich_style(name, partial=True)
         return Text(f" {text} ", style + Style(meta={ACT: action}))
-
-    def on_click(self, event: events.Click) -> None:
-        if name := event.style.meta.get(ACT):
-            event.stop()
-            self.post_message(Act(name))
 
     def _line(self, label: str, *parts: str | Text) -> Text:
         line = Text()
@@ -74,7 +61,7 @@ class Controls(Widget, can_focus=False):
         in_run = now.state in IN_RUN
         buttons = Text(" ").join(
             (
-                self._button("R Run", "run", bool(self._program) and not in_run),
+                self._button("R Run", "run", bool(self.program) and not in_run),
                 self._button("S Stop", "stop", in_run),
                 self._button("Resume" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run),
             )
@@ -87,7 +74,7 @@ class Controls(Widget, can_focus=False):
             Text(),
             self._line("State", self._state(now)),
             self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
-            self._line("Program", self._program or "none: o opens one"),
+            self._line("Program", self.program or "none: o opens one"),
             self._line("Mat", Path(spec.world.background).name),
             self._line("Robot", spec.robot.name),
             self._line("Profile", f"{spec.profile.name}, seed {spec.seed}"),

@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 import linecache
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from textual import events
 from textual.binding import Binding, BindingType
 from textual.message import Message
-from textual.widget import Widget
 
+from tuisim.app.panels import PANELS
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import DebugState, RunPhase, Snapshot
-from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.charts.text_runs import Line
 
 if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
     from tuisim.protocol import Paused
 
+_TITLE = PANELS["debug"].title
 
-class Debug(Widget, can_focus=True):
+
+class Debug(LinesPanel, can_focus=True):
     """The debug panel."""
 
-    TITLE: ClassVar[str] = "Debug"
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up", "scroll_lines(-1)", "Up", show=False),
@@ -36,32 +34,23 @@ class Debug(Widget, can_focus=True):
         Binding("right", "frame(1)", "The caller", show=False),
         Binding("enter", "thread", "The next thread", show=False),
     ]
-    DEFAULT_CSS = """
-    Debug > LinesView { width: 1fr; height: 1fr; }
-    """
 
+    @dataclass
     class FrameWanted(Message):
         """Posted to select the caller of the frame, or the function that it called."""
 
-        def __init__(self, by: int) -> None:
-            super().__init__()
-            self.by = by
+        by: int
 
     class ThreadWanted(Message):
         """Posted to select the next thread."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
-        self._view = LinesView()
         self._content = DebugView()
         self._state = RunPhase.IDLE
         self._now: tuple[int, float] | None = None
         self._top = 0
         self._lines: list[Line] = []
-
-    def compose(self) -> ComposeResult:
-        yield self._view
 
     def on_focus(self) -> None:
         self.border_subtitle = "↑↓ scroll · ←→ calls · ⏎ thread"
@@ -75,7 +64,7 @@ class Debug(Widget, can_focus=True):
         # While it runs, it has no current line, and nothing can belong to another instant.
         if snapshot.state != self._state or (now != self._now and self._content.paused):
             self._state, self._now = snapshot.state, now
-            self._draw()
+            self._redraw()
         self._now = now
 
     def show_pause(self, state: DebugState) -> None:
@@ -86,24 +75,21 @@ class Debug(Widget, can_focus=True):
         else:
             source = _line_of(view.paused)
             self._content = DebugView(self._state, view.paused, view.inspected, view.past, state.busy, source)
-        self._draw()
+        self._redraw()
 
-    def on_resize(self, event: events.Resize) -> None:
-        self.call_after_refresh(self._draw)
-
-    def _draw(self) -> None:
-        size = self._view.size
+    def _redraw(self) -> None:
+        size = self._text.size
         if not size:
             return
         self._lines = debug_lines(replace(self._content, state=self._state, now=self._now), size.width)
         self._top = max(0, min(self._top, len(self._lines) - size.height))
         below = len(self._lines) - self._top - size.height
-        self.border_title = f"{self.TITLE} ↓{below}" if below > 0 else self.TITLE
-        self._view.set_lines(self._lines[self._top : self._top + size.height])
+        self.border_title = f"{_TITLE} ↓{below}" if below > 0 else _TITLE
+        self._text.set_lines(self._lines[self._top : self._top + size.height])
 
     def action_scroll_lines(self, by: int) -> None:
         self._top = max(0, self._top + by)
-        self._draw()
+        self._redraw()
 
     def action_frame(self, by: int) -> None:
         self.post_message(self.FrameWanted(by))

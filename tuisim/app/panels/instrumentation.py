@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
 
 from rich.color import Color
 from rich.style import Style
-from textual.app import ComposeResult
-from textual.widget import Widget
 
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
-from tuisim.app.terminal.cell_view import LinesView
+from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.charts.text_runs import Line, Run, cut
 from tuisim.core.geometry import shown_heading_deg
@@ -29,34 +26,20 @@ _COLUMN = 12
 """Width of the labels if there is room."""
 
 
-class Instrumentation(Widget):
+class Instrumentation(LinesPanel):
     """The instrumentation panel. It has three forms, by height: 11 lines, 9 lines, 6 lines."""
-
-    TITLE: ClassVar[str] = "Instrumentation"
-
-    DEFAULT_CSS = """
-    Instrumentation > LinesView { width: 1fr; height: 1fr; }
-    """
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
-        self._text = LinesView()
         self._snapshot: Snapshot | None = None
-        self._throttle = Throttle(self, _PERIOD_S, self._draw)
-
-    def compose(self) -> ComposeResult:
-        yield self._text
-
-    def on_resize(self) -> None:
-        self.call_after_refresh(self._draw)
+        self._throttle = Throttle(self, _PERIOD_S, self._redraw)
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment; at most a few updates per second."""
         self._snapshot = snapshot
         self._throttle.ask()
 
-    def _draw(self) -> None:
+    def _redraw(self) -> None:
         if self._snapshot is not None and self._text.size:
             self._text.set_lines(lines(self._snapshot, self._text.size.width, self._text.size.height))
 
@@ -127,6 +110,11 @@ def _value(text: str) -> Run:
 
 def _unit(text: str) -> Run:
     return text, _UNIT
+
+
+def _values(*texts: str) -> list[Run]:
+    """Return values, each with the unit after it."""
+    return [_unit(text) if at % 2 else _value(text) for at, text in enumerate(texts)]
 
 
 def _wheel(now: Snapshot, name: str, short: str, width: int) -> Line:
@@ -201,20 +189,8 @@ def _ultrasonic(now: Snapshot, width: int) -> Line:
     centimetres = f"{now.ultrasonic_mm / 10:.1f}"
     return _fit(
         width,
-        (
-            _label("Ultrasonic"),
-            _value(f"{centimetres:>6}"),
-            _unit(" cm"),
-            _value(f"{now.ultrasonic_mm:8d}"),
-            _unit(" mm"),
-        ),
-        (
-            _label("Ultrasonic", 11),
-            _value(f"{centimetres:>5}"),
-            _unit("cm"),
-            _value(f"{now.ultrasonic_mm:5d}"),
-            _unit("mm"),
-        ),
+        (_label("Ultrasonic"), *_values(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm")),
+        (_label("Ultrasonic", 11), *_values(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm")),
         (_label("Ultrasonic", 11), _value(centimetres), _unit("cm")),
     )
 
@@ -224,40 +200,21 @@ def _gyro(now: Snapshot, width: int) -> Line:
         return [_label("Gyro"), _unit("none")]
     return _fit(
         width,
-        (
-            _label("Gyro"),
-            _value(f"{now.gyro_deg:6d}"),
-            _unit("°   rate"),
-            _value(f"{now.gyro_rate_dps:6d}"),
-            _unit(" °/s"),
-        ),
-        (_label("Gyro", 7), _value(f"{now.gyro_deg}"), _unit("° rate "), _value(f"{now.gyro_rate_dps}"), _unit("°/s")),
-        (_label("Gyro", 5), _value(f"{now.gyro_deg}"), _unit("° "), _value(f"{now.gyro_rate_dps}"), _unit("°/s")),
+        (_label("Gyro"), *_values(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s")),
+        (_label("Gyro", 7), *_values(f"{now.gyro_deg}", "° rate ", f"{now.gyro_rate_dps}", "°/s")),
+        (_label("Gyro", 5), *_values(f"{now.gyro_deg}", "° ", f"{now.gyro_rate_dps}", "°/s")),
     )
 
 
 def _pose(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
-    x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_heading_deg(pose.heading_deg):.1f}"
+    shown_deg = shown_heading_deg(pose.heading_deg)
+    x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_deg:.1f}"
     return _fit(
         width,
-        (
-            _label("Pose"),
-            _unit("x"),
-            _value(f"{x:>7}"),
-            _unit("  y"),
-            _value(f"{y:>7}"),
-            _value(f"{heading:>8}"),
-            _unit("°"),
-        ),
-        (_unit("x "), _value(x), _unit(" y "), _value(y), _unit(" "), _value(heading), _unit("°")),
-        (
-            _value(f"{pose.x_mm:.0f}"),
-            _unit(","),
-            _value(f"{pose.y_mm:.0f}"),
-            _value(f" {shown_heading_deg(pose.heading_deg):.0f}"),
-            _unit("°"),
-        ),
+        (_label("Pose"), _unit("x"), *_values(f"{x:>7}", "  y", f"{y:>7}"), *_values(f"{heading:>8}", "°")),
+        (_unit("x "), *_values(x, " y ", y, " ", heading, "°")),
+        (*_values(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"), *_values(f" {shown_deg:.0f}", "°")),
     )
 
 

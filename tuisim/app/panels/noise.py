@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
-from textual import events, on
+from textual import on
 from textual.app import ComposeResult
-from textual.containers import Horizontal, Vertical
+from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
-from tuisim.app.form import NumberInput, Slider
+from tuisim.app.form import EntryPanel, NumberInput, Slider
 from tuisim.app.snapshot import Snapshot
 from tuisim.config.options import MAX_SEED, whole
 from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec
@@ -19,13 +18,12 @@ from tuisim.errors import ConfigError
 
 _KINDS = {"light": ("Light", MAX_LIGHT_NOISE), "motor": ("Motor", MAX_MOTOR_NOISE)}
 """By field of `NoiseSpec`: name and largest value."""
-_USE = "At once; seed at next run"
 
 
-class Noise(Vertical):
+class Noise(EntryPanel):
     """The noise panel: two sliders with a field each, and the seed."""
 
-    TITLE: ClassVar[str] = "Noise"
+    USE = "At once; seed at next run"
 
     @dataclass
     class Changed(Message):
@@ -41,7 +39,6 @@ class Noise(Vertical):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
         self._shown: tuple[NoiseSpec, int] | None = None
         self._past = False
 
@@ -54,7 +51,7 @@ class Noise(Vertical):
         with Horizontal(classes="field"):
             yield Label("Seed", markup=False)
             yield NumberInput("0", id="seed", compact=True, select_on_focus=True)
-        yield Static(_USE, id="message", markup=False)
+        yield Static(self.USE, id="message", markup=False)
 
     def begin(self) -> None:
         """Focus a slider, where letters are still keys of the app; tab leads to its number field."""
@@ -83,7 +80,7 @@ class Noise(Vertical):
     def _slid(self, event: Slider.Changed) -> None:
         event.stop()
         self.query_one(f"#{event.slider.id}-number", Input).value = str(event.value)
-        self._say("")
+        self.say("")
         # In the past, the question about a branch comes at the end of the drag only.
         if event.done or not self._past:
             self._choose()
@@ -95,15 +92,6 @@ class Noise(Vertical):
             self._shown = None
         self.post_message(self.Changed(NoiseSpec(light, motor)))
 
-    @on(Input.Submitted)
-    def _typed(self, event: Input.Submitted) -> None:
-        event.stop()
-        self._apply(event.input)
-
-    def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        if isinstance(event.widget, Input):
-            self._apply(event.widget)
-
     def _apply(self, entry: Input) -> None:
         kind = (entry.id or "").removesuffix("-number")
         name, maximum = _KINDS.get(kind, ("Seed", MAX_SEED))
@@ -111,16 +99,12 @@ class Noise(Vertical):
             value = whole(0, maximum)(entry.value.strip(), "")
         except ConfigError as error:
             entry.add_class("wrong")
-            self._say(f"{name} {error.message}")
+            self.say(f"{name} {error.message}")
             return
         entry.remove_class("wrong")
-        self._say("")
+        self.say("")
         if kind == "seed":
             self.post_message(self.Seeded(value))
         else:
             self.query_one(f"#{kind}", Slider).value = value
             self._choose()
-
-    def _say(self, wrong: str) -> None:
-        self.query_one("#message", Static).update(wrong or _USE)
-        self.set_class(bool(wrong), "-wrong")

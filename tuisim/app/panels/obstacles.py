@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar, TypeAlias
 
-from textual import events, on
+from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Horizontal, Vertical
+from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app.form import reason, typed_number
+from tuisim.app.form import EntryPanel, reason, typed_number
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
@@ -25,7 +25,6 @@ Boxes: TypeAlias = tuple[Obstacle, ...]
 
 _FIELDS = {"x_mm": "X", "y_mm": "Y", "width_mm": "W", "height_mm": "H"}
 _NEW_SIZE_MM = 200.0
-_USE = "Drag to draw another"
 _NONE = "none: drag to draw one"
 
 
@@ -45,10 +44,10 @@ def _replaced(at: int, by: Boxes, boxes: Boxes) -> Boxes:
     return (*boxes[:at], *by, *boxes[at + 1 :])
 
 
-class Obstacles(Vertical):
+class Obstacles(EntryPanel):
     """The obstacles panel: the list, the four numbers of the selected box, and the actions."""
 
-    TITLE: ClassVar[str] = "Obstacles"
+    USE = "Drag to draw another"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("plus,insert", "add", "Add", show=False),
         Binding("delete,backspace,minus", "remove", "Remove", show=False),
@@ -69,7 +68,6 @@ class Obstacles(Vertical):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
         self._boxes: tuple[Obstacle, ...] = ()
         self.at: int | None = None
         """Index of the selected obstacle."""
@@ -87,7 +85,7 @@ class Obstacles(Vertical):
         with Horizontal(classes="links"):
             yield Static("[@click=app.act('obstacles')]k Sets[/]")
             yield Static("[@click=app.act('save-obstacles')]ctrl+o Save[/]")
-        yield Static(_USE, id="message", markup=False)
+        yield Static(self.USE, id="message", markup=False)
 
     def show(self, snapshot: Snapshot) -> None:
         """Do nothing: this panel shows plans, not moments."""
@@ -130,7 +128,7 @@ class Obstacles(Vertical):
             entry.value = f"{getattr(box, field):g}" if box else ""
             entry.disabled = box is None
             entry.remove_class("wrong")
-        self._say("")
+        self.say("")
 
     @on(OptionList.OptionHighlighted)
     def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
@@ -145,15 +143,6 @@ class Obstacles(Vertical):
         event.stop()
         self.query_one("#x_mm", Input).focus()
 
-    @on(Input.Submitted)
-    def _submitted(self, event: Input.Submitted) -> None:
-        event.stop()
-        self._apply(event.input)
-
-    def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        if isinstance(event.widget, Input) and not event.widget.disabled:
-            self._apply(event.widget)
-
     def _apply(self, entry: Input) -> None:
         if self.at is None or entry.value == f"{getattr(self._boxes[self.at], entry.id or ''):g}":
             entry.remove_class("wrong")
@@ -163,7 +152,7 @@ class Obstacles(Vertical):
             box = replace(self._boxes[self.at], **changed)
         except ConfigError as error:
             entry.add_class("wrong")
-            self._say(f"{_FIELDS[entry.id or '']} {reason(error)}")
+            self.say(f"{_FIELDS[entry.id or '']} {reason(error)}")
             return
         self.post_message(self.Edited(partial(_replaced, self.at, (box,))))
 
@@ -172,13 +161,9 @@ class Obstacles(Vertical):
 
     def action_remove(self) -> None:
         if self.at is None:
-            self._say("No obstacle to remove")
+            self.say("No obstacle to remove")
             return
         self.post_message(self.Edited(partial(_replaced, self.at, ())))
-
-    def _say(self, wrong: str) -> None:
-        self.query_one("#message", Static).update(wrong or _USE)
-        self.set_class(bool(wrong), "-wrong")
 
 
 GRID_MM = 5.0

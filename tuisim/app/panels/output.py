@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.cells import cell_len, chop_cells
@@ -40,18 +41,14 @@ class Answer(Input):
 class Output(Vertical):
     """The output panel."""
 
-    TITLE: ClassVar[str] = "Output"
-
+    @dataclass
     class Answered(Message):
         """Posted when the user has answered `input()`; None is end of file."""
 
-        def __init__(self, text: str | None) -> None:
-            super().__init__()
-            self.text = text
+        text: str | None
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
         self._log = Log()
         self._past_log = Log()
         """The output up to a past instant, shown instead of the whole output."""
@@ -101,16 +98,13 @@ class Output(Vertical):
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:
         event.stop()
-        self._answer(event.value)
+        # The field is removed when the run reports that it no longer waits.
+        self.post_message(self.Answered(event.value))
 
     @on(Answer.EndOfFile)
     def _end_of_file(self, event: Answer.EndOfFile) -> None:
         event.stop()
-        self._answer(None)
-
-    def _answer(self, text: str | None) -> None:
-        # The field is removed when the run reports that it no longer waits.
-        self.post_message(self.Answered(text))
+        self.post_message(self.Answered(None))
 
     def show(self, snapshot: Snapshot) -> None:
         """Do nothing: rows arrive through `add`."""

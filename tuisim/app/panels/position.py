@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from dataclasses import dataclass
 
 from textual import on
 from textual.app import ComposeResult
@@ -40,18 +40,14 @@ def parse_field(field: str, text: str) -> float:
 class Positioning(Vertical):
     """The positioning panel: X, Y and angle of the robot."""
 
-    TITLE: ClassVar[str] = "Positioning"
-
+    @dataclass
     class Applied(Message):
         """Posted when the user sets the pose."""
 
-        def __init__(self, pose: Pose) -> None:
-            super().__init__()
-            self.pose = pose
+        pose: Pose
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
         self._shown = {"x": "", "y": "", "angle": ""}
 
     def compose(self) -> ComposeResult:

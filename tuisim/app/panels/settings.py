@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, VerticalScroll
 from textual.message import Message
+from textual.widget import Widget
 from textual.widgets import Static
 
 from tuisim.app.form import Choice, Row
@@ -26,7 +27,6 @@ _LINKS = (
 class Settings(VerticalScroll, can_focus=False):
     """The settings panel: a scrolled form."""
 
-    TITLE: ClassVar[str] = "Settings"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("down", "app.focus_next", "Next field", show=False),
         Binding("up", "app.focus_previous", "Previous field", show=False),
@@ -52,7 +52,6 @@ class Settings(VerticalScroll, can_focus=False):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
         self._plan: NextRun | None = None
         self._fields: list[str] = []
         self._begins = False
@@ -87,19 +86,16 @@ class Settings(VerticalScroll, can_focus=False):
         """
         wanted = {edit.id for part in parts for edit in part.edits}
         rows = {row.field: row for row in self.query(Row)}
-        await self.query(".heading").remove()
-        for field, row in rows.items():
-            if field not in wanted:
-                await row.remove()
+        gone = [row for field, row in rows.items() if field not in wanted]
+        form: list[Widget] = []
         for part in parts:
-            await self.mount(Static(part.title, classes="form heading", markup=False))
-            for edit in part.edits:
-                if edit.id in rows:
-                    self.move_child(rows[edit.id], after=-1)
-                else:
-                    row = Row(edit.id, edit.label, bool(edit.choices))
-                    row.add_class("form")
-                    await self.mount(row)
+            form.append(Static(part.title, classes="form heading", markup=False))
+            form += [rows.get(edit.id) or _new_row(edit) for edit in part.edits]
+        with self.app.batch_update():
+            await self.remove_children([*self.query(".heading"), *gone])
+            await self.mount_all([widget for widget in form if not widget.is_attached])
+            for widget in form:
+                self.move_child(widget, after=-1)
         if self._plan:
             self.show_next_run(self._plan)
         if self._begins:
@@ -118,3 +114,9 @@ class Settings(VerticalScroll, can_focus=False):
         edit = find(self._plan, event.row.field) if self._plan else None
         if edit is not None:
             self.post_message(self.Edited(event.row, edit, event.text, event.by))
+
+
+def _new_row(edit: Field) -> Row:
+    row = Row(edit.id, edit.label, bool(edit.choices))
+    row.add_class("form")
+    return row

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 from rich.style import Style
@@ -14,6 +13,7 @@ from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
+from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.render.mat import ZOOMS, Pixels, following
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
@@ -34,6 +34,7 @@ _RAY_LAG_PX = 1.0
 """Rays are recomputed once their ends have moved this far: they change far more cells than the robot does, and a
 smaller move is invisible."""
 
+_TITLE = PANELS["world"].title
 _ANY_PEN = PenSpec()
 
 _SHOWS_UNTIL_TAKEN = 10
@@ -52,8 +53,6 @@ class _Grip:
 
 class World(Widget, can_focus=True):
     """The world panel: a frame around the picture."""
-
-    TITLE: ClassVar[str] = "World"
 
     DEFAULT_CSS = """
     World { layout: vertical; }
@@ -80,19 +79,12 @@ class World(Widget, can_focus=True):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = self.TITLE
-        self._view = WorldView(self._dragged, self._boxes_dragged)
+        self._view = WorldView()
         self.time_bar = TimeBar()
 
     def compose(self) -> ComposeResult:
         yield self._view
         yield self.time_bar
-
-    def _dragged(self, pose: Pose, done: bool) -> None:
-        self.post_message(self.PoseDragged(pose, done))
-
-    def _boxes_dragged(self, obstacles: tuple[Obstacle, ...], index: int) -> None:
-        self.post_message(self.BoxesDragged(obstacles, index))
 
     def edit_boxes(self, on: bool, marked: int | None = None) -> None:
         """Enable or disable drawing and moving obstacles with the mouse; `marked` is the selected one."""
@@ -117,7 +109,7 @@ class World(Widget, can_focus=True):
     @zoom.setter
     def zoom(self, zoom: int) -> None:
         self._view.zoom = zoom if zoom in ZOOMS else 1
-        self.border_title = f"{self.TITLE} {self.zoom}×" if self.zoom > 1 else self.TITLE
+        self.border_title = f"{_TITLE} {self.zoom}×" if self.zoom > 1 else _TITLE
         self._view.repaint_scene()
 
     def cycle_zoom(self) -> None:
@@ -154,23 +146,12 @@ class World(Widget, can_focus=True):
 
 
 class WorldView(PixelView):
-    """The picture itself.
+    """The picture itself; posts the messages of `World`."""
 
-    Args:
-        dragged: Called with a pose and whether the drag is over.
-        boxes_dragged: Called with the obstacles after a drag, and the index of the dragged one.
-    """
-
-    def __init__(
-        self,
-        dragged: Callable[[Pose, bool], None],
-        boxes_dragged: Callable[[tuple[Obstacle, ...], int], None],
-    ) -> None:
+    def __init__(self) -> None:
         super().__init__()
         self.show_rays = False
         self.zoom = 1
-        self._tell = dragged
-        self._tell_boxes = boxes_dragged
         self._edits_boxes = False
         self._box_grip: BoxGrip | None = None
         self._draft: tuple[Obstacle, ...] | None = None
@@ -310,7 +291,7 @@ class WorldView(PixelView):
         pose = self._dragged_to(self._grip, *self._at(event))
         if pose != self._held:
             self._held = pose
-            self._tell(pose, False)
+            self.post_message(World.PoseDragged(pose, done=False))
             self._draw()
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
@@ -325,7 +306,7 @@ class WorldView(PixelView):
         self._grip = None
         self._held_shows = _SHOWS_UNTIL_TAKEN
         if self._held is not None:
-            self._tell(self._held, True)
+            self.post_message(World.PoseDragged(self._held, done=True))
 
     def on_mouse_release(self) -> None:
         """Cancel the drag: a dialog has captured the mouse."""
@@ -338,9 +319,10 @@ class WorldView(PixelView):
     def _drop_box(self, grip: BoxGrip) -> None:
         draft, self._draft, self._box_grip = self._draft, None, None
         if draft is not None:
-            self._tell_boxes(draft, len(grip.boxes) if grip.index is None else grip.index)
+            dragged = len(grip.boxes) if grip.index is None else grip.index
+            self.post_message(World.BoxesDragged(draft, dragged))
         elif grip.index is not None:
-            self._tell_boxes(grip.boxes, grip.index)
+            self.post_message(World.BoxesDragged(grip.boxes, grip.index))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         self._turn(event, TURN_STEP_DEG)
@@ -357,7 +339,7 @@ class WorldView(PixelView):
         self._held_shows = _SHOWS_UNTIL_TAKEN
         if self._grip is not None:
             self._grip = replace(self._grip, pose=replace(self._grip.pose, heading_deg=self._held.heading_deg))
-        self._tell(self._held, self._grip is None)
+        self.post_message(World.PoseDragged(self._held, done=self._grip is None))
         self._draw()
 
     def _dragged_to(self, grip: _Grip, x_mm: float, y_mm: float) -> Pose:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rich.color import Color
 from rich.style import Style
 
+from tuisim.app.render.mat import shrunk
 from tuisim.charts.text_runs import Run
 from tuisim.core.css_colors import Rgb
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
@@ -126,22 +127,6 @@ def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
     lines: list[list[Run]] = [[(" " * left, _PLAIN), *line] for line in drawn]
     top = max(0, (rows - len(lines)) // 2)
     return ([[] for _ in range(top)] + lines + [[] for _ in range(rows)])[:rows]
-
-
-def shrunk(ink: NDArray[np.uint8], rows: int, columns: int) -> NDArray[np.float64]:
-    """Return the share of dark pixels in each cell of a coarser grid.
-
-    Args:
-        ink: 1 where a pixel is dark, shape (h, w). rows, columns: The coarser grid, at most h and w.
-
-    Returns:
-        0 to 1, shape (rows, columns).
-    """
-    down = np.arange(rows + 1) * ink.shape[0] // rows
-    across = np.arange(columns + 1) * ink.shape[1] // columns
-    sums = np.add.reduceat(np.add.reduceat(ink, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1)
-    shares: NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
-    return shares
 
 
 def _in_dots(shares: NDArray[np.float64]) -> list[list[Run]]:

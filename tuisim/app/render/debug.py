@@ -99,7 +99,6 @@ def debug_lines(view: DebugView, width: int) -> list[Line]:
 
 
 def _hint(state: RunPhase, width: int) -> list[Line]:
-    """Return the keys that help in a run that is not paused."""
     match state:
         case RunPhase.RUNNING:
             return _text("running", ("space  pauses    n  pauses at the next line",), width)

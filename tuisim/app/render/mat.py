@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -179,20 +179,14 @@ class MatPictures:
     """
 
     def __init__(self, mat: Pixels, outside_rgb: tuple[int, int, int]) -> None:
-        self._mat = mat
-        self._outside_rgb = outside_rgb
-        self._made: OrderedDict[Viewport, Pixels] = OrderedDict()
-
-    def picture(self, view: Viewport) -> Pixels:
-        """Return the picture for a viewport. It is shared: do not write into it."""
-        made = self._made.pop(view, None)
-        if made is None:
-            made = shrink(self._mat, view, self._outside_rgb)
+        @lru_cache(maxsize=_REMEMBERED)
+        def picture(view: Viewport) -> Pixels:
+            made = shrink(mat, view, outside_rgb)
             made.flags.writeable = False
-        self._made[view] = made
-        if len(self._made) > _REMEMBERED:
-            self._made.popitem(last=False)
-        return made
+            return made
+
+        self.picture: Callable[[Viewport], Pixels] = picture
+        """Returns the picture for a viewport. It is shared: do not write into it."""
 
 
 FULL_PX = 20
@@ -212,11 +206,11 @@ class DiscLayout:
     width_px: int
     height_px: int
     side_px: int
-    """Side of the box of one disc."""
-    corners: tuple[tuple[int, int], ...]
     """Side of the box around a disc."""
-    beside: bool
+    corners: tuple[tuple[int, int], ...]
     """Column and row of the upper left corner of each box."""
+    beside: bool
+    """Whether they are side by side, and not one above the other."""
 
 
 def lay_out(count: int, width_px: int, height_px: int) -> DiscLayout:
@@ -273,8 +267,22 @@ def _scaled(box: bytes, side_px: int, corner_rgb: tuple[int, int, int]) -> Pixel
     pixels[~np.array(disc_mask(diameter))] = corner_rgb
     if diameter <= side_px:
         return pixels
-    edges = np.arange(side_px + 1) * diameter // side_px
-    sums = np.add.reduceat(np.add.reduceat(pixels, edges[:-1], axis=0, dtype=np.uint32), edges[:-1], axis=1)
-    sizes = np.diff(edges)
-    smaller: Pixels = (sums / (sizes[:, None, None] * sizes[None, :, None])).astype(np.uint8)
-    return smaller
+    return np.dstack([shrunk(channel, side_px, side_px) for channel in np.moveaxis(pixels, 2, 0)]).astype(np.uint8)
+
+
+def shrunk(pixels: npt.NDArray[np.uint8], rows: int, columns: int) -> npt.NDArray[np.float64]:
+    """Return the mean of the pixels in each cell of a coarser grid.
+
+    Args:
+        pixels: Shape (h, w).
+        rows: Of the coarser grid, at most h.
+        columns: Of the coarser grid, at most w.
+
+    Returns:
+        Shape (rows, columns).
+    """
+    down = np.arange(rows + 1) * pixels.shape[0] // rows
+    across = np.arange(columns + 1) * pixels.shape[1] // columns
+    sums = np.add.reduceat(np.add.reduceat(pixels, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1)
+    means: npt.NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
+    return means

@@ -74,7 +74,6 @@ class ScenePainter:
         return picture
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
-        """Return mat, obstacles, beacon and trace."""
         key = (view, scene.obstacles, scene.marked, scene.beacon, self.trace, self.trace.clears)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from tuisim.app.form import reason, typed_number
 from tuisim.app.setup.next_run import NextRun, with_arguments, with_profile, with_robot, with_robot_edited, with_values
@@ -28,6 +28,7 @@ from tuisim.core.spec import (
     STRATEGIES,
     ColorSensorSpec,
     GyroSpec,
+    PenSpec,
     RobotSpec,
     SensorSpec,
     UltrasonicSpec,
@@ -112,10 +113,17 @@ def _robot_field(
     return Field(edit_id, label, lambda plan: read(plan.spec.robot), write, choices)
 
 
+Part = TypeVar("Part", RobotSpec, PenSpec, SensorSpec)
+
+
+def _with(part: Part, key: str, value: Any) -> Part:
+    changed: dict[str, Any] = {key: value}
+    return replace(part, **changed)
+
+
 def _length(key: str, label: str) -> Field:
     def change(robot: RobotSpec, text: str) -> RobotSpec:
-        changed: dict[str, Any] = {key: _number(text)}
-        return replace(robot, **changed)
+        return _with(robot, key, _number(text))
 
     return _robot_field(key, label, lambda robot: _shown(getattr(robot, key)), change)
 
@@ -146,18 +154,15 @@ def _motor_port_field(key: str, label: str) -> Field:
     other = "right_port" if key == "left_port" else "left_port"
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
-        ports: dict[str, Any] = {key: port}
-        if getattr(robot, other) == port:
-            ports[other] = getattr(robot, key)
-        return replace(robot, **ports)
+        swapped = getattr(robot, key) if getattr(robot, other) == port else getattr(robot, other)
+        return replace(robot, **{key: port, other: swapped})
 
     return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
 
 
 def _motor_kind_field(key: str, label: str) -> Field:
     def change(robot: RobotSpec, kind: str) -> RobotSpec:
-        kinds: dict[str, Any] = {key: kind}
-        return replace(robot, **kinds)
+        return _with(robot, key, kind)
 
     return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
 
@@ -202,8 +207,7 @@ def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
 
 def _sensor_field(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> Field:
     def change(robot: RobotSpec, text: str) -> RobotSpec:
-        changed: dict[str, Any] = {key: parse(text)}
-        return _with_sensors(robot, replace(_sensors(robot)[name], **changed))
+        return _with_sensors(robot, _with(_sensors(robot)[name], key, parse(text)))
 
     def read(robot: RobotSpec) -> str:
         value = getattr(_sensors(robot)[name], key)
@@ -224,7 +228,6 @@ def _sensor_port_field(name: str) -> Field:
 
 
 def _presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> Field:
-    """Return the field that adds or removes a sensor."""
     return _robot_field(f"{name}.used", "Used", lambda robot: ON if name in _sensors(robot) else OFF, change, SWITCHED)
 
 
@@ -277,12 +280,11 @@ def _single_used(name: str, field: str, fresh: SensorSpec) -> Field:
     """Return the field that adds or removes the ultrasonic sensor or the gyro."""
 
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
-        changed: dict[str, Any] = {field: None}
-        if word == ON:
-            if getattr(robot, field) is not None:
-                return robot
-            changed[field] = replace(fresh, port=_free_port(robot, fresh.port))
-        return replace(robot, **changed)
+        if word == OFF:
+            return _with(robot, field, None)
+        if getattr(robot, field) is not None:
+            return robot
+        return _with(robot, field, replace(fresh, port=_free_port(robot, fresh.port)))
 
     return _presence_field(name, switched)
 
@@ -343,8 +345,7 @@ def _further_fields(part: SensorSpec) -> tuple[Field, ...]:
 def _pen_fields() -> tuple[Field, ...]:
     def place(key: str) -> Field:
         def change(robot: RobotSpec, text: str) -> RobotSpec:
-            changed: dict[str, Any] = {key: _number(text)}
-            return replace(robot, pen=replace(robot.pen, **changed))
+            return replace(robot, pen=_with(robot.pen, key, _number(text)))
 
         label = key.replace("_", " ")
         return _robot_field(f"pen.{key}", label, lambda robot: _shown(getattr(robot.pen, key)), change)

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
+from tuisim.config import mat_cache, mats
+from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.field import Field
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from tuisim.config.mat_cache import FieldFiles
-    from tuisim.runs.run_folder import StoredRun
-
+from tuisim.runs.run_folder import StoredRun, mat_files
 
 MatKey = tuple[str, str, frozenset[int]]
 """Name, how a custom image is fitted, and the diameters of the prepared discs."""
@@ -53,8 +50,6 @@ def prepare_mat(spec: RunSpec) -> Mat:
     Raises:
         BackgroundError: there is no such mat, or its image cannot be read.
     """
-    from tuisim.config import mat_cache, mats
-
     image = mats.background(spec.world.background).image
     key = mat_key(spec)
     return _opened(key, mat_cache.prepare(image, key[2], fit=key[1]))
@@ -66,19 +61,13 @@ def prepare_mat_of(run: StoredRun) -> Mat:
     Raises:
         LogError: it is no longer available.
     """
-    from tuisim.runs.run_folder import mat_files
-
     return _opened(mat_key(run.spec), mat_files(run))
 
 
 def blank_mat(spec: RunSpec) -> Mat:
     """Return a white sheet in place of a missing mat; sensors have nothing to read on it."""
-    import numpy as np
-
     return Mat(mat_key(spec), None, np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8))
 
 
 def _opened(key: MatKey, files: FieldFiles) -> Mat:
-    from tuisim.config import mat_cache
-
     return Mat(key, mat_cache.open_field(files), mat_cache.mat_pixels(files))

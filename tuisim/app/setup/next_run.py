@@ -10,7 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tuisim.config.build import build_run_spec, settings_from
+from tuisim.config.obstacles import load_obstacles
 from tuisim.config.options import RobotChoice, Settings, settings_of
+from tuisim.config.profiles import load_profile
+from tuisim.config.robots import choose_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
 from tuisim.errors import BackgroundError
@@ -59,8 +63,6 @@ def plan_of(settings: Settings) -> NextRun:
     Raises:
         ConfigError: they name something that does not exist, or an invalid file.
     """
-    from tuisim.config.build import build_run_spec
-
     world, words = _resolved({field: getattr(settings, field) for field in WORLD_FIELDS})
     settings = replace(settings, **world)
     return NextRun(settings, build_run_spec(settings), words, world["robot"])
@@ -68,8 +70,6 @@ def plan_of(settings: Settings) -> NextRun:
 
 def plan_of_spec(spec: RunSpec) -> NextRun:
     """Return the plan of a run of which nothing else is known."""
-    from tuisim.config.build import settings_from
-
     return replace(plan_of(settings_of(settings_from(spec))), spec=spec)
 
 
@@ -84,10 +84,6 @@ def plan_of_run(spec: RunSpec) -> NextRun:
 
 def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
     """Return robot, obstacles and profile as objects, and the words that named them."""
-    from tuisim.config.obstacles import load_obstacles
-    from tuisim.config.profiles import load_profile
-    from tuisim.config.robots import choose_robot
-
     found, words = dict(choices), {}
     for field, load in (("robot", choose_robot), ("obstacles", load_obstacles), ("profile", load_profile)):
         if isinstance(word := found.get(field), str):
@@ -96,8 +92,6 @@ def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str
 
 
 def _built(plan: NextRun, **changes: Any) -> NextRun:
-    from tuisim.config.build import build_run_spec
-
     settings = replace(plan.settings, **changes)
     return replace(plan, settings=settings, spec=build_run_spec(settings))
 

@@ -9,6 +9,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder
+from tuisim.config.files import Location, read_file, required, save_toml, table, toml_key, toml_lines
+from tuisim.config.folders import home_folder
+from tuisim.config.worlds import pose_from_table
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
@@ -72,8 +75,6 @@ _HEAD = "# Poses saved in tuisim: mm from the lower left corner, degrees counter
 
 def poses_file() -> Path:
     """Return the path of the file of saved poses."""
-    from tuisim.config.folders import home_folder
-
     return home_folder() / FILE
 
 
@@ -83,16 +84,11 @@ def load_poses() -> dict[str, Pose]:
     Raises:
         ConfigError: their file cannot be read or is invalid.
     """
-    from tuisim.config.files import read_file
-
     path = poses_file()
     return _poses(read_file(path, ConfigError)) if path.exists() else {}
 
 
 def _poses(data: object) -> dict[str, Pose]:
-    from tuisim.config.files import Location, required, table
-    from tuisim.config.worlds import pose_from_table
-
     at = Location(str(poses_file()))
     poses = required(table(data, at, ("poses",)), "poses", at)
     return {name: pose_from_table(pose, at.at(f"poses.{name}")) for name, pose in table(poses, at.at("poses")).items()}
@@ -123,8 +119,6 @@ def delete_pose(name: str) -> None:
 
 
 def _write(poses: Mapping[str, Pose]) -> None:
-    from tuisim.config.files import Location, save_toml, toml_key, toml_lines
-
     path = poses_file()
     lines = [_HEAD, "", "[poses]"]
     for name, pose in poses.items():

@@ -10,7 +10,9 @@ from rich.color import Color
 from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
+from textual.app import ComposeResult
 from textual.color import Color as TextualColor
+from textual.events import MouseEvent
 from textual.filter import LineFilter
 from textual.geometry import Region
 from textual.strip import Strip
@@ -165,8 +167,31 @@ class LinesView(RowsView):
         return Strip(segments, self.size.width)
 
 
+class LinesPanel(Widget):
+    """A widget whose content is lines of text, drawn anew for each size."""
+
+    DEFAULT_CSS = "LinesPanel > LinesView { width: 1fr; height: 1fr; }"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._text = LinesView()
+
+    def compose(self) -> ComposeResult:
+        yield self._text
+
+    def on_resize(self) -> None:
+        self.call_after_refresh(self._redraw)
+
+    def _redraw(self) -> None:
+        """Draw the lines for the current size."""
+
+    def cell_at(self, event: MouseEvent) -> tuple[int, int]:
+        """Return column and row of the mouse in the text."""
+        origin = self._text.region
+        return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
+
+
 def _cut(strips: list[Strip], crop: Region, width: int, style: Style) -> list[Strip]:
-    """Crop rows to the columns of a region."""
     first, last = crop.column_span
     if first == 0 and last == width:
         return [strip if strip.cell_length == width else strip.adjust_cell_length(width, style) for strip in strips]

@@ -135,7 +135,6 @@ def _rgb_codes(rgb: int, depth: int) -> tuple[str, str]:
 
 @lru_cache(maxsize=4096)
 def _written(text: str, style: Style | None, system: ColorSystem) -> tuple[Cell, ...]:
-    """Return the cells of a text."""
     look = _look(style, system)
     if text.isascii():
         return tuple(_simplest(char, look) for char in text)
@@ -166,7 +165,6 @@ def _look(style: Style | None, system: ColorSystem) -> CellLook:
 
 
 def _color_codes(color: Color | None, system: ColorSystem) -> tuple[str, str]:
-    """Return the codes that set a colour as foreground and as background."""
     if color is None:
         return "39", "49"
     if color.triplet is not None and system is ColorSystem.EIGHT_BIT:

@@ -89,22 +89,11 @@ def message_lines(size: Size) -> list[str]:
     return ["!"]
 
 
-class TooSmall(CompositorUpdate):
-    """Fills the terminal with the message.
-
-    Args:
-        size: Size of the terminal.
-    """
-
-    def __init__(self, size: Size) -> None:
-        self._size = size
-
-    def render_segments(self, console: Console) -> str:
-        """Return the codes that show the message and nothing else."""
-        lines = message_lines(self._size)
-        top = (self._size.height - len(lines)) // 2
-        rows = (Control.move_to(0, top + at).segment.text + line for at, line in enumerate(lines))
-        return "\x1b[0m\x1b[2J" + "".join(rows)
+def _message_codes(size: Size) -> str:
+    lines = message_lines(size)
+    top = (size.height - len(lines)) // 2
+    rows = (Control.move_to(0, top + at).segment.text + line for at, line in enumerate(lines))
+    return "\x1b[0m\x1b[2J" + "".join(rows)
 
 
 _HARMLESS = Sanitize()
@@ -113,6 +102,8 @@ _HARMLESS = Sanitize()
 class TerminalApp(App[None]):
     """An app that restores the terminal, even when it is stopped or terminated from outside."""
 
+    TITLE = "tuisim"
+    NOTIFICATION_TIMEOUT = 4
     # The palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
     COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
 
@@ -132,7 +123,7 @@ class TerminalApp(App[None]):
                 event = events.Resize(laid_out(event.size), laid_out(event.size))
             if was != self.too_small:
                 # The layout may stay the same, and would not be drawn then.
-                self.call_later(self.draw_again)
+                self.call_later(self.action_redraw)
         elif isinstance(event, (events.InputEvent, events.Paste)) and self._ignores(event):
             return
         if isinstance(event, events.Key) and (self._waiting_keys or self._is_opening):
@@ -175,7 +166,7 @@ class TerminalApp(App[None]):
             # A screen that was closed while being mounted still tries to draw itself.
             renderable = None
         elif self.too_small and renderable is not None:
-            renderable = cast(ConsoleRenderable, TooSmall(self.too_small))
+            renderable = cast(ConsoleRenderable, _Codes(_message_codes(self.too_small)))
             self.frame_buffer.forget()
         elif isinstance(update, CompositorUpdate) and self._writes:
             codes = self.frame_buffer.codes(update, self.console)
@@ -216,14 +207,10 @@ class TerminalApp(App[None]):
         loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     @on(Driver.SignalResume)
-    def draw_again(self) -> None:
+    def action_redraw(self) -> None:
         """Redraw the whole screen: something else has written over it, such as the shell while the app was stopped."""
         self.frame_buffer.forget()
         self.refresh(layout=True)
-
-    def action_redraw(self) -> None:
-        """Redraw the whole screen because the user asks for it."""
-        self.draw_again()
 
     def action_suspend_process(self) -> None:
         if isinstance(self._driver, TerminalDriver):
@@ -246,7 +233,7 @@ class TerminalApp(App[None]):
 
 
 class _Codes(CompositorUpdate):
-    """An update that was converted to codes."""
+    """An update that is codes already."""
 
     def __init__(self, codes: str) -> None:
         self._codes = codes

@@ -58,8 +58,7 @@ def tick(screen: LogScreen) -> None:
 
 def facets(screen: LogScreen) -> None:
     """Switch between one chart per variable and one for all."""
-    screen.chart.options.facets = not screen.chart.options.facets
-    screen.redraw_chart()
+    switch(screen, "facets")
     if screen.chart.options.facets:
         if len(screen.model.traces.ticked()) < 2:
             screen.say("Only one variable is shown: v selects another, space shows it")
@@ -67,15 +66,10 @@ def facets(screen: LogScreen) -> None:
             screen.say("Too little height for several charts: + enlarges the chart")
 
 
-def marks(screen: LogScreen) -> None:
-    """Switch between points and lines."""
-    screen.chart.options.marks = not screen.chart.options.marks
-    screen.redraw_chart()
-
-
-def hold(screen: LogScreen) -> None:
-    """Switch sample-and-hold of values on or off."""
-    screen.chart.options.hold = not screen.chart.options.hold
+def switch(screen: LogScreen, option: str) -> None:
+    """Switch one of the `ChartOptions` on or off."""
+    options = screen.chart.options
+    setattr(options, option, not getattr(options, option))
     screen.redraw_chart()
 
 

@@ -15,6 +15,7 @@ from tuisim.logs.expressions import FUNCTIONS
 from tuisim.logs.log import Log
 from tuisim.runs.diff import RunDiff, diff_runs
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
 
 _DERIVED: tuple[Form, ...] = (
     ("speed = slope(x_mm)", "derivative per second; `speed =` is optional"),
@@ -137,8 +138,6 @@ def differences(screen: LogScreen) -> None:
         first = runs[0]
 
         def go(text: str) -> None:
-            from tuisim.runs.store import RunStore
-
             if not text:
                 raise LogError("no run given", "its number, its id, or last")
             other = RunStore().load_run(text)

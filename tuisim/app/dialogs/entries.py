@@ -1,21 +1,23 @@
-"""Dialogs of the breakpoints and watches: add, edit, enable, delete."""
+"""Dialogs of lists whose entries the user adds and deletes: breakpoints, watches, saved poses."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Sized
 from dataclasses import replace
 from typing import ClassVar, Generic, TypeVar
 
-from rich.table import Table
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.dialogs.dialog import Dialog, Result, name_and_title
+from tuisim.app.dialogs.question import form_list
+from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
 from tuisim.breakpoints import Breakpoint, parse_break, parse_watch
+from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import TuisimError
 
@@ -33,8 +35,28 @@ FORMS = (
 )
 
 
-class _Listed(Dialog[None], Generic[Entry]):
-    """A list of entries that are written as text, with a field to add or edit one."""
+class _List(Dialog[Result]):
+    """A list of entries, with a field to add one."""
+
+    _entries: Sized
+
+    def on_mount(self) -> None:
+        self.list_entries()
+        self.query_one(OptionList if self._entries else Input).focus()
+
+    def list_entries(self, at: int | None = None) -> None:
+        """Fill the list; `at` is selected."""
+
+    def _list(self, options: list[Option], at: int | None) -> None:
+        listed = self.query_one(OptionList)
+        listed.clear_options()
+        listed.add_options(options or [Option("None yet", disabled=True)])
+        if options and at is not None:
+            listed.highlighted = min(at, len(options) - 1)
+
+
+class _TextList(_List[None], Generic[Entry]):
+    """A list of entries that are written as text, and can be edited in the field."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("delete,backspace", "remove", "Delete", show=False),
@@ -45,13 +67,12 @@ class _Listed(Dialog[None], Generic[Entry]):
 
     def __init__(self, entries: Sequence[Entry], changed: Callable[[tuple[Entry, ...]], None]) -> None:
         super().__init__()
-        self._entries = list(entries)
+        self._entries: list[Entry] = list(entries)
         self._changed = changed
         self._editing: int | None = None
         """Index of the entry that the field edits; None for a new one."""
 
     def content(self) -> ComposeResult:
-        """Return the list, the field, its error line, and the explanation."""
         yield OptionList(markup=False)
         yield Input(placeholder=self.PLACEHOLDER, compact=True)
         yield Static(id="message", classes="wrong", markup=False)
@@ -77,18 +98,9 @@ class _Listed(Dialog[None], Generic[Entry]):
         """Return the line of an entry in the list."""
         return self.written(entry)
 
-    def on_mount(self) -> None:
-        self._list()
-        self.query_one(OptionList if self._entries else Input).focus()
-
-    def _list(self, at: int | None = None) -> None:
-        listed = self.query_one(OptionList)
-        listed.clear_options()
-        listed.add_options([Option(self.label(entry)) for entry in self._entries])
-        if not self._entries:
-            listed.add_option(Option("None yet", disabled=True))
-        elif at is not None:
-            listed.highlighted = min(at, len(self._entries) - 1)
+    def list_entries(self, at: int | None = None) -> None:
+        """Fill the list; `at` is selected."""
+        self._list([Option(self.label(entry)) for entry in self._entries], at)
 
     @property
     def _at(self) -> int | None:
@@ -96,7 +108,7 @@ class _Listed(Dialog[None], Generic[Entry]):
         return at if self._entries else None
 
     def _report(self, at: int | None = None) -> None:
-        self._list(at)
+        self.list_entries(at)
         self._changed(tuple(self._entries))
 
     def action_remove(self) -> None:
@@ -117,13 +129,12 @@ class _Listed(Dialog[None], Generic[Entry]):
 
     @on(Input.Submitted)
     def _entered(self, event: Input.Submitted) -> None:
-        message = self.query_one("#message", Static)
         try:
             entry = self.parse(event.value)
         except TuisimError as error:
-            message.update(str(error))
+            self.say(str(error), wrong=True)
             return
-        message.update("")
+        self.say("")
         if self._editing is None:
             self._entries.append(entry)
         else:
@@ -133,7 +144,7 @@ class _Listed(Dialog[None], Generic[Entry]):
         self._report(len(self._entries) - 1 if at is None else at)
 
 
-class BreaksDialog(_Listed[Breakpoint]):
+class BreaksDialog(_TextList[Breakpoint]):
     """The breakpoints.
 
     Args:
@@ -154,17 +165,10 @@ class BreaksDialog(_Listed[Breakpoint]):
 
     def explanation(self) -> ComposeResult:
         """Return the syntax of breakpoints."""
-        forms = Table.grid(padding=(0, 2))
-        for form, meaning in FORMS:
-            forms.add_row(form, meaning)
-        yield Static(forms)
+        yield form_list(FORMS)
 
     def parse(self, text: str) -> Breakpoint:
-        """Parse a breakpoint.
-
-        Raises:
-            ConfigError: the text is invalid.
-        """
+        """Parse a breakpoint."""
         return parse_break(text, self._robot)
 
     def written(self, entry: Breakpoint) -> str:
@@ -181,7 +185,7 @@ class BreaksDialog(_Listed[Breakpoint]):
             self._report(at)
 
 
-class WatchesDialog(_Listed[str]):
+class WatchesDialog(_TextList[str]):
     """The watches."""
 
     TITLE_TEXT: str = "Watches"
@@ -189,13 +193,73 @@ class WatchesDialog(_Listed[str]):
     PLACEHOLDER: ClassVar[str] = "new expression, such as len(values) or x / 2"
 
     def parse(self, text: str) -> str:
-        """Parse a Python expression.
-
-        Raises:
-            ConfigError: the text is invalid.
-        """
+        """Parse a Python expression."""
         return parse_watch(text)
 
     def written(self, entry: str) -> str:
         """Return the expression."""
         return entry
+
+
+def pose_label(pose: Pose) -> str:
+    """Return a pose in words."""
+    return f"x {pose.x_mm:g}, y {pose.y_mm:g}, {shown_heading_deg(pose.heading_deg):g}°"
+
+
+class SavedPoses(_List[Pose]):
+    """Returns the pose to go to.
+
+    Args:
+        here: The current pose of the robot.
+    """
+
+    TITLE_TEXT: str = "Saved poses"
+    HINT: str = "Enter goes there · Delete removes · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("delete,backspace", "remove", "Delete", show=False)]
+
+    def __init__(self, here: Pose) -> None:
+        super().__init__()
+        self._here = here
+        self._entries: dict[str, Pose] = {}
+
+    def content(self) -> ComposeResult:
+        yield OptionList()
+        yield Static(f"Save where the robot is now, {pose_label(self._here)}, as:", classes="start", markup=False)
+        yield Input(placeholder="a name, then Enter", compact=True, max_length=MAX_NAME)
+        yield Static(id="message", markup=False)
+
+    def list_entries(self, at: int | None = None) -> None:
+        """Read the poses and fill the list; `at` is selected."""
+        try:
+            self._entries = load_poses()
+        except TuisimError as error:
+            self.say(str(error), wrong=True)
+        wide = max(map(len, self._entries), default=0)
+        lines = {name: name_and_title(name, pose_label(pose), wide) for name, pose in self._entries.items()}
+        self._list([Option(line, id=name) for name, line in lines.items()], at)
+
+    @on(OptionList.OptionSelected)
+    def _chosen(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(self._entries.get(event.option.id or ""))
+
+    def action_remove(self) -> None:
+        at = self.query_one(OptionList).highlighted
+        if at is None or not self._entries:
+            return
+        try:
+            delete_pose(list(self._entries)[at])
+        except TuisimError as error:
+            self.say(str(error), wrong=True)
+            return
+        self.list_entries(at)
+
+    @on(Input.Submitted)
+    def _named(self, event: Input.Submitted) -> None:
+        try:
+            save_pose(event.value, self._here)
+        except TuisimError as error:
+            self.say(str(error), wrong=True)
+            return
+        event.input.clear()
+        self.say("")
+        self.list_entries()
