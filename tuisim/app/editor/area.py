@@ -257,10 +257,7 @@ class CodeArea(TextArea):
                 self._done(event)
                 self.post_message(self.Wanted(EditorCommand.TYPE))
             return
-        if event.key == "escape":
-            self._done(event)
-            self.post_message(self.Wanted(EditorCommand.STOP_TYPING))
-        elif event.key == "enter":
+        if event.key == "enter":
             self._done(event)
             row, column = min(self.selection)
             self.insert_text("\n" + text_lines.indent_after(self.document.get_line(row)[:column]))
@@ -320,8 +317,8 @@ class CodeArea(TextArea):
                 self.post_message(self.GutterClicked(row + 1))
 
 
-_WHILE_TYPING = {"ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
-"""Usual editor keys; while the user does not type, they are keys of the robot and the obstacles."""
+_WHILE_TYPING = {"escape": EditorCommand.STOP_TYPING, "ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
+"""Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""
 
 _CHANGES: Mapping[str, text_lines.Change] = {
     "tab": text_lines.indented,

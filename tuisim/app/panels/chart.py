@@ -80,14 +80,12 @@ class Chart(LinesPanel, can_focus=True):
 
     def show(self, snapshot: Snapshot) -> None:
         """Draw new data; at most a few updates per second."""
-        cursor_s = snapshot.time_s if snapshot.past else None
-        if cursor_s != self._state.cursor_s and not self._dragging:
-            self._state = replace(self._state, cursor_s=cursor_s)
-            self._dirty = True
         grows = snapshot.state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.WAITING)
-        if grows != self._state.grows:
-            self._state = replace(self._state, grows=grows)
-            self._dirty = True
+        state = replace(self._state, grows=grows)
+        if not self._dragging:
+            state = replace(state, cursor_s=snapshot.time_s if snapshot.past else None)
+        if state != self._state:
+            self._state, self._dirty = state, True
         if self._dirty:
             self._throttle.ask()
 
