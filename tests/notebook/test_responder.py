@@ -154,7 +154,7 @@ def test_where_nobody_can_answer_it_is_said(
 ) -> None:
     monkeypatch.setattr("builtins.input", failing(error))
     shown = cell(ASKS)
-    assert shown.err.startswith("tuisim: the program waits in input(), but nobody can be asked here\n")
+    assert shown.err.startswith("tuisim: the program waits for input(), which is not supported here\n")
     assert "EOFError: there is no further answer to input()" in shown.err
 
 
@@ -170,4 +170,4 @@ def test_a_kernel_asks_its_user(kernel: Kernel) -> None:
 
 @pytest.mark.slow
 def test_a_kernel_without_stdin_says_so(kernel: Kernel) -> None:
-    assert "nobody can be asked here" in kernel.text(ASKS)
+    assert "which is not supported here" in kernel.text(ASKS)

@@ -74,7 +74,9 @@ def _background(name: str, data: object, file: Path) -> Background:
         start=entry.start,
         image=file.parent / f"{name}.png",
         obstacles=obstacles_from_sides(entry.obstacles, at.at("obstacles")),
-        sensor_x_mm={sensor: convert(x_mm, float, at.at(f"sensor_x_mm.{sensor}")) for sensor, x_mm in entry.sensor_x_mm.items()},
+        sensor_x_mm={
+            sensor: convert(x_mm, float, at.at(f"sensor_x_mm.{sensor}")) for sensor, x_mm in entry.sensor_x_mm.items()
+        },
         original=entry.original,
         shipped=entry.shipped,
     )

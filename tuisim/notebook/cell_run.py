@@ -235,7 +235,7 @@ class _Screen:
         self._due = time.monotonic() + self._cell.refresh_s
 
     def draw(self, status: str, most_rows: int | None = ROWS_A_DRAWING) -> None:
-        """Draw the current state of the run; at most so many new lines, None for all, are searched for samples."""
+        """Draw the current state of the run; search at most `most_rows` new lines for samples, None for all."""
         cell, run = self._cell, self._run
         if self._stage.shows("chart"):
             for row, after in islice(run.output.rows_from(self._position), most_rows):
@@ -277,5 +277,5 @@ def _ask(prompt: str) -> str | None:
         return input(prompt)
     # Raised by a kernel, by a shell at end of input, and without any stdin.
     except (StdinNotImplementedError, EOFError, OSError):
-        print("tuisim: the program waits in input(), but nobody can be asked here", file=sys.stderr)
+        print("tuisim: the program waits for input(), which is not supported here", file=sys.stderr)
         return None

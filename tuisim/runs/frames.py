@@ -182,7 +182,7 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -
     """
     import numpy as np
 
-    # The cosine of numpy may differ from that of `math` in the last bit, and thereby a pixel.
+    # The cosine of numpy may differ from that of `math` in the last bit, which can change a pixel.
     turns = [math.radians(heading - 90.0) for heading in records["heading_deg"].tolist()]
     cos, sin = np.array([math.cos(turn) for turn in turns]), np.array([math.sin(turn) for turn in turns])
     diameter = sensor.diameter_mm

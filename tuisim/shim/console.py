@@ -19,7 +19,7 @@ _PARTS = re.compile(r"\x1b\[\??([-\d;]*)([A-Za-z])|([^\x1b])|\x1b", re.DOTALL)
 
 
 class TextGrid:
-    """The subset of the Linux console that the library uses, of so many characters per row."""
+    """The subset of the Linux console that the library uses, with a fixed number of characters per row."""
 
     def __init__(self, columns: int, rows: int) -> None:
         self.columns, self.rows = columns, rows

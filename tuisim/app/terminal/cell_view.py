@@ -168,7 +168,7 @@ class LinesView(RowsView):
 
 
 class LinesPanel(Widget):
-    """A widget whose content is lines of text, drawn anew for each size."""
+    """A widget whose content is lines of text, drawn again for each size."""
 
     DEFAULT_CSS = "LinesPanel > LinesView { width: 1fr; height: 1fr; }"
 
