@@ -30,12 +30,7 @@ _LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
 
 
 class LogTrace(Trace):
-    """One variable of one run.
-
-    Args:
-        name: As in `Log.names`.
-        number: Selects colour and mark.
-    """
+    """One variable of one run, named as in `Log.names`; the number selects colour and mark."""
 
     def __init__(self, log: Log, name: str, number: int) -> None:
         super().__init__(name, number)

@@ -172,12 +172,7 @@ class _Frame:
 
 
 def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> Drawing:
-    """Return the picture of a chart.
-
-    Args:
-        width, height: Size in pixels.
-        titled: Whether to draw the title above it.
-    """
+    """Return the picture of a chart in a size in pixels, with or without the title above it."""
     shapes: list[Shape] = []
     top: float = _PAD
     if titled:

@@ -9,7 +9,7 @@ from pathlib import Path
 from tuisim.commands import exit_status
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
 from tuisim.errors import ConfigError, counted
-from tuisim.notebook.cells import NotebookProgram, chosen_programs, is_notebook, notebook_programs, notebooks_in
+from tuisim.notebook.cells import NotebookProgram, chosen_programs, is_notebook, notebooks_in
 from tuisim.runs.run_folder import StoredRun
 
 NOT_RUN = "not_run"
@@ -37,27 +37,19 @@ def _titled(program: NotebookProgram) -> str:
 
 
 def known_programs(word: str) -> list[NotebookProgram]:
-    """Return the programs that a word names, without those that run only in the notebook; those are noted on stderr.
+    """Return the programs that a word names, `without_unknown`.
 
     Raises:
         ConfigError: there is no such notebook or program, or it runs in the notebook only.
     """
-    known = _known(chosen_programs(word))
+    known = without_unknown(chosen_programs(word))
     if not known:
         raise ConfigError("has no program that runs outside the notebook", "run its cells in Jupyter", file=word)
     return known
 
 
-def known_programs_of(path: Path) -> list[NotebookProgram]:
-    """Return the programs of a notebook like `known_programs`, but possibly none.
-
-    Raises:
-        ConfigError: it is not a notebook, or a magic line in it is wrong.
-    """
-    return _known(notebook_programs(path))
-
-
-def _known(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
+def without_unknown(programs: Sequence[NotebookProgram]) -> list[NotebookProgram]:
+    """Return the programs without those that run only in the notebook; those are noted on stderr."""
     known: list[NotebookProgram] = []
     for program in programs:
         for note in program.notes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from itertools import groupby
 from types import FrameType
 from typing import Self, TextIO
@@ -57,46 +58,37 @@ class Interrupts:
                 tell("still writing; ctrl-C again cancels it")
 
 
+@dataclass(slots=True)
 class Follower:
-    """Follows one run to its end.
+    """Follows one run to its end."""
 
-    Args:
-        out: Where its printed lines go; error text and speech go to stderr.
-        listen: Called with each event of the run, after the output before it has been written.
-        tell: Called at each poll, to show progress.
-    """
-
-    def __init__(
-        self,
-        handle: RunHandle,
-        out: TextIO,
-        listen: Callable[[Message], None] | None = None,
-        tell: Callable[[RunHandle], None] = lambda _: None,
-    ) -> None:
-        self._tell = tell
-        self._listen = listen
-        self._handle = handle
-        self._out = out
-        self.cut = 0
-        """The exit code for a closed stdout, else 0."""
-        self.lost = ""
-        """Why printed lines could not be written; empty if they were."""
+    handle: RunHandle
+    out: TextIO
+    """Where its printed lines go; error text and speech go to stderr."""
+    listen: Callable[[Message], None] | None = None
+    """Called with each event of the run, after the output before it has been written."""
+    tell: Callable[[RunHandle], None] = lambda _: None
+    """Called at each poll, to show progress."""
+    cut: int = 0
+    """The exit code for a closed stdout, else 0."""
+    lost: str = ""
+    """Why printed lines could not be written; empty if they were."""
 
     def to_the_end(self) -> Ended:
         """Block until the run has ended, and return its end."""
         while True:
             events: list[Message] = []
-            if self._listen is None:
-                ended = self._handle.wait(POLL_S)
+            if self.listen is None:
+                ended = self.handle.wait(POLL_S)
             else:
-                self._handle.wait_for_event(POLL_S)
-                events = self._handle.pump()
-                ended = self._handle.ended
-            self._pass_on(self._handle.output.new_rows())
-            self._tell(self._handle)
+                self.handle.wait_for_event(POLL_S)
+                events = self.handle.pump()
+                ended = self.handle.ended
+            self._pass_on(self.handle.output.new_rows())
+            self.tell(self.handle)
             for event in events:
-                if self._listen is not None:
-                    self._listen(event)
+                if self.listen is not None:
+                    self.listen(event)
             if ended:
                 return ended
 
@@ -104,7 +96,7 @@ class Follower:
         """Write rows to stdout and stderr in their original order."""
         for to_stdout, group in groupby(rows, key=lambda row: row.stream == Stream.STDOUT):
             if to_stdout:
-                with progress_hidden(self._out):
+                with progress_hidden(self.out):
                     self._write("".join(row.text + "\n" for row in group))
                 continue
             for row in group:
@@ -119,11 +111,11 @@ class Follower:
         if self.cut or self.lost:
             return
         try:
-            self._out.write(text)
-            self._out.flush()
+            self.out.write(text)
+            self.out.flush()
         except BrokenPipeError:
             self.cut = EXIT_BROKEN_PIPE
-            self._handle.stop()
+            self.handle.stop()
         except OSError as error:
             # The run goes on: its recording has every line.
             self.lost = f"cannot write to stdout: {error.strerror or error}"

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tuisim.commands.echo import echo_error
-from tuisim.commands.notebooks import NotRun, check_folder, known_programs, known_programs_of
+from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
 from tuisim.config.folders import programs_folder
@@ -22,7 +22,7 @@ from tuisim.config.robots import choose_robot
 from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError
-from tuisim.notebook.cells import is_notebook
+from tuisim.notebook.cells import is_notebook, notebook_programs
 from tuisim.runs.run_folder import StoredRun, field_files
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -195,7 +195,7 @@ def _of_folder(word: str, world: WorldFile | None, arguments: Arguments) -> list
     for path in check_folder(word, run_all=arguments.all):
         label = os.path.relpath(path, word)
         try:
-            programs = known_programs_of(path)
+            programs = without_unknown(notebook_programs(path))
         except ConfigError as error:
             found.append(NotRun(label, error))
             continue

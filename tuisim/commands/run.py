@@ -67,12 +67,7 @@ def parse_press(text: str) -> Press:
 
 
 def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[UserAction, ...]:
-    """Return the changes of the button states, ordered by tick.
-
-    Args:
-        presses: Presses; they may overlap.
-        tick_hz: Ticks per second; a press lasts at least one tick.
-    """
+    """Return the changes of the button states, ordered by tick; presses may overlap, and last at least one tick."""
     held = []
     for press in presses:
         first = round(press.from_s * tick_hz)

@@ -195,11 +195,7 @@ def mats(folder: str | None = None) -> dict[str, Background]:
 
 
 def find_mat(word: str, folder: str | None = None) -> Background:
-    """Return a mat by its name or by the path of an image.
-
-    Args:
-        word: The value of `-b`.
-        folder: As for `mats`.
+    """Return a mat by its name or by the path of an image, the value of `-b`; `folder` is that of `mats`.
 
     Raises:
         BackgroundError: it does not exist, or has no image.

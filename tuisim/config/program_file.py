@@ -100,12 +100,7 @@ def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
 
 
 def beside(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options of a magic line, with file names resolved from a folder.
-
-    Args:
-        folder: The folder of the program or its notebook.
-        options: By field of `Settings`.
-    """
+    """Return the options of a magic line, with file names resolved from the folder of the program or its notebook."""
     found = dict(options)
     if "mats" in found:
         found["mats"] = str(folder / os.path.expanduser(found["mats"]))

@@ -320,12 +320,7 @@ def robot_file(spec: RobotSpec) -> list[str]:
 
 
 def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN_KEYS) -> list[str]:
-    """Return a robot as TOML lines, with every value.
-
-    Args:
-        parent: The name of its table; empty for a file of its own.
-        pen_keys: The keys to write of its pen.
-    """
+    """Return a robot as TOML lines, with every value: the table `parent`, or a file of its own."""
     under = f"{parent}." if parent else ""
     lines = [f"[{parent}]"] if parent else []
     values = _values(spec, ("name", *LENGTH_KEYS, "weight", *PORT_KEYS))
