@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from textual import screen
 from textual._compositor import Compositor
 from textual._context import active_app, visible_screen_stack
 from textual.css import stylesheet
@@ -56,8 +55,8 @@ _DRAWN: set[tuple[object, ...]] = set()
 def _drawn_where_somebody_looks(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw an app without a terminal only where it shows what no other test has shown, and where a test looks at it.
 
-    Layout and drawing are most of what such an app costs, and nobody gets to see them; a pilot lays out whenever it
-    pauses. Slow tests, and apps on a `Wire`, lay out and draw as they do for users.
+    Drawing is half of what such an app costs, and nobody gets to see it. Slow tests, and apps on a `Wire`, draw
+    everything.
     """
     draw = Compositor.render_update
 
@@ -74,7 +73,6 @@ def _drawn_where_somebody_looks(request: pytest.FixtureRequest, monkeypatch: pyt
 
     if not any(map(request.node.get_closest_marker, ("slow", "soak"))):
         monkeypatch.setattr(Compositor, "render_update", render_update)
-        monkeypatch.setattr(screen, "UPDATE_PERIOD", 1 / 20)
 
 
 @pytest.fixture(autouse=True)

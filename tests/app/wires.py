@@ -7,9 +7,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any, cast
 
-import pytest
 from rich.console import COLOR_SYSTEMS
-from textual import constants, events, screen
+from textual import events
 from textual.drivers.headless_driver import HeadlessDriver
 from textual.pilot import Pilot
 
@@ -46,13 +45,11 @@ def wire_of(pilot: Pilot[Any]) -> Wire:
 
 @asynccontextmanager
 async def on_wire(app: TerminalApp, colors: str = "256") -> AsyncIterator[Pilot[Any]]:
-    """An app in such a terminal of 120×40, painted as often as for users."""
+    """An app in such a terminal of 120×40."""
     app.driver_class = Wire
     app.console._color_system = COLOR_SYSTEMS[colors]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(screen, "UPDATE_PERIOD", 1 / constants.MAX_FPS)
-        async with app.run_test(headless=False, size=(120, 40)) as pilot:
-            yield pilot
+    async with app.run_test(headless=False, size=(120, 40)) as pilot:
+        yield pilot
 
 
 async def until_quiet(pilot: Pilot[Any]) -> None:

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import draw
@@ -18,13 +19,17 @@ FOLDER = Path(draw.__file__).parent
 WHITE, BLACK = (255, 255, 255), (0, 0, 0)
 
 
+@cache
+def stored(name: str) -> Image.Image:
+    with Image.open(FOLDER / f"{name}.png") as image:
+        return image.copy()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MATS)
 def test_picture_equals_a_fresh_drawing(name: str) -> None:
-    with Image.open(FOLDER / f"{name}.png") as image:
-        assert image.mode == "RGB"
-        stored = np.asarray(image)
-    assert np.array_equal(stored, picture(name))
+    assert stored(name).mode == "RGB"
+    assert np.array_equal(np.asarray(stored(name)), picture(name))
 
 
 def test_every_mat_has_one_picture_and_one_entry() -> None:
@@ -86,8 +91,7 @@ def test_picture_is_small(name: str) -> None:
     ],
 )
 def test_pixels_known_from_the_numbers(name: str, column: int, row: int, rgb: tuple[int, int, int]) -> None:
-    with Image.open(FOLDER / f"{name}.png") as image:
-        assert image.getpixel((column, row)) == rgb
+    assert stored(name).getpixel((column, row)) == rgb
 
 
 def test_write_replaces_a_picture_and_leaves_nothing_else(tmp_path: Path) -> None:

@@ -144,7 +144,11 @@ def spec() -> object:
 
 
 @pytest.mark.parametrize(
-    "text", ["while True: print('A: 1')", "print('A: 1')\nsum(range(10**12))"], ids=["python", "C call"]
+    "text",
+    [
+        pytest.param("while True: print('A: 1')", id="python", marks=pytest.mark.slow),
+        pytest.param("print('A: 1')\nsum(range(10**12))", id="C call"),
+    ],
 )
 def test_child_dies_with_its_host(text: str) -> None:
     command = [sys.executable, "-c", HOST, text]
