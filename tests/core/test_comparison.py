@@ -49,7 +49,7 @@ def by_goto(condition: str) -> list[float]:
     for value in VALUES:
         spec = SimpleNamespace(profile=next(iter(PROFILES.values())))
         recording = SimpleNamespace(newest=9, rows=OneRow(value), spec=spec)
-        timeline: Any = SimpleNamespace(recording=recording, at=0, tick_hz=100)
+        timeline: Any = SimpleNamespace(recording=recording, tick=0, tick_hz=100)
         try:
             found += [value] * find(f"sample {condition}", timeline)
         except ConfigError as error:
