@@ -83,8 +83,7 @@ async def test_the_guess_may_stay(leave: str, foreign: Path) -> None:
 async def test_what_was_named_in_the_shell_is_not_asked_about(foreign: Path) -> None:
     wanted = LogRequest(str(foreign), time="boot", values=("light",), unit="ms")
     async with AnalyserApp(wanted).run_test(size=(80, 24)) as pilot:
-        await until(pilot, lambda: getattr(pilot.app.screen, "model", None) is not None)
-        await pilot.pause()
+        await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
         screen = pilot.app.screen
-        assert isinstance(screen, Analyser) and screen.is_open
+        assert isinstance(screen, Analyser)
         assert screen.model.log.series("light").time_s[1] == pytest.approx(0.02)
