@@ -14,7 +14,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.protocol import Inspect, Inspected, Paused
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.recording import Recording
+from tuisim.runs.recorded_run import Recording
 from tuisim.runs.replay_debugger import Position, ReplayDebugger
 from tuisim.runs.store import load_run
 from tuisim.source import Program

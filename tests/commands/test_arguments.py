@@ -23,7 +23,7 @@ from tuisim.config.options import Settings, settings_of
 from tuisim.config.worlds import load_world, save_world
 from tuisim.core.profile import PROFILES
 from tuisim.runs.handle import RunHandle
-from tuisim.runs.recording import Recording
+from tuisim.runs.recorded_run import Recording
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 

@@ -15,7 +15,7 @@ from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import UserAction
 
 if TYPE_CHECKING:
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
     from tuisim.source import Program
 
 BRANCH_TAG = "branch-of-"

@@ -21,7 +21,7 @@ from tuisim.runs.views import instant_of
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.timeline import Timeline
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
 
 Series = dict[str, tuple[list[float], list[float]]]
 """By trace name: times in s, values."""

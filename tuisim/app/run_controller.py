@@ -18,7 +18,7 @@ from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.protocol import RunState
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.recording import Recording
+from tuisim.runs.recorded_run import Recording
 from tuisim.runs.records import OutputRow
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import instant_of

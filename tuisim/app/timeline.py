@@ -18,7 +18,7 @@ from tuisim.runs.samples import parse_sample
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
     from tuisim.runs.views import TickRecord
 
 FASTEST = 16.0

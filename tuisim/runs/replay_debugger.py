@@ -15,7 +15,7 @@ from tuisim.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Pau
 
 if TYPE_CHECKING:
     from tuisim.runs.handle import RunHandle
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
     from tuisim.runs.store import RunStore
 
 FIRST_WINDOW_TICKS = 200

@@ -17,7 +17,7 @@ from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.runs.brick_state import LED_NAMES, led_row
 from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.recording import Recording, RowIndex
+from tuisim.runs.recorded_run import Recording, RowIndex
 from tuisim.runs.records import Mark, OutputWriter, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore

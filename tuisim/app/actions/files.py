@@ -16,7 +16,7 @@ from tuisim.runs.store import RunStore
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
     from tuisim.runs.diff import RunDiff
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
 
 
 def clear_log(workspace: Workspace) -> None:

@@ -14,7 +14,7 @@ from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
 
 MANY_TICKS = 10
 """Ticks that `:` runs."""

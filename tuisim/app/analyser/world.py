@@ -27,7 +27,7 @@ from tuisim.core.spec import RunSpec, from_plain
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.errors import TuisimError, printable
-from tuisim.runs.recording import Recording
+from tuisim.runs.recorded_run import Recording
 from tuisim.runs.views import instant_of
 from tuisim.source import source_lines
 

@@ -27,7 +27,7 @@ from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.runs.diff import RunDiff
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
 
 MOST_LISTED = 300
 """Most runs listed at once; a search finds the others."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
     from tuisim.app.services import AppServices
-    from tuisim.runs.recording import Recording
+    from tuisim.runs.recorded_run import Recording
     from tuisim.source import Program
 
 DRAFT_AFTER_S = 1.0
