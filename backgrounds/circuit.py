@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lines import WidePoint
+from strokes import WidePoint
 
 # fmt: off
 CIRCUIT: tuple[WidePoint, ...] = (

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from bends import BEND, HOOK_LOWER_LEFT, HOOK_LOWER_RIGHT, HOOK_UPPER_LEFT, HOOK_UPPER_RIGHT, WAVE, WIGGLE
 from circuit import CIRCUIT
 from lettering import write
-from lines import closed_line, stroke
 from shapes import BLACK, WHITE, Box, Canvas, Point, Rgb, blank, disc, paint, polygon, rect, ring
 from snakes import SNAKE_1, SNAKE_2, SNAKE_3
+from strokes import closed_line, stroke
 
 LINE_WIDTH = 20.0
 LABEL_SIZE = 22.57

@@ -13,8 +13,8 @@ from itertools import pairwise
 
 import numpy as np
 from digit_cells import BLACK_SHEET, WHITE_SHEET, Sheet
-from lines import bent, pen_line
 from shapes import BLACK, WHITE, Box, Canvas, Floats, Point, Rgb, blank, coverage, rect
+from strokes import bent, pen_line
 
 CELL = 14
 """Width and height of a digit's black cell."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from lettering import write, write_middle
-from lines import bent, stroke
 from shapes import BLACK, WHITE, Box, Canvas, Point, Rgb, blank, disc, ellipse, paint, rect
+from strokes import bent, stroke
 
 HEDGE: Rgb = (0, 110, 50)
 WHEAT: Rgb = (255, 210, 0)

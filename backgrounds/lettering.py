@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from lines import pen_line
 from shapes import Canvas, Point, Rgb, paint
+from strokes import pen_line
 
 CAP_HEIGHT_EM = 0.729
 PEN_WIDTH_EM, PEN_HEIGHT_EM = 0.175, 0.125

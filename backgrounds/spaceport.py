@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from lettering import write_middle
-from lines import bent, stroke
 from shapes import (
     BLACK,
     HEIGHT,
@@ -22,6 +21,7 @@ from shapes import (
     ring,
     without,
 )
+from strokes import bent, stroke
 
 SPACE: Rgb = (18, 22, 48)
 STAR: Rgb = (150, 160, 190)

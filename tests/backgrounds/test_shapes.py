@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-import lines
 import numpy as np
 import pytest
 import shapes
+import strokes
 from shapes import BLACK, Box, Shape
 
 INK = 255.0
@@ -60,22 +60,22 @@ def test_rect_off_the_mat_paints_nothing() -> None:
             3200,
             id="polygon with a hole",
         ),
-        pytest.param(lines.stroke([(100, 100), (160, 180)], 10), 1000, id="stroke"),
-        pytest.param(lines.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000, id="stroke, mitred"),
-        pytest.param(lines.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"), 4000, id="mitred, other way"),
-        pytest.param(lines.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25, id="stroke, rounded"),
+        pytest.param(strokes.stroke([(100, 100), (160, 180)], 10), 1000, id="stroke"),
+        pytest.param(strokes.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000, id="stroke, mitred"),
+        pytest.param(strokes.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"), 4000, id="mitred, other way"),
+        pytest.param(strokes.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25, id="rounded"),
         pytest.param(
             shapes.union([shapes.rounded_rect((100, 100, 200, 150), 0), shapes.rounded_rect((150, 100, 250, 150), 0)]),
             7500,
             id="union",
         ),
         pytest.param(
-            lines.closed_line([(100, 100, 20), (300, 100, 20), (300, 300, 20), (100, 300, 20)]),
+            strokes.closed_line([(100, 100, 20), (300, 100, 20), (300, 300, 20), (100, 300, 20)]),
             16_000 - 400 + 100 * math.pi,
             id="closed line",
         ),
-        pytest.param(lines.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi, id="pen line"),
-        pytest.param(lines.pen_line([(100, 100), (100, 100)], 90, 60), 1350 * math.pi, id="pen dot"),
+        pytest.param(strokes.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi, id="pen line"),
+        pytest.param(strokes.pen_line([(100, 100), (100, 100)], 90, 60), 1350 * math.pi, id="pen dot"),
     ],
 )
 @pytest.mark.parametrize("smooth", [False, True], ids=["hard", "smooth"])
@@ -105,7 +105,7 @@ def test_shade_takes_a_colour_for_each_pixel() -> None:
 
 
 def test_bent_line_goes_from_end_to_end_and_keeps_within_its_points() -> None:
-    line = lines.bent([(0, 0), (100, 0), (100, 100), (200, 100)], steps=4)
+    line = strokes.bent([(0, 0), (100, 0), (100, 100), (200, 100)], steps=4)
     assert (line[0], line[-1]) == ((0, 0), (200, 100))
     assert (100, 50) in line
     assert len(line) == 1 + 2 * 4

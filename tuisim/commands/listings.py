@@ -112,7 +112,7 @@ def _size(one: Taken) -> str:
 
 @command(argument("robot", "[NAME|FILE]", lambda: names_of("robot"), required=False), AS_JSON)
 def robots(robot: str | None, as_json: bool) -> int:
-    """List the robots, or print one as TOML, a starting point for your own."""
+    """List the robots, or print one in TOML as a starting point for your own."""
     from tuisim.config.robots import ROBOTS, load_robot, robot_file
 
     chosen = None if robot is None else load_robot(robot)
@@ -141,7 +141,7 @@ def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
 
 @command(argument("word", "[NAME|FILE]", lambda: names_of("obstacles"), required=False), AS_JSON)
 def obstacles(word: str | None, as_json: bool) -> int:
-    """List the sets of obstacles, or print one as TOML, a starting point for your own."""
+    """List the sets of obstacles, or print one in TOML as a starting point for your own."""
     from tuisim.config.obstacles import OBSTACLES, load_obstacles, obstacle_file
 
     chosen = OBSTACLES if word is None else {word: load_obstacles(word)}

@@ -32,7 +32,7 @@ OPTIONS: Mapping[str, GroupedOption] = {
     "between": choice("--between", ("hold", "linear"), default="hold", help="Interpolation between samples (hold)."),
     "width": option("--width", type=int, default=5, metavar="N", help="Window in samples, odd (5)."),
     "period": option("--period", type=float, metavar="S", help="Seconds between rows."),
-    "expression": option("--expression", default="", metavar="TEXT", help="Such as '(left + right) / 2'."),
+    "expression": option("--expression", default="", metavar="TEXT", help="Expression, such as '(left + right) / 2'."),
     "facets": option("--facets", is_flag=True, help="Draw one chart per variable."),
     "marks": option("--marks", is_flag=True, help="Draw points instead of lines."),
     "from": option("--from", type=float, metavar="S", help="First second shown."),
@@ -84,7 +84,7 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
         "Resample each variable every --period seconds", "tables:even", ("period", "between", *_TABLE)
     ),
     "calc": Subcommand("Evaluate --expression over the columns", "tables:calculate", ("expression", *_FRAME)),
-    "reckon": Subcommand("Compute dead reckoning from the wheel encoders, and its error", "tables:reckon", _FRAME),
+    "reckon": Subcommand("Compute the pose by dead reckoning, and its error", "tables:reckon", _FRAME),
     "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"),
     "export": Subcommand("Write the log in another format", "tables:export", ("variable", "telemetry", "out")),
     "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),

@@ -121,8 +121,8 @@ _OPTIONS = (
     A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world file or an example by name. Its
     output goes to stdout, everything else to stderr; the words after -- are its arguments.
 
-    Exit code: 0 finished, 1 the program raised, 2 bad input, 3 stopped by a limit or a breakpoint; the
-    highest code of several programs.
+    Exit code: 0 finished, 1 the program raised an exception, 2 bad input, 3 stopped by a limit or a breakpoint; with
+    several programs, the highest code.
     """,
 )
 def run(**given: Any) -> int:

@@ -15,7 +15,7 @@ from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_jso
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
 from tuisim.errors import ConfigError, LogError, counted
-from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
+from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Unended
 from tuisim.runs.diff import RunDiff, recording_in_words, setup_in_words
 from tuisim.runs.frames import damage_note
@@ -165,7 +165,7 @@ def _created_before(created: str, moment: datetime) -> bool:
 
 @command(_runs, AS_JSON, name="rerun")
 def rerun_runs(words: Sequence[str], as_json: bool) -> int:
-    """Run again, and compare with the recording.
+    """Run stored runs again, and compare them with their recordings.
 
     Exit code: 0 if all are bit-identical, else 1.
     """
@@ -240,7 +240,7 @@ def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
 @command(
     argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
     option("--telemetry", metavar="FILE", type=Value(), help="Export the telemetry of a single run, one row per tick."),
-    help=f"Export samples of runs, or the telemetry of one run.\n\nA FILE ends in {', '.join(EXPORTERS)}.",
+    help=f"Export samples of runs, or the telemetry of one run.\n\nA FILE ends in {LISTED}.",
 )
 def export(words: Sequence[str], telemetry: str | None) -> int:
     """Export samples or telemetry of runs."""

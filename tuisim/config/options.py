@@ -189,7 +189,7 @@ WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
 
 OPTIONS: tuple[Option, ...] = (
     Option(
-        WORLD, ("-b", "--background"), "background", "A mat of `tuisim backgrounds`, or an image file.", "MAT", _name
+        WORLD, ("-b", "--background"), "background", "A mat from `tuisim backgrounds`, or an image file.", "MAT", _name
     ),
     Option(WORLD, ("--mats",), "mats", "Folder of images that `-b` finds by name.", "FOLDER", _name),
     Option(
@@ -200,8 +200,10 @@ OPTIONS: tuple[Option, ...] = (
         "|".join(BACKGROUND_FITS),
         _one_of(BACKGROUND_FITS),
     ),
-    Option(WORLD, ("-r", "--robot", "--robotSetup"), "robot", "A robot of `tuisim robots`, or a file.", "ROBOT", _name),
-    Option(WORLD, ("-o", "--obstacles"), "obstacles", "A set of `tuisim obstacles`, or a file.", "NAME", _name),
+    Option(
+        WORLD, ("-r", "--robot", "--robotSetup"), "robot", "A robot from `tuisim robots`, or a file.", "ROBOT", _name
+    ),
+    Option(WORLD, ("-o", "--obstacles"), "obstacles", "A set from `tuisim obstacles`, or a file.", "NAME", _name),
     Option(WORLD, ("--walls",), "walls", "Walls on the edges of the field.", "on|off", _on_off),
     Option(WORLD, ("--solid",), "solid", "Obstacles and walls stop the robot."),
     Option(WORLD, ("--no-solid",), "solid", "The robot drives through obstacles and walls.", value=False),
@@ -214,12 +216,12 @@ OPTIONS: tuple[Option, ...] = (
     Option(WORLD, ("-P", "--pencolor"), "pen_color", "Colour of the pen: a CSS name, or #rrggbb.", "COLOUR", pen_color),
     Option(WORLD, ("--pen-width",), "pen_width_mm", "Width of the trace.", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
     Option(WORLD, ("--pen-marks",), "pen_marks", "The sensors see what the pen draws."),
-    Option(RUN, ("--profile",), "profile", "A profile of `tuisim profiles`, or a file.", "NAME", _name),
+    Option(RUN, ("--profile",), "profile", "A profile from `tuisim profiles`, or a file.", "NAME", _name),
     Option(RUN, ("--seed",), "seed", "Seed for noise and `random`.", "N", whole(0, MAX_SEED)),
     Option(RUN, ("--speed",), "speed", "A multiple of real time, or max.", "N", _speed),
     Option(RUN, ("--preload",), "preload", "Names predefined for the program.", "|".join(PRELOADS), _one_of(PRELOADS)),
     Option(APP, ("-R", "--autorun"), "autorun", "Run at once."),
-    Option(APP, ("-C", "--clear"), "clear_trace", "Start with a clear trace."),
+    Option(APP, ("-C", "--clear"), "clear_trace", "Clear the trace at the start."),
     Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays."),
     Option(APP, ("-q", "--quiet"), "quiet", "Make no sound."),
     Option(APP, ("--fps",), "fps", "Maximum frames per second, 1 … 60.", "N", whole(1, 60)),

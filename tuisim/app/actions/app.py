@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tuisim.app.keys import KeyHelp, key_groups
-from tuisim.app.panels import PANELS
 
 if TYPE_CHECKING:
-    from tuisim.app.panels.world import World
     from tuisim.app.workspace import Workspace
 
 
@@ -28,21 +26,6 @@ def enlarge(workspace: Workspace) -> None:
         area.maximize("" if area.alone else panel)
     else:
         workspace.app.say("No panel has the focus: press tab, or click a panel")
-
-
-def world_panel(workspace: Workspace) -> World | None:
-    """Return the world panel; None, with a notice, if it is hidden."""
-    if workspace.panel_area.shown("world"):
-        return workspace.panel_area.world
-    workspace.app.say(f"The world is hidden: {PANELS['world'].key} shows it")
-    return None
-
-
-def rays(workspace: Workspace) -> None:
-    """Switch the ultrasonic rays on or off."""
-    if world := world_panel(workspace):
-        world.show_rays = not world.show_rays
-        workspace.app.draw(force=True)
 
 
 _START = (

@@ -1,17 +1,18 @@
-"""Keys of the group Robot: pose, pen, mat, robot, profile, obstacles, zoom of the world."""
+"""Keys of the group Robot: pose, pen, mat, robot, profile, obstacles; zoom and rays of the world."""
 
 from __future__ import annotations
 
 from random import Random
 from typing import TYPE_CHECKING
 
-from tuisim.app.actions.app import world_panel
+from tuisim.app.panels import PANELS
 from tuisim.app.setup import next_run as plans
 from tuisim.config.mats import mats
 from tuisim.core.geometry import Pose
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
+    from tuisim.app.panels.world import World
     from tuisim.app.workspace import Workspace
 
 
@@ -107,4 +108,19 @@ def zoom(workspace: Workspace) -> None:
     """Switch the world to the next zoom."""
     if world := world_panel(workspace):
         world.cycle_zoom()
+        workspace.app.draw(force=True)
+
+
+def world_panel(workspace: Workspace) -> World | None:
+    """Return the world panel; None, with a notice, if it is hidden."""
+    if workspace.panel_area.shown("world"):
+        return workspace.panel_area.world
+    workspace.app.say(f"The world is hidden: {PANELS['world'].key} shows it")
+    return None
+
+
+def rays(workspace: Workspace) -> None:
+    """Switch the ultrasonic rays on or off."""
+    if world := world_panel(workspace):
+        world.show_rays = not world.show_rays
         workspace.app.draw(force=True)

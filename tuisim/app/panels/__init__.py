@@ -2,7 +2,8 @@
 
 To add a panel: write its file, a `Widget` with `show(snapshot)`, and add a line to `PANELS`. Its title, its key,
 its place on the screen, the help and the command palette follow from the line. Handlers of its messages are
-methods of `app.panel_messages`; an option or a world file that shows it needs a line in `OPTIONS`.
+methods of `app.panel_messages`; data over time, instead of one instant, come from `app.feed`; an option or a world
+file that shows it needs a line in `OPTIONS`.
 """
 
 from __future__ import annotations
