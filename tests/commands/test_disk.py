@@ -210,6 +210,7 @@ def test_folder_of_which_a_part_is_deleted_yet_is_told_alike(endless: Path, home
     deleting = _delete_once_begun(home, lambda folder: (folder / RUN_FILE).unlink())
     done = here("run", endless, "--speed", "4", "--timeout", "12")
     deleting.join()
+    assert done.returncode == 2
     assert done.stderr == "tuisim: endless.py: run 1 was not stored: its folder was deleted while it ran\n"
 
 
