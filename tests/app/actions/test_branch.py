@@ -118,7 +118,7 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         at = app.run_controller.timeline.at
         assert at is not None
         await pilot.press("R")
-        await until(pilot, lambda: "Run 1 ends here" in screen_text(app))
+        await until(pilot, lambda: "ends now and is kept" in screen_text(app))
         await pilot.press("n")
         assert app.run_controller.timeline.at == at
         await pilot.press("y")

@@ -26,7 +26,7 @@ def test_from_a_run_to_the_bands_to_a_note(terminal: Terminal, home: Path) -> No
     terminal.keys("Down", "m")
     terminal.until(lambda text: "Note on Colour" in text)
     terminal.keys("Enter")
-    terminal.until(lambda text: "Noted" in text)
+    terminal.until(lambda text: "Note saved" in text)
     terminal.keys("n")
     terminal.until(lambda text: "[Notes]" in text and "band 2: 86.27 pale grey" in text)
     (notes,) = home.rglob("notes.jsonl")

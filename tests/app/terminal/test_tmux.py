@@ -21,7 +21,7 @@ def test_a_program_runs_to_its_end_and_its_log_is_exported(terminal: Terminal, t
     terminal.keys("e")
     terminal.until(lambda text: "Export the log" in text)
     terminal.keys("Enter")
-    terminal.until(lambda text: "The log is in log_greys.csv" in text)
+    terminal.until(lambda text: "Log saved to log_greys.csv" in text)
     assert (tmp_path / "log_greys.csv").read_text().startswith("index,variable,value,time,run,")
     terminal.keys("q")
     terminal.until(lambda text: "EXIT 0" in text)
