@@ -40,7 +40,7 @@ class InstalledKernel:
 
 
 _WHERE = (
-    option("--user", is_flag=True, help="For this user (the default)."),
+    option("--user", is_flag=True, help="In the user's kernel folder (the default of install)."),
     option("--sys-prefix", is_flag=True, help="In the Python environment of tuisim."),
     option("--prefix", metavar="P", help="In P/share/jupyter/kernels."),
     option("--name", metavar="N", help=f"Name of the kernel in Jupyter ({KERNEL_NAME})."),
