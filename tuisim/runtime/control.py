@@ -177,7 +177,6 @@ class RunControl:
         if self._paused and not self._steps:
             sim = session.sim
             self.hold(session, protocol.Paused(sim.tick, session.now, sim.line, self._reason))
-            session.checkpoint(before_tick=True)
         if self._steps:
             self._steps -= 1
             return 1
@@ -191,6 +190,9 @@ class RunControl:
         Args:
             session: The run.
             moment: Where it pauses. User actions take effect immediately only right before a tick.
+
+        Raises:
+            StopProgram: the run has to stop.
         """
         # The run is live from here on, however it started.
         self.live, session.flags = True, session.flags | LIVE
@@ -205,12 +207,20 @@ class RunControl:
                 self._apply_actions(session)
             if session.debugger is not None:
                 session.debugger.answer()
-        self.holding = False
+        self.holding = session.stop_reason is not None
         if session.debugger is not None:
             session.debugger.go_on()
         self._anchor = None
         if not self._paused:
             self._channel.send(protocol.Resumed())
+        self._raise_here(session, before_tick=moment.ordinal == BEFORE_NEXT_TICK)
+
+    def _raise_here(self, session: Session, before_tick: bool = False) -> None:
+        """Raise a stop in the thread that has waited for commands, not in the main one, which the signal reaches."""
+        try:
+            session.checkpoint(before_tick)
+        finally:
+            self.holding = False
 
     def replay_next(self, session: Session, kind: type[Answer | Reply]) -> bool:
         """Apply the next known action if it has this type and was made here, while simulated time did not pass."""
@@ -240,12 +250,12 @@ class RunControl:
         while not (here := [one for one in self._waiting if isinstance(one, kind)]) and session.stop_reason is None:
             self._channel.wait(1.0)
             self.receive(session)
-        self.holding = False
+        self.holding = session.stop_reason is not None
         self._anchor = None
         if here:
             self._waiting.remove(here[0])
             self.apply(session, here[0])
-        session.checkpoint()
+        self._raise_here(session)
 
     def _pace(self, session: Session, most: int) -> int:
         sim = session.sim

@@ -294,4 +294,3 @@ class Debugger:
         session = self._session
         self._trace_from = None if self._tracer.on else self._trace_from
         session.steering.hold(session, moment)
-        session.checkpoint()
