@@ -32,6 +32,11 @@ def exit_code_of(ended: Ended) -> int:
             assert_never(ended.end)
 
 
+def of_unstored(code: int) -> int:
+    """Return the exit code of a run that could not be stored: how it ended may be a consequence."""
+    return code if code > SIGNALLED else EXIT_BAD_OUTPUT
+
+
 def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     """Return a stored run as a JSON-compatible dict: its settings, its end, the robot's pose, counts of its log.
 

@@ -273,8 +273,7 @@ def _run_all(
             run = handle.stored()
         except LogError:
             echo_error(f"tuisim: {handle.program.name}: run {handle.number} was not stored: {handle.unstored}")
-            if exit_code < exit_status.SIGNALLED:
-                exit_code = exit_status.EXIT_BAD_OUTPUT
+            exit_code = exit_status.of_unstored(exit_code)
         else:
             results.append((one.label or run.program.name, run))
             exit_status.report(run, exit_code, as_json=arguments.json)
@@ -322,7 +321,6 @@ def _run_one(
         echo_error(f"tuisim: {follower.lost} (run {handle.number} contains every line)")
     ended_code = exit_status.EXIT_LIMIT if reporter.stopped else exit_status.exit_code_of(ended)
     code = interrupts.exit_code or follower.cut or ended_code
-    if handle.unstored and code < exit_status.SIGNALLED:
-        # How the run ended may be a consequence of it.
-        code = exit_status.EXIT_BAD_OUTPUT
+    if handle.unstored:
+        code = exit_status.of_unstored(code)
     return max(code, exit_status.EXIT_BAD_OUTPUT) if follower.lost else code, handle
