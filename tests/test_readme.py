@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT, Command
-from tuisim.app.actions.table import ACTIONS
-from tuisim.app.analyser.actions.table import ACTIONS as ANALYSER_ACTIONS
+from tuisim.app.actions.keys import ACTIONS
+from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.panels import PANELS
 from tuisim.cli import COMMANDS
 from tuisim.commands.log import SUBCOMMANDS
@@ -20,7 +20,7 @@ from tuisim.core.spec import MOUNTS
 from tuisim.logs.export import EXPORTERS
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-HOW_TO_ADD = README.partition("| to add | do |")[2].partition("\n\n")[0].splitlines()[2:]
+HOW_TO_ADD = README.partition("| to add | you need |")[2].partition("\n\n")[0].splitlines()[2:]
 QUOTED = set(re.findall(r"`([^`\n]+)`", README))
 """Everything in backticks."""
 WORDS = {word for quoted in QUOTED for word in re.split(r"[ |,/…\\]+", quoted) if word}

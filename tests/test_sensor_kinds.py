@@ -26,7 +26,7 @@ from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import instant_of
-from tuisim.shim.brick import DEVICES
+from tuisim.shim.sensors import DEVICES
 from tuisim.source import Program
 
 each_kind = pytest.mark.parametrize("kind", SENSORS.values(), ids=SENSORS)

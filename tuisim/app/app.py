@@ -18,14 +18,14 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
 
+from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import time_travel
-from tuisim.app.actions.table import ACTIONS, working
+from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.background import is_leaving
 from tuisim.app.branch import branch_message
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
-from tuisim.app.keys import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages

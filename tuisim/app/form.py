@@ -16,7 +16,7 @@ from textual.reactive import reactive
 from textual.widget import Widget
 from textual.widgets import Input, Label, Static
 
-from tuisim.app.keys import ActionHost
+from tuisim.app.action import ActionHost
 from tuisim.errors import ConfigError, TuisimError
 
 

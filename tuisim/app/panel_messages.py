@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
+from tuisim.app.action import ActionHost
 from tuisim.app.actions import time_travel
-from tuisim.app.keys import ActionHost
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.app.workspace import Workspace

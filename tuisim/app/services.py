@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from textual.screen import Screen
 
-from tuisim.app.keys import Action
+from tuisim.app.action import Action
 from tuisim.errors import TuisimError
 
 Result = TypeVar("Result")

@@ -40,7 +40,7 @@ class InstalledKernel:
 
 
 _WHERE = (
-    option("--user", is_flag=True, help="In the user's kernel folder (the default of install)."),
+    option("--user", is_flag=True, help="In the user's kernel folder (the default for install)."),
     option("--sys-prefix", is_flag=True, help="In the Python environment of tuisim."),
     option("--prefix", metavar="P", help="In P/share/jupyter/kernels."),
     option("--name", metavar="N", help=f"Name of the kernel in Jupyter ({KERNEL_NAME})."),
@@ -78,7 +78,7 @@ kernel = Group.of(
     default="list",
     help=f"""Install the kernel {DISPLAY_NAME!r} in Jupyter.
 
-    It has every magic and the modules that a course's cells import, so notebooks run unchanged.
+    It provides all the magics and the modules that a course's cells import, so notebooks run unchanged.
     """,
 )
 

@@ -35,8 +35,8 @@ OPTIONS: Mapping[str, GroupedOption] = {
     "expression": option("--expression", default="", metavar="TEXT", help="Expression, such as '(left + right) / 2'."),
     "facets": option("--facets", is_flag=True, help="Draw one chart per variable."),
     "marks": option("--marks", is_flag=True, help="Draw points instead of lines."),
-    "from": option("--from", type=float, metavar="S", help="First second shown."),
-    "to": option("--to", type=float, metavar="S", help="Last second shown."),
+    "from": option("--from", type=float, metavar="S", help="Start of the time range, in seconds."),
+    "to": option("--to", type=float, metavar="S", help="End of the time range, in seconds."),
     "against": option(
         "--against", default="", metavar="NAME", help="Variable or column for the x axis, instead of time."
     ),
@@ -88,7 +88,7 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
     "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"),
     "export": Subcommand("Write the log in another format", "tables:export", ("variable", "telemetry", "out")),
     "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),
-    "report": Subcommand("Write program, world, chart and bands on one page", "documents:report", _PAGE),
+    "report": Subcommand("Write a one-page report: program, world, chart, bands", "documents:report", _PAGE),
 }
 """The subcommands of `tuisim log`, by name."""
 

@@ -7,9 +7,7 @@ would disconnect or exchange the device is refused with a message that names it.
 from __future__ import annotations
 
 import errno
-from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
@@ -18,30 +16,15 @@ from tuisim.core.sensors import mounted
 from tuisim.core.spec import (
     INPUT_PORTS,
     OUTPUT_PORTS,
-    ColorSensorSpec,
-    GyroSpec,
-    InfraredSpec,
     RobotSpec,
-    TouchSpec,
-    UltrasonicSpec,
 )
 from tuisim.errors import NotSimulated
-from tuisim.shim.devices import Brick, SimDevice, refuse
+from tuisim.shim.device_files import Brick, SimDevice, refuse
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
 from tuisim.shim.motor import KINDS, BrowserTacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
-from tuisim.shim.sensors import ColorDevice, GyroDevice, LegoSensor, infrared_sensor, touch_sensor, ultrasonic_sensor
+from tuisim.shim.sensors import DEVICES, ColorDevice, LegoSensor
 from tuisim.shim.session import Session
-
-DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor]] = {
-    ColorSensorSpec: lambda session, spec, _others: ColorDevice(session, spec),
-    UltrasonicSpec: ultrasonic_sensor,
-    GyroSpec: lambda session, spec, _others: GyroDevice(session, spec),
-    TouchSpec: lambda session, spec, _others: touch_sensor(session, spec),
-    InfraredSpec: lambda session, spec, _others: infrared_sensor(session, spec),
-}
-"""Factories of sensor devices, by class of spec: they take the session, the spec and the sensors made before."""
-
 
 PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
 """Classes of devices, by their kernel names."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tuisim.core.profile import MS
-from tuisim.shim.devices import Brick
+from tuisim.shim.device_files import Brick
 from tuisim.shim.session import Session
 
 POLL_MS = 10

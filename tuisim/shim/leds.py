@@ -18,7 +18,7 @@ from typing import Any
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.runs.brick_state import LED_NAMES, led_row
 from tuisim.runs.records import Stream
-from tuisim.shim.devices import Brick, SimDevice, refuse
+from tuisim.shim.device_files import Brick, SimDevice, refuse
 from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from tuisim.core.profile import MS, MotorLaw
 from tuisim.shim.browser_library import speak_as_browser
-from tuisim.shim.devices import Brick, free_of_charge
+from tuisim.shim.device_files import Brick, free_of_charge
 from tuisim.shim.session import Session
 
 

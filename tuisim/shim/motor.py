@@ -11,7 +11,7 @@ from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED
 from tuisim.core.profile import MS
-from tuisim.shim.devices import NumberWriter, Reader, SimDevice, Writer, plain, refuse
+from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
 from tuisim.shim.session import Session
 
 COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from tuisim.core.motors import STOPPED, Motor
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
-from tuisim.shim.devices import SimDevice
+from tuisim.shim.device_files import SimDevice
 from tuisim.shim.session import Session
 
 POWER_CLASS, BATTERY = "power_supply", "lego-ev3-battery"

@@ -15,7 +15,7 @@ from typing import Any
 
 from tuisim.core.profile import MotorLaw
 from tuisim.core.sensors.color import WHITE, percent
-from tuisim.shim.devices import Brick, free_of_charge, plain
+from tuisim.shim.device_files import Brick, free_of_charge, plain
 from tuisim.shim.sensors import ColorDevice
 from tuisim.shim.session import Session
 

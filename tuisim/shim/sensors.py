@@ -7,11 +7,11 @@ import struct
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
-from tuisim.shim.devices import SimDevice, Writer, refuse
+from tuisim.shim.device_files import SimDevice, Writer, refuse
 from tuisim.shim.session import Session
 
 RAW_WHITE = 300
@@ -262,3 +262,13 @@ def infrared_sensor(session: Session, spec: InfraredSpec) -> LegoSensor:
         "IR-CAL": Mode(lambda: (0, 0), read, form="s16"),
     }
     return LegoSensor(session, spec.port, SENSORS["infrared"].driver_name, modes, "IR-PROX")
+
+
+DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor]] = {
+    ColorSensorSpec: lambda session, spec, _others: ColorDevice(session, spec),
+    UltrasonicSpec: ultrasonic_sensor,
+    GyroSpec: lambda session, spec, _others: GyroDevice(session, spec),
+    TouchSpec: lambda session, spec, _others: touch_sensor(session, spec),
+    InfraredSpec: lambda session, spec, _others: infrared_sensor(session, spec),
+}
+"""Factories of sensor devices, by class of spec: they take the session, the spec and the sensors made before."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from tuisim.core.profile import MS
 from tuisim.errors import counted
-from tuisim.shim.devices import plain
+from tuisim.shim.device_files import plain
 
 BEEP_HZ, BEEP_MS, REPEAT_PAUSE_MS = 440.0, 200.0, 100.0
 """Defaults of `beep`."""

@@ -15,7 +15,7 @@ from textual.widgets import Input
 from tests.app.app_help import LOGS, program, ready, until
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import NOTES_FILE, LogRequest, read_notes
-from tuisim.app.analyser.actions.table import ACTIONS
+from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec

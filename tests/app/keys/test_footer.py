@@ -11,10 +11,10 @@ from textual.widgets import Input
 from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import LOGS, program, ready, settings, until
 from tuisim.analysis.source import LogRequest
-from tuisim.app.actions.table import working
+from tuisim.app.action import fitting
+from tuisim.app.actions.keys import working
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
-from tuisim.app.keys import fitting
 from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings

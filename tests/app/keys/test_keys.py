@@ -13,10 +13,10 @@ import pytest
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
-from tuisim.app.actions.table import ACTIONS, working
-from tuisim.app.analyser.actions.table import ACTIONS as ANALYSER_ACTIONS
+from tuisim.app.action import Action, KeyHelp, fitting
+from tuisim.app.actions.keys import ACTIONS, working
+from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.app import LabApp
-from tuisim.app.keys import Action, KeyHelp, fitting
 from tuisim.app.panels import PANELS, TerminalSize
 from tuisim.app.panels.position import parse_field
 from tuisim.app.snapshot import RunPhase, Situation
@@ -318,8 +318,8 @@ def test_each_line_of_the_table_is_an_action() -> None:
 @pytest.mark.parametrize("table", [ACTIONS, ANALYSER_ACTIONS], ids=["app", "analyser"])
 def test_each_group_is_in_one_file_that_names_it(table: Mapping[str, Action[Any, Any]]) -> None:
     functions = {(action.group, getattr(action.do, "func", action.do).__module__) for action in table.values()}
-    # Methods of a screen, and the few functions beside the table, are in no group's file.
-    pairs = {(group, name) for group, name in functions if ".actions." in name and not name.endswith(".table")}
+    # Methods of a screen, and the few functions in the table's file, are in no group's file.
+    pairs = {(group, name) for group, name in functions if ".actions." in name and not name.endswith(".keys")}
     assert len({group for group, _ in pairs}) == len(pairs)
     assert [pair for pair in pairs if pair[0] not in (sys.modules[pair[1]].__doc__ or "")] == []
 

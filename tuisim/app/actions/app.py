@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tuisim.app.keys import KeyHelp, key_groups
+from tuisim.app.action import KeyHelp, key_groups
 
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace

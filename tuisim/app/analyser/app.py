@@ -9,9 +9,9 @@ from textual.binding import Binding, BindingType
 
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.actions.table import ACTIONS
+from tuisim.app.action import key_bindings
+from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.keys import key_bindings
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.errors import TuisimError
 

@@ -17,13 +17,13 @@ from tuisim.analysis.model import RECKONING, Model
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.analysis.table import AT_ONCE, TableTask
 from tuisim.app import background
+from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
 from tuisim.app.analyser.columns import Columns, ColumnsDialog, candidates
 from tuisim.app.analyser.panes import PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
-from tuisim.app.keys import ActionHost, KeyFooter
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.errors import LogError, TuisimError
 from tuisim.logs.columns import choose_columns, is_numeric

@@ -9,7 +9,7 @@ from rich.style import Style
 from rich.text import Text
 from textual.reactive import reactive
 
-from tuisim.app.keys import ACT, ActionWords
+from tuisim.app.action import ACT, ActionWords
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
 
 _LABEL_CELLS = 9

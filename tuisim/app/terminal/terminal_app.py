@@ -31,9 +31,9 @@ from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
 
+from tuisim.app.action import ActionProvider, Palette
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
-from tuisim.app.keys import ActionProvider, Palette
 from tuisim.app.terminal.frame_buffer import FrameBuffer
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from functools import lru_cache, partial
 from typing import TypeAlias
 
+from tuisim.app.action import Action
 from tuisim.app.actions import app, files, program, robot, time_travel
 from tuisim.app.actions.files import analyse
-from tuisim.app.keys import Action
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
 from tuisim.app.workspace import Workspace

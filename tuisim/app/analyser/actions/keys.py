@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
+from tuisim.app.action import Action, KeyHelp, key_groups
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.keys import Action, KeyHelp, key_groups
 
 CURSOR, PANE, CHART, TABLE, LOG = "Cursor", "Panes", "Chart", "Table", "Log"
 FILES, APP = "Files", "App"
