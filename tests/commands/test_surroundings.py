@@ -43,6 +43,14 @@ def test_the_command_itself_does_not_mind_such_a_module(tuisim: Command, tmp_pat
     assert (done.returncode, done.stdout) == (0, "A: 1\n")
 
 
+@pytest.mark.parametrize("name", ["errors", "core", "source"])
+def test_a_program_does_not_find_our_modules_as_its_own(here: Command, tmp_path: Path, name: str) -> None:
+    (tmp_path / "main.py").write_text(f"import {name}")
+    done = here("run", "main.py")
+    assert done.returncode == 1
+    assert f"No module named {name!r}" in done.stderr
+
+
 @pytest.mark.parametrize("allowed", [10, 14, 40])
 def test_too_few_open_files_are_told_in_a_sentence(tmp_path: Path, root: Path, allowed: int) -> None:
     (tmp_path / "main.py").write_text("print('A: 1')")

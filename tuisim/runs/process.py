@@ -53,7 +53,7 @@ def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[
     command_read, command_fd = os.pipe()
     event_fd, event_write = os.pipe()
     lifeline_read, lifeline_fd = os.pipe()
-    package_folder = str(Path(__file__).parent.parent)
+    package_folder = str(Path(__file__).parent.parent.parent)
     inherited = (command_read, event_write, lifeline_read)
     try:
         with open(folder / "child.log", "wb", opener=private) as log:
