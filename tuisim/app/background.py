@@ -48,11 +48,6 @@ def run(
     node.run_worker(thread, thread=True, group=group, exclusive=exclusive)
 
 
-def is_running(node: DOMNode, group: str) -> bool:
-    """Return whether work of a group that belongs to the node is running and was not replaced."""
-    return any(one.node is node and one.group == group and not one.is_finished for one in node.workers)
-
-
 def _in_thread(
     app: App[Any],
     work: Callable[[], Made],

@@ -21,6 +21,8 @@ from tuisim.runtime.session import Session
 from tuisim.runtime.stack import PACKAGE_FOLDER
 
 RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
+LEFT_TO_OTHERS_S = 0.1
+"""Real time that a thread has to take a command before the main thread, which waits for its turn, does."""
 STALL_LOOK_S = 1.0
 STACK_FILE = "stack.txt"
 
@@ -67,7 +69,7 @@ class Interrupts:
         faulthandler.enable(self._stack_file, all_threads=False)
         faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
         signal.signal(signal.SIGUSR1, self._on_command)
-        wallclock.set_signal(signal.SIGALRM, self._on_command)
+        wallclock.set_signal(signal.SIGALRM, self._on_alarm)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         if self._session.limits.stall_s:
             signal.signal(signal.SIGVTALRM, self._on_stall)
@@ -87,11 +89,26 @@ class Interrupts:
         if session.steering.holding:
             # The run waits for commands, maybe in another thread, which reads them from the pipe itself.
             return
+        if self.main_is_parked:
+            # The thread whose turn it is takes the command in its turn, unless it computes without end.
+            if not self._timer_on:
+                wallclock.set_timer(signal.ITIMER_REAL, LEFT_TO_OTHERS_S)
+        elif self._may_raise(frame):
+            self._checkpoint()
+
+    def _on_alarm(self, _number: int, frame: types.FrameType | None) -> None:
+        session = self._session
+        if self._removed or session.steering.holding:
+            return
+        session.flags |= ATTENTION
         if self._may_raise(frame):
-            try:
-                session.checkpoint()
-            finally:
-                self._raise_again_later()
+            self._checkpoint()
+
+    def _checkpoint(self) -> None:
+        try:
+            self._session.checkpoint()
+        finally:
+            self._raise_again_later()
 
     def _raise_again_later(self) -> None:
         # A program that catches the stop gets it again and again, until the host kills it.

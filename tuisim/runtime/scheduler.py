@@ -228,10 +228,6 @@ class Scheduler:
         self.main.order = 0
         return self.main
 
-    def hand_to_main(self, stop: StopProgram) -> None:
-        """Let the main thread run next and be stopped; the current thread is about to end."""
-        self._ready.appendleft(self._send_to_main(stop))
-
     @property
     def tasks(self) -> tuple[ScheduledThread, ...]:
         """All threads that have not ended, the main thread first."""
@@ -287,6 +283,10 @@ class Scheduler:
         self._alive.remove(task)
         for joiner in task.joiners:
             self.wake(joiner)
+        reason = self._session.stop_reason
+        if reason is not None and self._session.stop_raised_in == task.ident:
+            # The main thread has not been told, and goes first.
+            self._ready.appendleft(self._send_to_main(reason))
         chosen = self._choose()
         self.current = chosen
         self._session.free = 0

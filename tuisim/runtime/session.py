@@ -18,6 +18,7 @@ from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.simulation import Simulation
 from tuisim.protocol import End, Message, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
+from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE, STOPPING, THREADS, RunControl
 from tuisim.runtime.output import Output
@@ -156,6 +157,8 @@ class Session:
         """Whether the host answers with `messages`."""
         self.stop_reason: StopProgram | None = None
         self._stop_raised_at: int | None = None
+        self.stop_raised_in: int | None = None
+        """Identity of the thread that the stop was raised in first."""
         self.debugger: Debugger | None = None
         self.make_debugger: Callable[[], Debugger] | None = None
         """Set once there is a program to debug."""
@@ -347,7 +350,7 @@ class Session:
         if reason is None:
             return
         if self._stop_raised_at is None:
-            self._stop_raised_at = self.now
+            self._stop_raised_at, self.stop_raised_in = self.now, wallclock.get_ident()
             if before_tick and reason.end is End.STOPPED:
                 self.steering.write_down_stop(self.sim.tick)
             raise reason

@@ -19,7 +19,7 @@ from tuisim.runtime.debugger.inspection import Looker
 from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
 from tuisim.runtime.debugger.tracer import Tracer
 from tuisim.runtime.scheduler import Scheduler
-from tuisim.runtime.session import Session, StopProgram
+from tuisim.runtime.session import Session
 
 if TYPE_CHECKING:
     from tuisim.runtime.run_config import RunConfig
@@ -246,7 +246,7 @@ class Debugger:
         if reason is not None:
             file = "" if own else frame.f_code.co_filename
             moment = self._moment(line, reason, text, value, self._tracer.ordinal, file)
-            self._hold_in_thread(moment)
+            self._hold(moment)
 
     def _is_reached(self, ordinal: int) -> bool:
         assert self._instant is not None
@@ -258,7 +258,7 @@ class Debugger:
         met = self._watcher.after_row(row, stream)
         if met is not None and self._session.stop_reason is None:
             line = self._session.program_line()
-            self._hold_in_thread(self._moment(line, PauseReason.BREAK, *met, self._tracer.ordinal))
+            self._hold(self._moment(line, PauseReason.BREAK, *met, self._tracer.ordinal))
 
     def _apart(self, work: Callable[[], bytes]) -> bytes | None:
         return apart(self._session, self._scheduler, work, CONDITION_LIMIT_S, self._take_more)
@@ -276,19 +276,6 @@ class Debugger:
         session = self._session
         session.now = max(session.now, session.sim.due_ns(session.sim.tick))
         self._hold(self._moment(session.sim.line, reason, text, value, ordinal))
-
-    def _hold_in_thread(self, moment: Paused) -> None:
-        """Pause inside a thread; a stop during the pause ends all threads at once.
-
-        Raises:
-            StopProgram: the run has to stop.
-        """
-        try:
-            self._hold(moment)
-        except StopProgram as stop:
-            if self._scheduler.current is not self._scheduler.main:
-                self._scheduler.hand_to_main(stop)
-            raise
 
     def _hold(self, moment: Paused) -> None:
         session = self._session

@@ -83,7 +83,7 @@ def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameTy
             return "waits for a button"
         case "session.py", "speak":
             return f"sounds{until}"
-        case "devices.py", "read":
+        case "device_files.py", "read":
             return f"reads {frame.f_locals.get('name', 'a device')}{until}"
         case "threads.py", "join":
             return f"waits for the thread {getattr(frame.f_locals.get('self'), 'name', '')}{until}"
