@@ -51,8 +51,13 @@ class R:
         while True:
             try:
                 while True:
-                    pass
+                    try:
+                        while True:
+                            pass
+                    except BaseException:
+                        pass
             except BaseException:
+                # An interrupt may come between the loops.
                 pass
 r = R()
 print('on')
