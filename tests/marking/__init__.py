@@ -1,0 +1,1 @@
+"""Tests of marking: a class of students' programs with their expected marks."""
