@@ -68,8 +68,11 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
     return profile_from_table(*read_named(word, "profile", PROFILES, ProfileError, key, (".toml",)))
 
 
-def profile_from_table(data: object, name: str, at: Location) -> ProfileSpec:
+def profile_from_table(data: object, name: str, at: Location, changes_to: ProfileSpec | None = None) -> ProfileSpec:
     """Return the profile in a table, called `name` unless the table says otherwise; costs are in ms or ns.
+
+    Args:
+        changes_to: The profile with the keys that the table leaves out, unless it names its base.
 
     Raises:
         ProfileError: a key or a value is wrong.
@@ -79,7 +82,8 @@ def profile_from_table(data: object, name: str, at: Location) -> ProfileSpec:
     earlier = EARLIER_KEYS | {_in_ms(key) for key in EARLIER_KEYS if key.endswith(_NS)}
     listed = ("base", *(key for key in names if not key.endswith(_NS)), *in_ms)
     given = table(data, at, listed, unlisted=earlier | frozenset(in_ms.values()))
-    base = PROFILES[one_of(given.get("base", DEFAULT_PROFILE), at.at("base"), PROFILES)]
+    named = PROFILES[one_of(given.get("base", DEFAULT_PROFILE), at.at("base"), PROFILES)]
+    base = named if changes_to is None or "base" in given else changes_to
     found: dict[str, Any] = {"name": name}
     if "halve_position_moves" in given:
         halved = convert(given["halve_position_moves"], bool, at.at("halve_position_moves"))

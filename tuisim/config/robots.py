@@ -129,14 +129,18 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
     return (robot_from_json if word.lower().endswith(".json") else robot_from_table)(data, name, at)
 
 
-def robot_from_table(data: object, name: str, at: Location) -> RobotChoice:
+def robot_from_table(data: object, name: str, at: Location, changes_to: RobotSpec | None = None) -> RobotChoice:
     """Return the robot in a table, called `name` unless the table says otherwise.
+
+    Args:
+        changes_to: The robot with the keys that the table leaves out, unless it names its base.
 
     Raises:
         RobotError: a key or a value is wrong.
     """
     found = files.table(data, at, _TOP_KEYS)
-    base = ROBOTS[files.one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
+    named = ROBOTS[files.one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
+    base = named if changes_to is None or "base" in found else changes_to
     changes = {"name": name, **{key: found[key] for key in _BODY_KEYS if key in found}}
     if "name" in found:
         _check_name(found["name"], at.at("name"))

@@ -1,0 +1,101 @@
+"""Single keys of world and robot files as settings of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings, settings_of
+from tuisim.config.overrides import fields_of_keys, settings_of_keys
+from tuisim.config.robots import choose_robot
+from tuisim.core.spec import RunSpec
+from tuisim.errors import ConfigError
+
+HERE = Path("set")
+
+
+def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
+    return build_run_spec(settings_of(chosen, settings_of_keys(values, Settings(**chosen), HERE)))
+
+
+@pytest.mark.parametrize(
+    "values, read, expected",
+    [
+        pytest.param({"noise.motor": 20}, lambda spec: spec.world.noise.motor, 20, id="noise"),
+        pytest.param({"start.x_mm": 300}, lambda spec: spec.world.start.x_mm, 300, id="start pose"),
+        pytest.param({"background": "Lollipop"}, lambda spec: spec.world.background, "Lollipop", id="mat"),
+        pytest.param({"profile": "ev3"}, lambda spec: spec.profile.name, "ev3", id="profile"),
+        pytest.param({"profile.color_read_ms": 7}, lambda spec: spec.profile.color_read_ns, 7_000_000, id="cost"),
+        pytest.param({"seed": 9}, lambda spec: spec.seed, 9, id="seed"),
+        pytest.param({"robot": "Small_Robot"}, lambda spec: spec.robot.wheel_diameter_mm, 28.0, id="robot"),
+        pytest.param({"robot.weight": "heavy"}, lambda spec: spec.robot.weight, 9.0, id="key of the robot"),
+        pytest.param(
+            {"robot.color_sensors.left.diameter_mm": 30},
+            lambda spec: spec.robot.color_sensors[0].diameter_mm, 30, id="key of a sensor",
+        ),
+        pytest.param(
+            {"robot": "Small_Robot", "robot.weight": 3}, lambda spec: (spec.robot.wheel_diameter_mm, spec.robot.weight),
+            (28.0, 3.0), id="a robot and its key",
+        ),
+        pytest.param({"walls": False}, lambda spec: spec.world.walls, False, id="walls"),
+    ],
+)  # fmt: skip
+def test_a_key_changes_its_setting(values: dict[str, Any], read: Any, expected: object) -> None:
+    assert read(spec_with(values)) == expected
+
+
+def test_a_key_of_the_robot_leaves_the_rest_of_the_chosen_robot() -> None:
+    robot = choose_robot("Explorer")
+    changed = spec_with({"robot.wheel_diameter_mm": 60}, robot=robot).robot
+    assert (changed.wheel_diameter_mm, changed.touch_sensors) == (60.0, robot.spec.touch_sensors)
+
+
+def test_a_key_of_the_profile_leaves_the_rest_of_the_chosen_profile() -> None:
+    profile = spec_with({"profile.color_read_ms": 60}, profile="nbev3devsim").profile
+    assert (profile.tick_hz, profile.color_read_ns) == (30, 60_000_000)
+
+
+def test_sensors_stay_where_the_mat_puts_them() -> None:
+    mat = "Radial_grey"
+    usual, changed = spec_with({}, background=mat).robot, spec_with({"robot.weight": 3}, background=mat).robot
+    assert [sensor.x_mm for sensor in changed.color_sensors] == [sensor.x_mm for sensor in usual.color_sensors]
+
+
+@pytest.mark.parametrize("value, expected", [(5, ("5",)), ("5 'two words'", ("5", "two words"))])
+def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, ...]) -> None:
+    assert settings_of_keys({"arguments": value}, Settings(), HERE)["arguments"] == expected
+
+
+@pytest.mark.parametrize(
+    "values, words",
+    [
+        pytest.param({"noise.motr": 1}, r"^set: noise.motr: no such key .did you mean motor", id="misspelt"),
+        pytest.param({"nois.motor": 1}, r"^set: nois: no such key .did you mean noise", id="misspelt table"),
+        pytest.param({"robot.wheel_diametr_mm": 1}, r"wheel_diametr_mm: .*wheel_diameter_mm", id="robot"),
+        pytest.param({"noise.motor": 501}, r"^set: noise.motor: must be a whole number from 0 to 500", id="too large"),
+        pytest.param({"background": "Lollipo"}, r"^set: background: no such mat .*Lollipop", id="no such mat"),
+        pytest.param({"program": "x.py"}, r"^set: program: cannot be varied", id="not part of a run"),
+        pytest.param({"noise": 1, "noise.motor": 2}, r"noise.motor: is inside noise", id="a value and a table"),
+        pytest.param({"noise.motor": 2, "noise": 1}, r"^set: noise: is given together", id="a table and a value"),
+        pytest.param({"arguments": "'a"}, r"^set: arguments: cannot be split", id="an open quote"),
+    ],
+)  # fmt: skip
+def test_wrong_keys_are_explained(values: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        settings_of_keys(values, Settings(), HERE)
+
+
+@pytest.mark.parametrize(
+    "values, expected",
+    [
+        ({"noise.motor": 5}, {"motor_noise"}),
+        ({"background": "Lollipop"}, {"background"}),
+        ({"robot.weight": 5}, set()),
+        ({"robot": "Small_Robot"}, {"robot"}),
+    ],
+)
+def test_a_key_sets_the_field_of_its_option(values: dict[str, Any], expected: set[str]) -> None:
+    assert fields_of_keys(values, Settings(), HERE) == expected

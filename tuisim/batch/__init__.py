@@ -1,0 +1,1 @@
+"""Batches: one program, or several, over many seeds and settings."""

@@ -1,0 +1,292 @@
+"""The parameters of a batch: which values they take, and the grid of all combinations.
+
+Values are written as lists (`0,20,50`), ranges (`54:58:0.5`, `0..199`), words, and samples of an interval
+(`random(0, 50, 20)`, `latin(0, 50, 20)`). The same text always gives the same values.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+from enum import StrEnum
+from random import Random
+
+from tuisim.config.options import MAX_SEED
+from tuisim.errors import ConfigError, nearest
+
+Value = str | bool | int | float
+"""A value of a parameter."""
+
+MAX_VALUES = 1_000_000
+"""Most values of one parameter, and most runs of a batch."""
+
+SEED = "seed"
+"""The parameter that `--seeds` varies."""
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
+_RANGE = re.compile(rf"({_NUMBER}):({_NUMBER})(?::({_NUMBER}))?")
+_SPAN = re.compile(r"([+-]?\d+)\.\.([+-]?\d+)")
+_CALL = re.compile(r"([A-Za-z_]\w*)\((.*)\)")
+_QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
+_PIECE = re.compile(rf"(?:{_QUOTED.pattern}|\([^()]*\)|[^,])*")
+_TRUTHS: Mapping[str, bool] = {"true": True, "on": True, "false": False, "off": False}
+
+ALLOWED = "0,20,50 or 54:58:0.5 or 0..199 or random(0, 50, 20) or latin(0, 50, 20)"
+
+
+class Draw(StrEnum):
+    """How the values of a sample are spread over its interval."""
+
+    RANDOM = "random"
+    """Independent of each other."""
+    LATIN = "latin"
+    """One in each of as many equal parts as there are values: a Latin hypercube of all such parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A number of values drawn from an interval, with a seed of their own."""
+
+    draw: Draw
+    low: float
+    high: float
+    count: int
+    seed: int = 0
+
+    def values(self, name: str, whole: bool) -> tuple[int | float, ...]:
+        """Return the values in the order in which they are drawn.
+
+        Args:
+            name: The parameter: parameters with the same seed are independent of each other.
+            whole: Whether to draw whole numbers.
+
+        Raises:
+            ConfigError: whole numbers are to be drawn, and the interval has none.
+        """
+        random = Random(f"{self.draw} {self.seed} {name}")
+        shares = [random.random() for _ in range(self.count)]
+        if self.draw is Draw.LATIN:
+            # Sorting by random numbers gives a permutation that no version of Python changes.
+            order = sorted((random.random(), part) for part in range(self.count))
+            shares = [(part + share) / self.count for (_, part), share in zip(order, shares, strict=True)]
+        if whole:
+            low, high = math.ceil(self.low), math.floor(self.high)
+            if low > high:
+                raise ConfigError(f"there is no whole number from {self.low:g} to {self.high:g}", key=name)
+            return tuple(min(low + math.floor(share * (high - low + 1)), high) for share in shares)
+        return tuple(self.low + share * (self.high - self.low) for share in shares)
+
+
+Choice = tuple[Value, ...] | Sample
+"""What a parameter takes: these values, or a sample."""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """Parameters that vary together: one, or those of a Latin hypercube."""
+
+    names: tuple[str, ...]
+    points: tuple[tuple[Value, ...], ...]
+    """The values of all of them at each point."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Every combination of the points of some axes; the last axis varies fastest."""
+
+    axes: tuple[Axis, ...]
+    names: tuple[str, ...] = field(init=False)
+    """The parameters, in the order of the axes."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(name for axis in self.axes for name in axis.names))
+
+    def __len__(self) -> int:
+        return math.prod(len(axis.points) for axis in self.axes)
+
+    def __iter__(self) -> Iterator[dict[str, Value]]:
+        return map(self.at, range(len(self)))
+
+    def at(self, index: int) -> dict[str, Value]:
+        """Return the values of one combination by parameter; `index` counts from 0."""
+        found: list[tuple[str, Value]] = []
+        for axis in reversed(self.axes):
+            index, here = divmod(index, len(axis.points))
+            found[:0] = zip(axis.names, axis.points[here], strict=True)
+        return dict(found)
+
+
+def grid_of(choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool] = lambda *_: False) -> Grid:
+    """Return the grid of some parameters, in their order.
+
+    Args:
+        choices: What each parameter takes.
+        is_whole: Whether a parameter takes only whole numbers; asked for samples, with a number inside the interval.
+
+    Raises:
+        ConfigError: the samples of a Latin hypercube differ in number or seed, or there are too many combinations.
+    """
+    axes: list[Axis] = []
+    drawn = {name: choice for name, choice in choices.items() if _is_latin(choice)}
+    for name, choice in choices.items():
+        if name not in drawn:
+            axes.append(Axis((name,), tuple((value,) for value in _values(name, choice, is_whole))))
+        elif name == next(iter(drawn)):
+            _check_together(drawn)
+            columns = [_values(one, other, is_whole) for one, other in drawn.items()]
+            axes.append(Axis(tuple(drawn), tuple(zip(*columns, strict=True))))
+    grid = Grid(tuple(axes))
+    if len(grid) > MAX_VALUES:
+        raise ConfigError(f"{len(grid):,} combinations of {', '.join(grid.names)}", f"at most {MAX_VALUES:,}")
+    return grid
+
+
+def _is_latin(choice: Choice) -> bool:
+    return isinstance(choice, Sample) and choice.draw is Draw.LATIN
+
+
+def _check_together(drawn: Mapping[str, Choice]) -> None:
+    (first, one), *others = drawn.items()
+    for name, other in others:
+        assert isinstance(one, Sample) and isinstance(other, Sample)
+        if (one.count, one.seed) != (other.count, other.seed):
+            message = f"a Latin hypercube needs the same number of values and seed as {first}"
+            raise ConfigError(message, f"latin(…, …, {one.count}, seed={one.seed})", key=name)
+
+
+def _values(name: str, choice: Choice, is_whole: Callable[[str, float], bool]) -> Sequence[Value]:
+    if not isinstance(choice, Sample):
+        return choice
+    # The middle of two whole numbers, inside the interval.
+    inside = math.floor(choice.low) + 0.5
+    return choice.values(name, is_whole(name, inside if inside < choice.high else (choice.low + choice.high) / 2))
+
+
+def parse_set(text: str, key: str = "--set") -> tuple[str, Choice]:
+    """Parse `NAME=VALUES`; return the name and what it takes.
+
+    Raises:
+        ConfigError: there is no name, or the values are wrong; errors blame the option `key`.
+    """
+    name, equals, values = text.partition("=")
+    name = name.strip()
+    if not equals or not name:
+        raise ConfigError(f"must be NAME=VALUES, got {text!r}", "such as noise.motor=0,20,50", key=key)
+    return name, parse_values(values, f"{key} {name}")
+
+
+def parse_values(text: str, key: str) -> Choice:
+    """Parse the values of a parameter.
+
+    Raises:
+        ConfigError: they are wrong; errors blame `key`.
+    """
+    pieces = _pieces(text)
+    if not all(pieces):
+        raise ConfigError(f"a value is missing in {text!r}", ALLOWED, key=key)
+    if len(pieces) == 1 and (call := _CALL.fullmatch(pieces[0])):
+        return _sample(call[1], call[2], key)
+    found: list[Value] = []
+    for piece in pieces:
+        if _CALL.fullmatch(piece):
+            raise ConfigError(f"{piece} stands alone, without further values", ALLOWED, key=key)
+        found += _expanded(piece, key)
+        if len(found) > MAX_VALUES:
+            raise ConfigError(f"more than {MAX_VALUES:,} values", f"at most {MAX_VALUES:,}", key=key)
+    return tuple(found)
+
+
+def parse_seeds(text: str, key: str = "--seeds") -> tuple[int, ...]:
+    """Parse seeds, such as `0..199` or `1,5,9`.
+
+    Raises:
+        ConfigError: one is not a whole number in the range of seeds, or occurs twice.
+    """
+    choice = parse_values(text, key)
+    if isinstance(choice, Sample):
+        choice = choice.values(SEED, whole=True)
+    return checked_seeds(choice, key)
+
+
+def checked_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
+    """Return seeds after checking them.
+
+    Raises:
+        ConfigError: one is not a whole number in the range of seeds, or occurs twice.
+    """
+    seeds: dict[int, None] = {}
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MAX_SEED:
+            raise ConfigError(f"a seed must be a whole number from 0, got {value!r}", "such as 0..199", key=key)
+        if value in seeds:
+            raise ConfigError(f"the seed {value} occurs twice", "the same run again gives the same bits", key=key)
+        seeds[value] = None
+    return tuple(seeds)
+
+
+def _pieces(text: str) -> list[str]:
+    """Split a text at the commas outside quotes and parentheses."""
+    pieces, at = [], 0
+    while True:
+        match = _PIECE.match(text, at)
+        assert match is not None
+        pieces.append(match[0].strip())
+        at = match.end() + 1
+        if at > len(text):
+            return pieces
+
+
+def _expanded(piece: str, key: str) -> Sequence[Value]:
+    """Return the values of one piece of a list: a range, a number, a truth value or a word."""
+    if span := _SPAN.fullmatch(piece):
+        return _range(Decimal(span[1]), Decimal(span[2]), Decimal(1), piece, key)
+    if limits := _RANGE.fullmatch(piece):
+        return _range(Decimal(limits[1]), Decimal(limits[2]), Decimal(limits[3] or 1), piece, key)
+    if _QUOTED.fullmatch(piece):
+        return (piece[1:-1],)
+    if re.fullmatch(r"[+-]?\d+", piece):
+        # Longer numbers are no value of any parameter, and would take Python long to read.
+        return (int(piece) if len(piece) < 30 else piece,)
+    if re.fullmatch(_NUMBER, piece):
+        return (float(piece),)
+    return (_TRUTHS.get(piece.lower(), piece),)
+
+
+def _range(low: Decimal, high: Decimal, step: Decimal, piece: str, key: str) -> Sequence[Value]:
+    """Return the values from `low` to `high`; in decimal, so that none is off by a rounding error."""
+    if step == 0 or (high - low) / step < 0:
+        raise ConfigError(f"{piece} has no values: a step of {step} does not lead from {low} to {high}", key=key)
+    steps = (high - low) / step
+    if steps >= MAX_VALUES:
+        raise ConfigError(f"{piece} has too many values", f"at most {MAX_VALUES:,}", key=key)
+    count = int(steps)
+    if count != steps:
+        last = low + count * step
+        hint = f"{low}:{last}:{step} ends at a whole number of steps, as does {low}:{last + step}:{step}"
+        raise ConfigError(f"{piece} does not reach {high}", hint, key=key)
+    whole = all(number == number.to_integral_value() for number in (low, step)) and "." not in piece.replace("..", "")
+    values = (low + at * step for at in range(count + 1))
+    return [int(value) if whole else float(value) for value in values]
+
+
+def _sample(name: str, inside: str, key: str) -> Sample:
+    """Parse `random(LOW, HIGH, COUNT, seed=N)`, without the name."""
+    if name not in [*Draw]:
+        raise ConfigError(f"no such sample {name}(…)", nearest(name, [*Draw]), key=key)
+    words = [word.strip() for word in inside.split(",")]
+    seed = 0
+    if words and (named := re.fullmatch(r"seed\s*=\s*(\d{1,18})", words[-1])):
+        seed = int(named[1])
+        words.pop()
+    usage = f"{name}(0, 50, 20) or {name}(0, 50, 20, seed=3): from, to, number of values"
+    if len(words) != 3 or not all(re.fullmatch(_NUMBER, word) for word in words[:2]):
+        raise ConfigError(f"cannot read {name}({inside})", usage, key=key)
+    low, high = float(words[0]), float(words[1])
+    if not (words[2].isdecimal() and len(words[2]) < 10 and 1 <= int(words[2]) <= MAX_VALUES):
+        raise ConfigError(f"cannot draw {words[2]!r} values", f"a whole number from 1 to {MAX_VALUES:,}", key=key)
+    if not low < high:
+        raise ConfigError(f"{words[0]} is not less than {words[1]}", usage, key=key)
+    return Sample(Draw(name), low, high, int(words[2]), seed)

@@ -1,0 +1,96 @@
+"""Single keys of world and robot files, such as `noise.motor` or `robot.wheel_diameter_mm`, as settings of a run."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.config.files import Location
+from tuisim.config.options import RobotChoice, Settings
+from tuisim.config.profiles import load_profile, profile_from_table
+from tuisim.config.robots import choose_robot, robot_from_table
+from tuisim.config.worlds import world_from_table
+from tuisim.core.profile import ProfileSpec
+from tuisim.errors import ProfileError, RobotError
+
+_NOT_VARIED = ("program", "autorun", "rays", "panels", "hidden_panels", "obstacle", "remote")
+"""Keys of a world file that do not affect a run, or that have no single value."""
+
+
+def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dict[str, Any]:
+    """Return the settings that some keys of a world file set, keyed by field of `Settings`.
+
+    Args:
+        values: By key; tables are written with dots. `arguments` is a text, split into words as a shell does.
+        chosen: The settings to be changed: a key of a robot or profile leaves the other keys as they are.
+        path: The file to blame in errors; paths are relative to its folder.
+
+    Raises:
+        ConfigError: a key is unknown, or a value is wrong.
+    """
+    at = Location(str(path))
+    table = _nested(values, at)
+    for key in _NOT_VARIED:
+        if key in table:
+            raise at.at(key).wrong("cannot be varied", "any other key of a world file can")
+    if "arguments" in table:
+        table["arguments"] = _words(table["arguments"], at.at("arguments"))
+    changed = {key: table.pop(key) for key in ("robot", "profile") if isinstance(table.get(key), dict)}
+    named = {key: table.pop(f"{key}=") for key in ("robot", "profile") if f"{key}=" in table}
+    found = dict(world_from_table(table | named, path, chosen.mats).settings)
+    if "robot" in changed:
+        word = found.get("robot", chosen.robot)
+        found["robot"] = _changed_robot(changed["robot"], word, at.at("robot", RobotError))
+    if "profile" in changed:
+        word = found.get("profile", chosen.profile)
+        found["profile"] = _changed_profile(changed["profile"], word, at.at("profile", ProfileError))
+    return found
+
+
+def fields_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> set[str]:
+    """Return the fields of `Settings` that some keys set by themselves; arguments as in `settings_of_keys`.
+
+    A key of a robot or profile changes a part of what the option for it chooses, so it is not the same as the option.
+    """
+    found = settings_of_keys(values, chosen, path)
+    parts = {key.partition(".")[0] for key in values if "." in key}
+    return {field for field, value in found.items() if value is not None and field not in parts & {"robot", "profile"}}
+
+
+def _nested(values: Mapping[str, Any], at: Location) -> dict[str, Any]:
+    """Return keys with dots as nested tables; a robot or profile that is also named has its name under `robot=`."""
+    table: dict[str, Any] = {}
+    for key, value in values.items():
+        *outer, last = key.split(".")
+        if key in ("robot", "profile") and any(other.startswith(f"{key}.") for other in values):
+            last = f"{key}="
+        inside = table
+        for part in outer:
+            inside = inside.setdefault(part, {})
+            if not isinstance(inside, dict):
+                raise at.at(key).wrong(f"is inside {part}, which has a value")
+        if last in inside:
+            raise at.at(key).wrong("is given together with keys inside it", "give only one of them")
+        inside[last] = value
+    return table
+
+
+def _words(value: object, at: Location) -> list[str]:
+    try:
+        return shlex.split(value if isinstance(value, str) else str(value))
+    except ValueError as error:
+        raise at.wrong(f"cannot be split into words: {error}") from None
+
+
+def _changed_robot(table: object, chosen: str | RobotChoice, at: Location) -> RobotChoice:
+    base = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
+    found = robot_from_table(table, base.spec.name, at, base.spec)
+    return replace(base, spec=found.spec, own_places=base.own_places or found.own_places)
+
+
+def _changed_profile(table: object, chosen: str | ProfileSpec, at: Location) -> ProfileSpec:
+    base = chosen if isinstance(chosen, ProfileSpec) else load_profile(chosen, "--profile")
+    return profile_from_table(table, f"{base.name}, changed", at, base)
