@@ -73,8 +73,12 @@ def write_report(opened: OpenedLog, path: Path, names: Sequence[str] = (), searc
     write_whole(path, report_of(opened, names, search).encode())
 
 
-def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = plateaus) -> str:
-    """Return the page that `write_report` writes; arguments and errors are the same."""
+def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = plateaus, title: str = "") -> str:
+    """Return the page that `write_report` writes; arguments and errors are the same.
+
+    Args:
+        title: The title of a page that is the same for identical runs: it names no run and no date.
+    """
     opened, remark = _with_rows(opened)
     model = Model(opened)
     for trace in model.traces:
@@ -82,11 +86,12 @@ def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = pla
     model.find_bands(model.unsearched(), search)
     log = opened.log
     runs = opened.runs
+    known = [row for row in run_facts(runs) if not title or row[0] not in _OF_ONE_RUN]
     body = [
-        f"<header>\n<h1>{clean(log.title)}</h1>",
+        f"<header>\n<h1>{clean(title or log.title)}</h1>",
         paragraph(remark, soft=True) if remark else "",
         "</header>",
-        section("Facts", facts(run_facts(runs) if runs else log_facts(log)), *map(_error, runs)),
+        section("Facts", facts(known if runs else log_facts(log)), *map(_error, runs)),
         section("World", *(_world(run, many=len(runs) > 1) for run in runs)),
         section("Chart", *_chart(model)),
         section("Bands", *_bands(model)),
@@ -94,7 +99,7 @@ def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = pla
         section("Notes", _notes(model), *(paragraph(f"Reading: {note}", soft=True) for note in log.notes)),
         *_programs(runs),
     ]
-    return page(f"{log.title}: report", [part for part in body if part])
+    return page(f"{title or log.title}: report", [part for part in body if part])
 
 
 def _with_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
@@ -303,6 +308,8 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "tags": lambda run: ", ".join(run.tags),
 }
 """To add a fact: a line here."""
+_OF_ONE_RUN = frozenset({"run", "made"})
+"""Facts that differ between identical runs."""
 
 
 _STYLE = """

@@ -1,0 +1,132 @@
+"""The students of a class are found in files and folders; each run gets its own copy."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.marking.the_class import CLASS, write_class
+from tuisim.errors import ConfigError
+from tuisim.marks.journal import Journal
+from tuisim.marks.outcome import GoalOutcome, Outcome
+from tuisim.marks.students import Student, find_students
+from tuisim.marks.workspace import Workspace, digest_of, program_in
+
+
+def _folder(tmp_path: Path, *files: str) -> Path:
+    for file in files:
+        path = tmp_path / "class" / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"print({file!r})\n")
+    return tmp_path / "class"
+
+
+def test_every_student_of_the_class_is_found(tmp_path: Path) -> None:
+    found = find_students([str(write_class(tmp_path / "class"))])
+    assert len(found.students) == len(CLASS)
+    assert [one.name for one in found.students if one.source is None] == ["zip.py"]
+    assert {one.name: one.main for one in found.students if not one.path.is_file()} == {
+        "deletes": "main.py",
+        "vera": "main.py",
+        "viktor": "main.py",
+        "wanda": "robot.py",
+        "xaver": "main.py",
+        'Zoë & <b>Max\ufffd[31m "Ü" 🐍': "main.py",
+    }
+
+
+CASES = {
+    "main.py before others": (("ada/other.py", "ada/main.py"), "", "main.py", ""),
+    "the only program": (("ada/robot.py", "ada/notes.txt"), "", "robot.py", ""),
+    "the one in the goals": (("ada/main.py", "ada/follow.py"), "follow.py", "follow.py", ""),
+    "not the one in the goals": (("ada/main.py",), "follow.py", "main.py", ""),
+    "which one": (("ada/a.py", "ada/b.py"), "", "", "which of a.py, b.py is the main program? (main.py)"),
+    "none": (("ada/notes.txt",), "", "", "there is no Python file (main.py)"),
+}
+
+
+@pytest.mark.parametrize(("files", "program", "main", "problem"), CASES.values(), ids=CASES)
+def test_main_program_of_a_folder(
+    tmp_path: Path, files: tuple[str, ...], program: str, main: str, problem: str
+) -> None:
+    (found,) = find_students([str(_folder(tmp_path, *files))], program).students
+    assert (found.name, found.main, found.problem) == ("ada", main, problem)
+
+
+def test_a_folder_with_a_main_program_and_a_file_are_students_themselves(tmp_path: Path) -> None:
+    folder = _folder(tmp_path, "ada/main.py", "ada/helper.py", "ben.py")
+    found = find_students([str(folder / "ada"), str(folder / "ben.py")])
+    assert [one.name for one in found.students] == ["ada", "ben.py"]
+
+
+def test_students_of_equal_names_have_the_name_of_their_folder(tmp_path: Path) -> None:
+    folders = [str(_folder(tmp_path / name, "ada.py")) for name in ("x", "y")]
+    group = _folder(tmp_path / "z", "ben.py").rename(tmp_path / "group")
+    (group / "ada.py").write_text("")
+    assert [one.name for one in find_students([*folders, str(group)]).students] == [
+        "class/ada.py", "class/ada.py (2)", "group/ada.py", "ben.py",
+    ]  # fmt: skip
+
+
+def test_hidden_files_and_results_are_no_students(tmp_path: Path) -> None:
+    folder = _folder(tmp_path, "ada.py", ".hidden.py", "__pycache__/x.py", "feedback/ada.txt", "slides.odp")
+    found = find_students([str(folder)], excluded=frozenset({(folder / "feedback").resolve()}))
+    assert ([one.name for one in found.students], found.ignored) == (["ada.py"], ("slides.odp",))
+
+
+@pytest.mark.parametrize("word", ["nowhere", "class"])
+def test_folders_without_programs_are_refused(tmp_path: Path, word: str) -> None:
+    (tmp_path / "class").mkdir()
+    with pytest.raises(ConfigError, match=word):
+        find_students([str(tmp_path / word)])
+
+
+def test_a_program_sees_a_copy_of_its_own_files_only(tmp_path: Path) -> None:
+    folder = _folder(tmp_path, "ada/main.py", "ada/data/hops.csv", "ada/__pycache__/main.pyc", "ben.py")
+    os.mkfifo(folder / "ada" / "pipe")
+    (folder / "ada" / "link").symlink_to("/etc/passwd")
+    ada, ben = find_students([str(folder)]).students
+    with Workspace() as workspace:
+        program = program_in(ada, workspace.copy(ada, 0))
+        place = Path(program.working_directory)
+        assert sorted(path.name for path in place.iterdir()) == ["data", "link", "main.py"]
+        assert (place / "link").is_symlink() and Path(program.path) == place / "main.py"
+        assert [path.name for path in workspace.copy(ben, 1).iterdir()] == ["ben.py"]
+        workspace.remove(0)
+        assert not place.exists()
+    assert not workspace.path.exists()
+
+
+def test_a_digest_changes_with_every_file(tmp_path: Path) -> None:
+    folder = _folder(tmp_path, "ada/main.py", "ada/data/hops.csv")
+    (ada,) = find_students([str(folder)]).students
+    before = digest_of(ada)
+    assert digest_of(ada) == before
+    (folder / "ada/data/hops.csv").write_text("other\n")
+    assert digest_of(ada) != before
+
+
+OUTCOME = Outcome(3, "raised", "ValueError: \ud800", 2, "Traceback …", 1.5, (GoalOutcome("place", False, "why", 2),))
+
+
+def test_a_journal_knows_what_an_interrupted_marking_has_done(tmp_path: Path) -> None:
+    path = tmp_path / "home" / "journal.jsonl"
+    with Journal(path, resumes=False) as journal:
+        journal.add("a", OUTCOME)
+        journal.add("b", OUTCOME)
+    # Killed in the middle of a line.
+    path.write_bytes(path.read_bytes()[:-20])
+    with Journal(path, resumes=True) as journal:
+        assert journal.known == {"a": OUTCOME}
+        journal.add("c", OUTCOME)
+    with Journal(path, resumes=True) as journal:
+        assert set(journal.known) == {"a", "c"}
+    with Journal(path, resumes=False) as journal:
+        assert not journal.known
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_student_without_a_program_has_no_text() -> None:
+    assert Student("ada", Path("ada"), problem="nothing").text == ""

@@ -1,0 +1,105 @@
+"""Feedback: a text file for each student, with what was met, what was missed, why, and a hint."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from textwrap import fill
+
+from tuisim.atomic import replacing
+from tuisim.errors import ExportError
+from tuisim.marks.sheet import Cell, Column, Row, Sheet, in_words
+from tuisim.source import source_lines
+
+SUFFIX = ".txt"
+WIDTH = 88
+MOST_ERROR_LINES = 20
+_FORBIDDEN = frozenset('/\\:*?"<>|')
+"""Characters that some file systems, or links of a page, do not take in a name."""
+
+
+def file_stems(names: Iterable[str]) -> list[str]:
+    """Return a distinct name for the files of each student, without characters that are odd in file names."""
+    found: list[str] = []
+    taken: set[str] = set()
+    for name in names:
+        plain = name.removesuffix(".py")
+        stem = "".join("_" if one in _FORBIDDEN or not one.isprintable() else one for one in plain)[:80].strip(" .")
+        stem = stem or "student"
+        number, candidate = 1, stem
+        while candidate.casefold() in taken:
+            number += 1
+            candidate = f"{stem}-{number}"
+        taken.add(candidate.casefold())
+        found.append(candidate)
+    return found
+
+
+def feedback_of(sheet: Sheet, row: Row, source: str = "") -> str:
+    """Return the feedback for one student as plain text.
+
+    Args:
+        source: The text of the main program, whose lines are quoted.
+    """
+    head = f"{row.name}: {in_words(row.points)} of {in_words(sheet.most_points)} points"
+    parts = [head, "=" * min(len(head), WIDTH), "", sheet.title, ""] if sheet.title else [head, "", ""]
+    parts += _how_often(row)
+    if row.error or (row.reason and not row.runs):
+        parts += [_wrapped(f"Your program did not run to its end: {row.reason}"), ""]
+        parts += [f"    {line}" for line in source_lines(row.error)[-MOST_ERROR_LINES:]]
+        parts += [""] if row.error else []
+    lines = source_lines(source)
+    for column, cell in zip(sheet.columns, row.cells, strict=True):
+        parts += [*_goal(column, cell, row.runs, lines), ""]
+    return "\n".join(parts).rstrip("\n") + "\n"
+
+
+def _how_often(row: Row) -> list[str]:
+    if row.stopped_early:
+        return [_wrapped(f"Your program was stopped: {row.reason}. It was run once."), ""]
+    if row.runs < 2:
+        return []
+    full = round(row.robustness * row.runs)
+    return [_wrapped(f"Your program was run {row.runs} times, with other random numbers each time: "
+                     f"{full} of {row.runs} runs met every goal."), ""]  # fmt: skip
+
+
+def _goal(column: Column, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+    is_met = bool(runs) and cell.met == runs
+    mark = "met" if is_met else "missed" if not cell.met else "met in part"
+    found = [_wrapped(f"[{mark}] {column.say} ({in_words(cell.points)} of {in_words(column.points)})")]
+    if is_met:
+        return found
+    if cell.met:
+        found.append(_wrapped(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    "))
+    if cell.reason:
+        found.append(_wrapped(f"Why: {cell.reason}", "    "))
+    if 0 < cell.line <= len(lines):
+        found.append(f"    Line {cell.line}: {lines[cell.line - 1].strip()[:WIDTH]}")
+    if column.hint:
+        found.append(_wrapped(f"Hint: {column.hint}", "    "))
+    return found
+
+
+def _wrapped(text: str, indent: str = "") -> str:
+    return fill(text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False)
+
+
+def write_feedback(folder: Path, sheet: Sheet, sources: Sequence[str]) -> None:
+    """Write a file for each student into a folder, which is created if necessary; existing files are replaced.
+
+    Args:
+        sources: The text of each student's main program, in the order of the rows.
+
+    Raises:
+        ExportError: a file cannot be written.
+    """
+    stems = file_stems(row.name for row in sheet.rows)
+    try:
+        os.makedirs(folder, exist_ok=True)
+        for stem, row, source in zip(stems, sheet.rows, sources, strict=True):
+            with replacing(folder / f"{stem}{SUFFIX}", durable=False) as handle:
+                handle.write(feedback_of(sheet, row, source).encode("utf-8", "backslashreplace"))
+    except OSError as error:
+        raise ExportError(f"cannot write to {folder}: {error.strerror or error}") from error

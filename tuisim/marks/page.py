@@ -1,0 +1,94 @@
+"""The sheet of a class as one HTML page: no scripts, and every text of a student is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from urllib.parse import quote
+
+from tuisim.analysis.report import page, paragraph, section, table
+from tuisim.charts.files import clean
+from tuisim.marks.sheet import Cell, Column, Row, Sheet, in_words, summary_of
+
+_STYLE = """<style>
+body { max-width: 90rem; }
+.met { background: #1f8a4c2e; }
+.part { background: #c98a0033; }
+.missed { background: #c0392b2b; }
+td.number, th.number { padding-left: .7rem; }
+tbody tr:hover { background: var(--area); }
+details pre { margin: .3rem 0; }
+code { font: .85rem ui-monospace, monospace; }
+</style>"""
+
+Links = Mapping[tuple[str, int], str]
+"""Relative paths of reports by student and seed."""
+
+
+def page_of(sheet: Sheet, links: Links = MappingProxyType({}), ignored: Sequence[str] = ()) -> str:
+    """Return the page.
+
+    Args:
+        links: The reports of runs that were kept.
+        ignored: Names of files that are no programs.
+    """
+    title = f"Marks: {sheet.title}" if sheet.title else "Marks"
+    goals = [[one.name, one.say, in_words(one.points)] for one in sheet.columns]
+    seeds = "1 seed" if len(sheet.seeds) == 1 else f"{len(sheet.seeds)} seeds"
+    notes = paragraph(f"Not marked, because they are no Python programs: {', '.join(ignored)}", soft=True)
+    body = [
+        f"{_STYLE}\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(f'{summary_of(sheet)}, {seeds}')}\n</header>",
+        section("Students", _students(sheet, links), notes if ignored else ""),
+        section("Goals", table(("goal", "", "points"), goals, numbers=2)),
+    ]
+    return page(title, body)
+
+
+def _students(sheet: Sheet, links: Links) -> str:
+    heads = ("student", "points", "robust", *(column.name for column in sheet.columns), "reason")
+    numbers = range(1, len(heads) - 1)
+    head = "".join(f'<th class="{"number" if at in numbers else "name"}">{clean(text)}</th>'
+                   for at, text in enumerate(heads))  # fmt: skip
+    rows = [_row(row, sheet, links) for row in sheet.rows]
+    return "\n".join((
+        f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>', *rows, "</tbody></table></div>",
+    ))  # fmt: skip
+
+
+def _row(row: Row, sheet: Sheet, links: Links) -> str:
+    level = _level(row.points, sheet.most_points)
+    cells = (
+        f'<th class="name" scope="row">{clean(row.name)}</th>',
+        f'<td class="number {level}">{in_words(row.points)}</td>',
+        f'<td class="number">{row.robustness:.0%}</td>',
+        *(_cell(cell, column, row) for cell, column in zip(row.cells, sheet.columns, strict=True)),
+        f"<td>{_reason(row, links)}</td>",
+    )
+    return f"<tr>{''.join(cells)}</tr>"
+
+
+def _level(points: float, most: float) -> str:
+    return "met" if points >= most else "part" if points else "missed"
+
+
+def _cell(cell: Cell, column: Column, row: Row) -> str:
+    # A goal without points is met or missed, too.
+    level = "met" if row.runs and cell.met == row.runs else "part" if cell.met else "missed"
+    seeds = f"met in {cell.met} of {row.runs} runs" if row.runs > 1 else ""
+    hint = "; ".join(filter(None, (seeds, cell.reason)))
+    return f'<td class="number {level}" title="{clean(hint)}">{in_words(cell.points)}</td>'
+
+
+def _reason(row: Row, links: Links) -> str:
+    found = [clean(row.reason)] if row.reason else []
+    if row.line:
+        found.append(f"<br>line {row.line}: <code>{clean(row.source_line)}</code>")
+    elsewhere = [(one.seed, links[row.name, one.seed]) for one in row.outcomes if (row.name, one.seed) in links]
+    if elsewhere:
+        shown = ", ".join(f'<a href="{quote(path)}">{seed}</a>' for seed, path in elsewhere)
+        found.append(f'<div class="soft">runs with seed {shown}</div>')
+    if row.stopped_early:
+        found.append('<div class="soft">not run with further seeds</div>')
+    if row.error:
+        found.append(f"<details><summary>error</summary><pre>{clean(row.error)}</pre></details>")
+    return "".join(found)

@@ -1,0 +1,194 @@
+"""The sheet of a class: one row a student, with points, robustness and the reason of failure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from tuisim.errors import printable
+from tuisim.marks.outcome import Outcome
+from tuisim.marks.students import Student
+from tuisim.source import source_lines
+
+DIGITS = 4
+"""Points and shares are rounded to so many decimals: sums of floats are not exact."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A goal as a column."""
+
+    name: str
+    say: str
+    points: float
+    hint: str
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One goal of one student."""
+
+    points: float
+    """Mean over the runs."""
+    met: int
+    """Number of runs that met it."""
+    reason: str = ""
+    """Why it was missed by the first run that missed it; empty if none did."""
+    line: int = 0
+    """The program's line that the reason is about; 0 if there is none."""
+    seed: int = 0
+    """The seed of that run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One student."""
+
+    name: str
+    program: str
+    """Name of the main program; empty if there is none."""
+    points: float
+    """Mean over the runs."""
+    robustness: float
+    """Share of the runs with all points, 0 to 1."""
+    cells: tuple[Cell, ...]
+    """In the order of the columns."""
+    reason: str = ""
+    """Why the first run without all points failed; empty if each has them."""
+    line: int = 0
+    """The program's line that the reason is about; 0 if there is none."""
+    source_line: str = ""
+    """The text of that line."""
+    seed: int = 0
+    """The seed of that run."""
+    error: str = ""
+    """The traceback of that run; empty if it has none."""
+    runs: int = 0
+    stopped_early: bool = False
+    """Whether further seeds were left out, because the program hung, flooded or died."""
+    outcomes: tuple[Outcome, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """The marks of a class."""
+
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+    seeds: tuple[int, ...]
+
+    @property
+    def most_points(self) -> float:
+        """The points of a program that meets every goal."""
+        return _rounded(math.fsum(column.points for column in self.columns))
+
+
+def sheet_of(
+    title: str,
+    columns: Sequence[Column],
+    seeds: Sequence[int],
+    students: Sequence[Student],
+    outcomes: Mapping[str, Sequence[Outcome]],
+) -> Sheet:
+    """Return the sheet of a class.
+
+    Args:
+        outcomes: The outcomes of the runs so far, by the name of the student, in any order.
+    """
+    rows = tuple(row_of(student, columns, outcomes.get(student.name, ()), len(seeds)) for student in students)
+    return Sheet(title, tuple(columns), rows, tuple(seeds))
+
+
+def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outcome], seeds: int) -> Row:
+    """Return the row of a student."""
+    if not student.source:
+        cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
+        return Row(student.name, student.main, 0.0, 0.0, cells, student.problem)
+    ordered = tuple(sorted(outcomes, key=lambda one: one.seed))
+    if not ordered:
+        return Row(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, "not run") for _ in columns), "not run")
+    most = math.fsum(column.points for column in columns)
+    totals = [_points(columns, one) for one in ordered]
+    full = sum(math.isclose(total, most) for total in totals)
+    failed = next((one for one, total in zip(ordered, totals, strict=True) if not math.isclose(total, most)), None)
+    reason, line = _reason(failed) if failed else ("", 0)
+    lines = source_lines(student.text)
+    return Row(
+        name=student.name,
+        program=student.main,
+        points=_rounded(math.fsum(totals) / len(totals)),
+        robustness=_rounded(full / len(totals)),
+        cells=tuple(_cell(column, at, ordered) for at, column in enumerate(columns)),
+        reason=reason,
+        line=line,
+        source_line=printable(lines[line - 1].strip()) if 0 < line <= len(lines) else "",
+        seed=failed.seed if failed else 0,
+        error=failed.error if failed else "",
+        runs=len(ordered),
+        stopped_early=len(ordered) < seeds and ordered[0].gave_up,
+        outcomes=ordered,
+    )
+
+
+def _points(columns: Sequence[Column], outcome: Outcome) -> float:
+    """Return the points of one run; a program that could not be started has no judgements, and no points."""
+    pairs = zip(columns, outcome.goals, strict=False)
+    return math.fsum(column.points for column, goal in pairs if goal.met)
+
+
+def _cell(column: Column, at: int, outcomes: Sequence[Outcome]) -> Cell:
+    goals = [(one.seed, one.goals[at] if one.goals else None) for one in outcomes]
+    met = sum(goal is not None and goal.met for _, goal in goals)
+    points = _rounded(column.points * met / len(goals))
+    for seed, goal in goals:
+        if goal is None:
+            return Cell(points, met, "the program could not be started", 0, seed)
+        if not goal.met:
+            return Cell(points, met, goal.reason, goal.line, seed)
+    return Cell(points, met)
+
+
+def _reason(outcome: Outcome) -> tuple[str, int]:
+    """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
+    if outcome.failure:
+        return outcome.failure, outcome.line
+    missed = [goal for goal in outcome.goals if not goal.met]
+    return (missed[0].reason, missed[0].line) if missed else ("", 0)
+
+
+def _rounded(value: float) -> float:
+    # Without the sign of a zero.
+    return round(value, DIGITS) + 0.0
+
+
+def in_words(points: float) -> str:
+    """Return points as text, at most two decimals."""
+    return f"{points:.2f}".rstrip("0").rstrip(".")
+
+
+def lines_of(sheet: Sheet, width: int = 0) -> tuple[list[str], list[list[object]]]:
+    """Return heads and rows of the text table.
+
+    Args:
+        width: Most characters of a reason; 0 for no limit.
+    """
+    heads = ["student", "points", "robust", *(column.name for column in sheet.columns), "reason"]
+    rows: list[list[object]] = []
+    for row in sheet.rows:
+        points = (in_words(row.points), f"{row.robustness:.0%}", *(in_words(cell.points) for cell in row.cells))
+        where = f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
+        reason = f"{where}{row.reason}"
+        cut = bool(width) and len(reason) > width
+        rows.append([row.name, *points, reason[: width - 1] + "…" if cut else reason])
+    return heads, rows
+
+
+def summary_of(sheet: Sheet) -> str:
+    """Return one sentence about the class."""
+    full = sum(row.robustness == 1 for row in sheet.rows)
+    mean = math.fsum(row.points for row in sheet.rows) / len(sheet.rows) if sheet.rows else 0.0
+    students = "1 student" if len(sheet.rows) == 1 else f"{len(sheet.rows)} students"
+    points = f"{in_words(mean)} of {in_words(sheet.most_points)} points"
+    return f"{students}, mean {points}; {full} with all points on every seed"

@@ -1,0 +1,135 @@
+"""The students of a class, as files and folders."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tuisim.config.program_file import ProgramSource, read_program
+from tuisim.errors import ConfigError, listed, printable
+
+MAIN = "main.py"
+SUFFIX = ".py"
+
+
+@dataclass(frozen=True, slots=True)
+class Student:
+    """What one student has handed in."""
+
+    name: str
+    """Name of the file or folder, unique in the class."""
+    path: Path
+    """The file or folder."""
+    main: str = ""
+    """Path of the main program relative to the folder, or the file's name; empty if there is none."""
+    source: ProgramSource | None = None
+    """The main program; None if there is none that could be run."""
+    problem: str = ""
+    """Why there is none, one sentence."""
+
+    @property
+    def text(self) -> str:
+        """The text of the main program; empty if there is none."""
+        return self.source.program.text if self.source else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The contents of the folders of a class."""
+
+    students: tuple[Student, ...]
+    ignored: tuple[str, ...]
+    """Names of files that are no programs."""
+
+
+def find_students(words: Sequence[str], program: str = "", excluded: Collection[Path] = ()) -> Found:
+    """Return the students in folders; a folder that contains a main program, or a file, is one student.
+
+    Args:
+        words: Paths of folders and files.
+        program: Name of the main program in a student's folder, if there is one of that name; else it is `MAIN`, or the
+            only one.
+        excluded: Files and folders that belong to no student, such as the goals file; resolved.
+
+    Raises:
+        ConfigError: there is no such file or folder, or nothing in it.
+    """
+    students: list[tuple[Path, Student]] = []
+    ignored: list[str] = []
+    for word in words:
+        path = Path(word)
+        if path.is_dir() and not (path / MAIN).is_file():
+            for entry in _entries(path, excluded):
+                if entry.is_dir() or entry.suffix.lower() == SUFFIX:
+                    students.append((path, _student(entry, program)))
+                else:
+                    ignored.append(printable(entry.name))
+        elif path.exists():
+            students.append((path.resolve().parent, _student(path, program)))
+        else:
+            raise ConfigError("there is no such file or folder", "name a folder of students' programs", file=word)
+    if not students:
+        raise ConfigError("has no programs", "a file NAME.py or a folder for each student", file=listed(words))
+    return Found(tuple(_named(students)), tuple(ignored))
+
+
+def _entries(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
+    """Return the visible entries of a folder by name."""
+    try:
+        names = sorted(os.listdir(folder), key=lambda name: (name.casefold(), name))
+    except OSError as error:
+        raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
+    hidden = (".", "__pycache__")
+    return (
+        folder / name for name in names if not name.startswith(hidden) and (folder / name).resolve() not in excluded
+    )
+
+
+def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
+    """Return the students with the names of their folders where a name alone is not unique."""
+    every = list(students)
+    counts = Counter(student.name for _, student in every)
+    full = [f"{folder.resolve().name}/{one.name}" if counts[one.name] > 1 else one.name for folder, one in every]
+    seen: Counter[str] = Counter()
+    for name, (_, student) in zip(full, every, strict=True):
+        seen[name] += 1
+        yield replace(student, name=name if seen[name] == 1 else f"{name} ({seen[name]})")
+
+
+def _student(path: Path, program: str) -> Student:
+    # A lone surrogate stands for a byte that is not UTF-8.
+    name = printable(path.resolve().name.encode("utf-8", "replace").decode())
+    if not path.is_dir():
+        return _read(Student(name, path, path.name), path)
+    try:
+        main = _main_of(path, program)
+    except (ConfigError, OSError) as error:
+        return Student(name, path, problem=str(error).replace(f"{path}{os.sep}", ""))
+    return _read(Student(name, path, main), path / main)
+
+
+def _read(student: Student, path: Path) -> Student:
+    try:
+        return replace(student, source=read_program(path))
+    except ConfigError as error:
+        return replace(student, problem=printable(str(error).replace(str(path), path.name)))
+
+
+def _main_of(folder: Path, program: str) -> str:
+    """Return the name of a folder's main program.
+
+    Raises:
+        ConfigError: there is none, or it is not clear which one it is.
+        OSError: the folder cannot be read.
+    """
+    if program and (folder / program).is_file():
+        return program
+    names = sorted(name for name in os.listdir(folder) if name.lower().endswith(SUFFIX) and (folder / name).is_file())
+    if MAIN in names:
+        return MAIN
+    if len(names) == 1:
+        return names[0]
+    raise ConfigError(f"which of {listed(names)} is the main program?" if names else "there is no Python file", MAIN)

@@ -1,0 +1,103 @@
+"""Copies of what students have handed in: each run gets its own, so that no program changes what others see."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Self
+
+from tuisim.errors import LogError
+from tuisim.marks.students import Student
+from tuisim.source import Program
+
+_LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+"""Errors about the copy, not about the file."""
+
+
+class Workspace:
+    """A temporary folder with a copy of a student's files for each run, as a context manager."""
+
+    def __enter__(self) -> Self:
+        self._folder = tempfile.TemporaryDirectory(prefix="tuisim-mark-", ignore_cleanup_errors=True)
+        # A program sees resolved paths.
+        self.path = Path(self._folder.name).resolve()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._folder.cleanup()
+
+    def copy(self, student: Student, index: int) -> Path:
+        """Return a new folder with a copy of a student's files.
+
+        Files that cannot be read are left out, as the program could not read them either.
+
+        Raises:
+            LogError: the copy cannot be written.
+        """
+        place = self.path / str(index)
+        try:
+            if student.path.is_dir():
+                _copy_folder(student.path, place)
+            else:
+                place.mkdir()
+                _copy_file(student.path, place / student.path.name)
+        except OSError as error:
+            raise LogError(f"cannot be written: {error.strerror or error}", file=str(place)) from error
+        return place
+
+    def remove(self, index: int) -> None:
+        """Delete the folder of a run."""
+        shutil.rmtree(self.path / str(index), ignore_errors=True)
+
+
+def _copy_folder(folder: Path, place: Path) -> None:
+    # Links are copied as links: what they point to is not the student's. An error about a part is raised at the end.
+    with suppress(shutil.Error):
+        shutil.copytree(folder, place, symlinks=True, ignore=_LEFT_OUT, copy_function=_copy_file)
+
+
+def _copy_file(source: str | Path, target: str | Path) -> None:
+    try:
+        shutil.copyfile(source, target)
+    except OSError as error:
+        if error.errno in _FULL:
+            raise LogError(f"cannot be written: {error.strerror}", file=str(target)) from error
+
+
+def program_in(student: Student, folder: Path, **changes: Any) -> Program:
+    """Return a student's main program as one of the copy in a folder, which is its working directory."""
+    assert student.source is not None
+    path = folder / student.main
+    return replace(student.source.program, path=str(path), working_directory=str(folder), **changes)
+
+
+def digest_of(student: Student) -> str:
+    """Return a hash of the names and contents of a student's files, hexadecimal."""
+    found = hashlib.sha256()
+    for path in _files(student.path):
+        relative = os.path.relpath(path, student.path.parent)
+        found.update(os.fsencode(relative) + b"\0")
+        try:
+            found.update(hashlib.sha256(path.read_bytes()).digest())
+        except OSError as error:
+            found.update(str(error.errno).encode())
+    return found.hexdigest()
+
+
+def _files(path: Path) -> Iterator[Path]:
+    if not path.is_dir():
+        yield path
+        return
+    for folder, folders, names in os.walk(path):
+        left_out = _LEFT_OUT(folder, folders)
+        folders[:] = sorted(name for name in folders if name not in left_out)
+        # A named pipe or a device would block.
+        yield from (file for name in sorted(names) if (file := Path(folder, name)).is_file())
