@@ -373,6 +373,11 @@ def _walk(data: object, info: types.Type, at: Location) -> Iterator[tuple[str, t
             for field in inner:
                 if field.name in data:
                     yield from _walk(data[field.name], field.type, at.at(field.name))
+        case types.TupleType(item_types=items), list():
+            if len(data) != len(items):
+                raise at.wrong(f"must be a list of {len(items)} values, got {shown(data)}")
+            for number, (entry, item) in enumerate(zip(data, items, strict=True), start=1):
+                yield from _walk(entry, item, at.at(f"[{number}]"))
         case types.ListType(item_type=item) | types.VarTupleType(item_type=item), list() | tuple():
             for number, entry in enumerate(data, start=1):
                 yield from _walk(entry, item, at.at(f"[{number}]"))
@@ -414,10 +419,11 @@ def _expected(info: types.Type) -> str:
             return "text"
         case types.BoolType():
             return "true or false"
-        case types.ListType() | types.VarTupleType():
+        case types.ListType() | types.VarTupleType() | types.TupleType():
             return "a list"
         case types.UnionType(types=members):
-            return " or ".join(map(_expected, members))
+            # TOML has no null: None stands for a missing key.
+            return " or ".join(_expected(member) for member in members if not isinstance(member, types.NoneType))
         case _:
             return _TABLE
 

@@ -78,6 +78,7 @@ class _Press(Struct):
 class _World(Struct):
     """The keys of a world file; `Any` where further functions check them."""
 
+    world: Given[str] = UNSET
     program: Given[str] = UNSET
     arguments: Given[list[Any]] = UNSET
     background: Given[str] = UNSET
@@ -100,10 +101,12 @@ class _World(Struct):
     pen: Given[_Pen] = UNSET
     beacon: Any = UNSET
     remote: Any = UNSET
+    title: Any = UNSET
+    goal: Any = UNSET
 
 
 _SAME_IN_SETTINGS = ("seed", "walls", "solid", "pen_marks", "rays", "autorun")
-_NOT_IN_A_RUN = ("mats", "rays", "autorun", "panels", "hidden_panels")
+_NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", "title", "goal")
 """Keys that stay as they are when a run is saved into a file that has them."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 
@@ -136,18 +139,22 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
     """
-    path = Path(path).expanduser()
+    return _load_world(Path(path).expanduser(), mats, ())
+
+
+def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
     if not means_world(path.name):
         raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
-    return world_from_table(files.read_file(path, ConfigError), path, mats)
+    return world_from_table(files.read_file(path, ConfigError), path, mats, above)
 
 
-def world_from_table(data: object, path: Path, mats: str | None = None) -> WorldFile:
-    """Return the world in a table.
+def world_from_table(data: object, path: Path, mats: str | None = None, above: tuple[Path, ...] = ()) -> WorldFile:
+    """Return the world in a table; keys of goals files are left to `tuisim.goals`.
 
     Args:
         path: The path of the file, which may not exist yet.
         mats: As for `load_world`.
+        above: The world files that are based on this one.
 
     Raises:
         ConfigError: a key or a value is wrong.
@@ -181,7 +188,18 @@ def world_from_table(data: object, path: Path, mats: str | None = None) -> World
         words = enumerate(world["arguments"], start=1)
         found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
     program = _program(world["program"], path.parent, resolve) if "program" in world else None
-    return WorldFile(path, found, program, (path, *referred))
+    if "world" not in world:
+        return WorldFile(path, found, program, (path, *referred))
+    base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
+    return WorldFile(path, {**base.settings, **found}, program or base.program, (path, *referred, *base.files))
+
+
+def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
+    """Load the world that another one is based on."""
+    path = Path(resolve(word))
+    if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
+        raise at.wrong(f"{path} is based on itself")
+    return _load_world(path, mats, above)
 
 
 def _given(data: Struct) -> dict[str, Any]:

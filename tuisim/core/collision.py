@@ -179,6 +179,14 @@ class Solids:
 
     # Gaps
 
+    def gaps_mm(self, pose: PoseTuple) -> tuple[float, ...]:
+        """Return the gaps between the body and everything, negative where they overlap.
+
+        The left, right, lower and upper wall come first, if there are walls, then the obstacles in their order. A gap
+        changes by no more than the fastest point of the body moves.
+        """
+        return tuple(self._gaps(self._body(*pose), self._boxes))
+
     def _gaps(self, body: Body, boxes: list[Box]) -> Iterator[float]:
         """Yield the gap between the body and each wall and box, negative if they overlap."""
         if self._walls:

@@ -1,0 +1,267 @@
+"""Each kind of condition: what meets it, what does not, and what is said about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.goals.recorded import Run, Step, ahead, drive, goals_of, is_told, says, turn, wait, world
+from tuisim.core.spec import Obstacle, WorldSpec
+from tuisim.goals.judge import judge
+from tuisim.protocol import End
+from tuisim.runs.store import RunStore
+
+EMPTY = world()
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a condition makes of a run."""
+
+    condition: str
+    """In a goals file, perhaps with limits on further lines."""
+    steps: tuple[Step, ...]
+    state: str
+    time_s: float = -1.0
+    """When it was decided; -1: not checked."""
+    reason: str = ""
+    """Words of the reason."""
+    line: int = -1
+    """-1: not checked."""
+    world: WorldSpec = EMPTY
+    text: str = ""
+    end: End = End.FINISHED
+
+
+ALONG = (ahead(400, line=3), wait(0.5, line=4))
+"""From x 500 to x 900, in 2.27 s."""
+
+BOX = Obstacle(800, 400, 100, 200)
+
+PLACES = {
+    "reach": Case("reach = { x_mm = 800, y_mm = 500, within_mm = 10 }", ALONG, "met", 1.65, line=3),
+    "reach only x": Case("reach = { x_mm = 800, within_mm = 10 }", ALONG, "met", 1.65, line=3),
+    "reach too far": Case(
+        "reach = { x_mm = 800, y_mm = 550 }", ALONG, "missed", 2.77, "no nearer than this: 50 mm away, at 1.7", 3
+    ),
+    "reach heading": Case("reach = { heading_deg = -90 }", (turn(-90, line=2),), "met", 0.95, line=2),
+    "reach heading after turns": Case("reach = { heading_deg = 0 }\nafter = 1", (turn(450),), "met", 3.95),
+    "reach other heading": Case("reach = { heading_deg = 180 }", (turn(90),), "missed", 1.0, "turned 90.0° off"),
+    "reach and pass by at the end": Case(
+        "reach = { x_mm = 800, at_end = true }", ALONG, "missed", 2.77, "At the end the robot was 99 mm away.", 4
+    ),
+    "reach at the end": Case("reach = { x_mm = 900, at_end = true }", ALONG, "met", 2.77, line=4),
+    "reach and stay": Case("reach = { x_mm = 900, for_s = 0.3 }", ALONG, "met", 2.46, line=4),
+    "reach and not stay": Case("reach = { x_mm = 700, for_s = 0.3 }", ALONG, "missed", 2.77, "at most 0.22 s", 3),
+    "pass": Case("pass = [[600, 500], [800, 500]]", ALONG, "met", 1.60, line=3),
+    "pass in another order": Case(
+        "pass = [[800, 500], [600, 500]]",
+        ALONG,
+        "missed",
+        2.77,
+        "180 mm to place 2 of 2 (600, 500) after place 1, at",
+        3,
+    ),
+    "pass in any order": Case(
+        "pass = { places_mm = [[800, 500], [600, 500]], in_order = false }", ALONG, "met", 1.60, line=3
+    ),
+    "pass between ticks": Case(
+        "pass = { places_mm = [[560, 500]], within_mm = 1 }", (drive(9000, 9000, 0.05),), "met", 0.02
+    ),
+    "inside": Case("inside = { x_mm = 400, y_mm = 400, width_mm = 600, height_mm = 200 }", ALONG, "met", 2.77, line=4),
+    "inside left": Case(
+        "inside = { x_mm = 400, y_mm = 400, width_mm = 300, height_mm = 200 }",
+        ALONG,
+        "missed",
+        1.14,
+        "left the area, at 1.14 s, x 701 mm",
+        3,
+    ),
+    "inside circle left": Case(
+        "inside = { x_mm = 500, y_mm = 500, radius_mm = 200 }", ALONG, "missed", 1.14, "left the area", 3
+    ),
+    "inside with the body": Case(
+        "inside = { x_mm = 300, y_mm = 300, width_mm = 500, height_mm = 400, part = 'body' }",
+        ALONG,
+        "missed",
+        1.45,
+        "left the area",
+        3,
+    ),
+    "inside not at the start": Case(
+        "inside = { x_mm = 900, y_mm = 400, width_mm = 100, height_mm = 100 }",
+        ALONG,
+        "missed",
+        0.0,
+        "was not in the area from the start",
+    ),
+    "inside until": Case(
+        "inside = { x_mm = 400, y_mm = 400, width_mm = 300, height_mm = 200 }\nuntil = 1", ALONG, "met", 1.0, line=3
+    ),
+    "outside": Case(
+        "outside = { x_mm = 400, y_mm = 600, width_mm = 900, height_mm = 200 }", ALONG, "met", 2.77, line=4
+    ),
+    "outside entered": Case(
+        "outside = { x_mm = 700, y_mm = 400, width_mm = 50, height_mm = 200 }", ALONG, "missed", 1.14, "entered", 3
+    ),
+    "outside with the body": Case(
+        "outside = { x_mm = 700, y_mm = 590, width_mm = 50, height_mm = 200, part = 'body' }",
+        ALONG,
+        "missed",
+        0.89,
+        "entered the area",
+        3,
+    ),
+    "outside circle with the body": Case(
+        "outside = { x_mm = 800, y_mm = 500, radius_mm = 100, part = 'body' }",
+        ALONG,
+        "missed",
+        0.89,
+        "entered the area",
+        3,
+    ),
+    "touch nothing": Case("touch_nothing = true", ALONG, "met", 2.77, line=4),
+    "touch an obstacle": Case(
+        "touch_nothing = true",
+        ALONG,
+        "missed",
+        1.45,
+        "touched the obstacle at x 800, y 400 at 1.45 s",
+        3,
+        world(obstacles=(BOX,)),
+    ),
+    "touch a solid obstacle": Case(
+        "touch_nothing = true", ALONG, "missed", 1.45, "touched the obstacle", 3, world(obstacles=(BOX,), solid=True)
+    ),
+    "touch an obstacle that does not count": Case(
+        "touch_nothing = { obstacles = false }", ALONG, "met", 2.77, line=4, world=world(obstacles=(BOX,))
+    ),
+    "touch a wall": Case(
+        "touch_nothing = true", ALONG, "missed", 0.32, "touched the right wall", 3, world(2362 - 45 - 55)
+    ),
+    "touch a wall that is not there": Case(
+        "touch_nothing = true", ALONG, "met", 2.77, line=4, world=world(2362 - 45 - 55, walls=False)
+    ),
+    "touch at the start": Case("touch_nothing = true", ALONG, "met", 2.77, line=4, world=world(100)),
+    "touch at the start and again": Case(
+        "touch_nothing = true",
+        (ahead(100), drive(-360, -360, 1, line=7)),
+        "missed",
+        1.03,
+        "the left wall",
+        7,
+        world(100),
+    ),
+    "come too near": Case(
+        "touch_nothing = { gap_mm = 50 }",
+        ALONG,
+        "missed",
+        1.17,
+        "came too near to the obstacle",
+        3,
+        world(obstacles=(BOX,)),
+    ),
+}
+
+PRINTED = (says("start", 1), wait(1, 2), says("a: 100.0", 3), wait(1, 4), says("a: 86.27", 5), says("done", 6))
+
+OUTPUT = {
+    "print": Case("print = 'do.e'", PRINTED, "met", 2.0, line=6),
+    "print nothing": Case("print = 'x'", (wait(1),), "missed", 1.0, "The program printed nothing."),
+    "print another line": Case("print = '^one$'", PRINTED, "missed", 2.0, "the last of the 4 is 'done'"),
+    "print lines": Case("print = ['start', 'done']", PRINTED, "met", 2.0, line=6),
+    "print lines in another order": Case(
+        "print = ['done', 'start']", PRINTED, "missed", 2.0, "'start' was printed, but not after", 6
+    ),
+    "print lines in any order": Case(
+        "print = { lines = ['done', 'start'], in_order = false }", PRINTED, "met", 2.0, line=6
+    ),
+    "print before": Case("print = 'start'\nbefore = 0.5", PRINTED, "met", 0.0, line=1),
+    "print too late": Case(
+        "print = 'done'\nbefore = 1.5", PRINTED, "missed", 1.5, "Not before 1.5 s: no printed line matches 'done'", 4
+    ),
+    "print after": Case("print = 'a: '\nafter = 1.5", PRINTED, "met", 2.0, line=5),
+    "log": Case("log = { name = 'a', levels = [100, 86.3] }", PRINTED, "met", 2.0, line=5),
+    "log in another order": Case(
+        "log = { name = 'a', levels = [86.3, 100] }", PRINTED, "missed", 2.0, "1 of 2 levels; no sample followed", 5
+    ),
+    "log in any order": Case("log = { name = 'a', levels = [86.3, 100], in_order = false }", PRINTED, "met", line=5),
+    "log not near enough": Case(
+        "log = { name = 'a', levels = [100, 86.3], within = 0.01 }",
+        PRINTED,
+        "missed",
+        2.0,
+        "86.3 did not come after 100, the nearest was 86.27 at 2.00 s",
+        3,
+    ),
+    "log at the tolerance": Case("log = { name = 'a', levels = [86.3], within = 0.03 }", PRINTED, "met", line=5),
+    "log another name": Case(
+        "log = { name = 'b', levels = [1] }", PRINTED, "missed", 2.0, "logged no sample b. It logged a."
+    ),
+    "finish": Case("finish = true", (wait(1, 9),), "met", 1.0, line=9),
+    "finish with an error": Case("finish = true", (wait(1),), "missed", 1.0, "did not finish: raised", end=End.RAISED),
+    "finish in time": Case("finish = true\nbefore = 1", (wait(1, 9),), "met", 1.0, line=9),
+    "finish too late": Case(
+        "finish = true\nbefore = 0.5",
+        (wait(1, 9),),
+        "missed",
+        0.5,
+        "Not before 0.5 s: the program was still running",
+        9,
+    ),
+    "dialogue": Case(
+        "dialogue = [{ prompt = 'n', answer = '5', reply = '^25$' }]",
+        (is_told("n? 5", 1), says("25", 2)),
+        "met",
+        line=2,
+    ),
+    "dialogue with a wrong reply": Case(
+        "dialogue = [{ answer = '5', reply = '^25$' }]",
+        (is_told("n? 5", 1), says("10", 2)),
+        "missed",
+        0.0,
+        "After the answer '5' the program printed '10', and no line like '^25$'",
+        1,
+    ),
+    "dialogue of two turns": Case(
+        "dialogue = [{ answer = '5' }, { answer = '6' }]", (is_told("5"), says("5"), is_told("6", 4)), "met", line=4
+    ),
+    "dialogue that ends early": Case(
+        "dialogue = [{ answer = '5' }, { answer = '6' }]",
+        (is_told("5", 2),),
+        "missed",
+        0.0,
+        "asked once; no question got answer 2, '6'",
+        2,
+    ),
+    "dialogue without a question": Case(
+        "dialogue = [{ answer = '5' }]", PRINTED, "missed", 2.0, "did not ask for input"
+    ),
+    "dialogue with another prompt": Case(
+        "dialogue = [{ answer = '5', prompt = 'age' }]",
+        (is_told("n? 5", 1),),
+        "missed",
+        0.0,
+        "was 'n? ', not one like",
+        1,
+    ),
+}
+
+CASES = PLACES | OUTPUT
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_condition(case: Case, home: Path, tmp_path: Path) -> None:
+    (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{case.condition}\n")
+    run = Run(RunStore(), case.world, case.text)
+    run.do(case.steps)
+    (found,) = judge([goal], run.end(case.end))
+    assert found.state == case.state, found
+    assert case.reason in found.reason
+    assert (found.reason == "") == (found.state == "met")
+    if case.time_s >= 0:
+        assert found.changes[-1].time_s == pytest.approx(case.time_s, abs=0.006)
+    if case.line >= 0:
+        assert found.line == case.line, found

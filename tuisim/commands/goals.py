@@ -1,0 +1,123 @@
+"""`tuisim goals`: checks whether runs meet the goals of a task."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
+from tuisim.config.command_line import AS_JSON, Group, argument, command
+from tuisim.errors import ConfigError, counted
+from tuisim.goals.files import GoalsFile, load_goals
+from tuisim.goals.judge import GoalState, Judgement, judge, points
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+_RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
+_MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
+
+
+@command(
+    argument("goals_path", "GOALS"),
+    argument("words", "RUN…", lambda: ("last",), nargs=-1),
+    AS_JSON,
+    help="""Check whether stored runs meet the goals in a file.
+
+    GOALS is a TOML file. A RUN is given as for `tuisim runs`, or as a range of numbers such as 3..7; default: last.
+
+    Exit code: 0 if all runs meet all goals, else 1; 2 if the file or a run cannot be read.
+    """,
+)
+def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
+    """Check runs."""
+    file = load_goals(goals_path)
+    all_met = True
+    with Progress("goals check"):
+        store = RunStore()
+        names = [name for word in words or ("last",) for name in _names(word, store)]
+        documents = []
+        for number, name in enumerate(names):
+            tell(f"checking run {name}", number, len(names))
+            run = store.load_run(name)
+            found = judge(file.goals, run)
+            all_met = all_met and all(each.state is GoalState.MET for each in found)
+            for note in run.notes:
+                echo_error(f"note: {note}")
+            if as_json:
+                documents.append(_plain(run, found))
+            else:
+                _show(file, run, found)
+        if as_json:
+            echo_json(documents)
+    return 0 if all_met else 1
+
+
+def _names(word: str, store: RunStore) -> Iterator[str]:
+    """Yield the runs that a word names; of a range those that exist.
+
+    Raises:
+        ConfigError: a range is empty.
+    """
+    limits = _RANGE.fullmatch(word)
+    if limits is None:
+        yield word
+        return
+    first, last = int(limits[1]), int(limits[2])
+    found = [str(run.number) for run in store.runs() if first <= run.number <= last]
+    if not found:
+        raise ConfigError(f"no runs {word}", "see `tuisim runs`", key="RUN")
+    yield from found
+
+
+def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
+    return {
+        "run": run.number,
+        "id": run.id,
+        "program": run.program.name,
+        "points": points(judgements),
+        "of": sum(each.goal.points for each in judgements),
+        "goals": [
+            {
+                "name": each.goal.name,
+                "say": each.goal.say,
+                "points": each.goal.points,
+                "state": each.state,
+                "changes": [asdict(change) for change in each.changes],
+                "reason": each.reason,
+                "line": each.line,
+                "hint": each.goal.hint if each.state is GoalState.MISSED else "",
+            }
+            for each in judgements
+        ],
+    }
+
+
+def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> None:
+    met = sum(each.state is GoalState.MET for each in judgements)
+    most = sum(each.goal.points for each in judgements)
+    title = f" · {file.title}" if file.title else ""
+    echo(
+        f"run {run.number}, {run.program.name}{title}: {met} of {counted(len(judgements), 'goal')}, "
+        f"{points(judgements):g} of {most:g} points"
+    )
+    for each in judgements:
+        goal = each.goal
+        said = f": {goal.say}" if goal.say else ""
+        echo(f"  {_MARKS[each.state]} {goal.name} ({goal.points:g}){said}")
+        for line in _details(each):
+            echo(f"      {line}")
+
+
+def _details(judgement: Judgement) -> Iterator[str]:
+    line = f", line {judgement.line}" if judgement.line else ""
+    for change in judgement.changes:
+        yield f"{change.state} at {change.time_s:.2f} s, x {change.x_mm:.0f} mm, y {change.y_mm:.0f} mm{line}"
+    if judgement.reason:
+        yield judgement.reason
+    if judgement.state is GoalState.MISSED and judgement.goal.hint:
+        yield f"Hint: {judgement.goal.hint}"
+
+
+goals = Group.of("goals", (check,), help="Check whether runs meet the goals of a task.")

@@ -1,0 +1,71 @@
+"""The condition on what the pen draws."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from tuisim.core.tick_record import FLAG_PEN_DOWN
+from tuisim.goals import picture
+from tuisim.goals.evidence import Evidence, Moment, Span
+from tuisim.goals.found import Found, share_words
+from tuisim.goals.spec import Draw
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+
+def find_drawn(condition: Draw, evidence: Evidence, span: Span) -> Found:
+    """Find out at the end of a span whether the drawing is near the picture."""
+    import numpy as np
+
+    records = evidence.records[span.ticks]
+    points, ticks = _strokes(records, evidence.spec.robot.pen.x_mm, evidence.spec.robot.pen.y_mm, condition)
+    if not len(points):
+        return Found(None, "The pen drew nothing.")
+    wanted = picture.cells(condition)
+    covered, near = picture.compare(wanted, points, condition.within_mm)
+    drawn, on_picture = float(covered.mean()), float(near.mean())
+    reasons = []
+    line = 0
+    if drawn < condition.share:
+        x_mm, y_mm = picture.centres_mm(wanted[~covered][:1], condition.within_mm)[0]
+        reasons.append(f"{share_words(drawn)} of the picture is drawn, not the part at x {x_mm:.0f}, y {y_mm:.0f} mm")
+    if on_picture < condition.share:
+        off = int(np.argmin(near))
+        tick = span.first_tick + int(ticks[off])
+        (x_mm, y_mm), line = points[off], evidence.line(Moment(tick))
+        reasons.append(
+            f"{share_words(on_picture)} of the drawing is on the picture, it leaves it at x {x_mm:.0f}, "
+            f"y {y_mm:.0f} mm at {evidence.time_words(tick)}"
+        )
+    if reasons:
+        return Found(None, f"{' and '.join(reasons)}; {share_words(condition.share)} are needed.", line)
+    return Found(evidence.last if span.over else span.stop)
+
+
+def _strokes(records: Array, pen_x_mm: float, pen_y_mm: float, condition: Draw) -> tuple[Array, Array]:
+    """Return the points that the pen drew, shape (n, 2) in mm, close enough for the comparison, and their ticks."""
+    import numpy as np
+
+    down = (records["flags"] & FLAG_PEN_DOWN) != 0
+    if not down.any():
+        return np.empty((0, 2)), np.empty(0, np.int64)
+    turn = np.radians(records["heading_deg"] - 90.0)
+    cos, sin = np.cos(turn), np.sin(turn)
+    at = np.column_stack(
+        (records["x_mm"] + cos * pen_x_mm - sin * pen_y_mm, records["y_mm"] + sin * pen_x_mm + cos * pen_y_mm)
+    )
+    # A robot that was moved by hand draws no line.
+    joined = down[1:] & down[:-1] & (np.diff(records["actions"].astype("i4")) == 0)
+    way_mm = np.where(joined, np.hypot(*np.diff(at, axis=0).T), 0.0)
+    count = np.ceil(way_mm / picture.cell_mm(condition.within_mm)).astype(np.int64)
+    ends = np.repeat(np.arange(1, len(at)), count)
+    number = np.arange(len(ends)) - np.repeat(np.cumsum(count) - count, count)
+    part = ((number + 1) / np.repeat(np.maximum(count, 1), count))[:, None]
+    between = at[ends - 1] * (1 - part) + at[ends] * part
+    touched = np.flatnonzero(down & np.concatenate(([True], ~joined)))
+    points, ticks = np.concatenate((at[touched], between)), np.concatenate((touched, ends))
+    order = np.argsort(ticks, kind="stable")
+    return points[order], ticks[order]

@@ -1,0 +1,182 @@
+"""What a recording tells about a run, as arrays and rows, computed when a condition first asks for it."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+from tuisim.config.mat_cache import open_field
+from tuisim.core.field import Field
+from tuisim.core.profile import NS_PER_S
+from tuisim.protocol import Ended, Unended
+from tuisim.runs.frames import tick_times_s
+from tuisim.runs.handle import RunHandle
+from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.run_folder import StoredRun, open_mat
+from tuisim.runs.samples import Sample, parse_sample
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+JudgedRun: TypeAlias = StoredRun | RunHandle
+"""A run to judge: a stored one, or one that may still be running."""
+
+
+class Moment(NamedTuple):
+    """An instant of a run: after a tick is complete (row -1), or when a row of output is written."""
+
+    tick: int
+    row: int = -1
+    """Index into `Evidence.rows`."""
+    time_s: float = -1.0
+    """The time of a moment that is defined by it; the row is then the first one after it."""
+
+
+START = Moment(-1, -1)
+"""Before everything that can happen."""
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """The part of a run in which a condition counts."""
+
+    first_tick: int
+    end_tick: int
+    """The tick after the last one."""
+    first_row: int
+    end_row: int
+    stop: Moment | None
+    """The limit that has been reached; None if there is none, or the run did not get there."""
+    over: bool
+    """Whether the run has ended and the span reaches to its end."""
+
+    @property
+    def ticks(self) -> slice:
+        """The ticks as a slice of the recording."""
+        return slice(self.first_tick, max(self.first_tick, self.end_tick))
+
+
+class Evidence:
+    """A recording as far as it has been written.
+
+    Args:
+        run: The run.
+        field: Its mat; None opens it when it is needed.
+    """
+
+    def __init__(self, run: JudgedRun, field: Field | None = None) -> None:
+        self._run, self._field = run, field
+        self.spec, self.program = run.spec, run.program
+        # Before the recording is read: what an ended run has recorded is complete.
+        if isinstance(run, RunHandle):
+            self.end: Ended | None = run.ended
+            self.ended = run.ended is not None
+        else:
+            self.end = run.end
+            self.ended = run.end is not None or run.state is not Unended.RUNNING
+        self.records: Array = run.telemetry.array()
+
+    @cached_property
+    def times_s(self) -> Array:
+        """When each tick is due, shape (n,)."""
+        return tick_times_s(self.records, self.spec)
+
+    @cached_property
+    def rows(self) -> list[OutputRow]:
+        """The rows that the program printed or read, in order."""
+        kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT)
+        return [row for row in self._run.output.rows() if row.stream in kept]
+
+    @cached_property
+    def samples(self) -> list[tuple[int, Sample]]:
+        """The samples, each with the index of its row."""
+        found = []
+        for number, row in enumerate(self.rows):
+            if row.stream == Stream.STDOUT and (parsed := parse_sample(row.text)):
+                name, value, time_s = parsed
+                printed_s = row.time_ns / NS_PER_S if time_s is None else time_s
+                found.append((number, Sample(name, value, printed_s, row.time_ns, row.tick, row.line)))
+        return found
+
+    @cached_property
+    def mat(self) -> Field:
+        """The mat without the pen's marks.
+
+        Raises:
+            LogError, ConfigError: it no longer exists, or its image has changed.
+        """
+        if self._field is not None:
+            return self._field
+        return open_field(self._run.field) if isinstance(self._run, RunHandle) else open_mat(self._run)
+
+    @cached_property
+    def end_s(self) -> float:
+        """The time up to which the run is known."""
+        newest = float(self.times_s[-1]) if len(self.records) else 0.0
+        return max(newest, self.end.time_ns / NS_PER_S) if self.end else newest
+
+    @property
+    def last(self) -> Moment:
+        """The newest moment, after everything in the recording."""
+        return Moment(len(self.records) - 1, len(self.rows), self.end_s)
+
+    def at_time(self, time_s: float) -> Moment | None:
+        """Return the moment after everything up to a time; None if the recording does not go beyond that time."""
+        if time_s >= self.end_s:
+            return None
+        tick = bisect_right(self.times_s, time_s) - 1
+        row = bisect_right(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns)
+        return Moment(tick, row, time_s)
+
+    def before_time(self, time_s: float) -> Moment | None:
+        """Return the moment just before a time; None if the recording does not go that far."""
+        if time_s > self.end_s:
+            return None
+        tick = bisect_left(self.times_s, time_s) - 1
+        return Moment(tick, bisect_left(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns) - 1)
+
+    def span(self, start: Moment, stop: Moment | None) -> Span:
+        """Return the part of the run between two moments, both exclusive; None: as far as the recording goes."""
+        end = self.last if stop is None else stop
+        return Span(
+            first_tick=start.tick + 1,
+            end_tick=end.tick + (end.row >= 0),
+            first_row=self._row_after(start) if start.row < 0 else start.row + 1,
+            end_row=self._row_after(end) if end.row < 0 else end.row,
+            stop=stop,
+            over=stop is None and self.ended,
+        )
+
+    def _row_after(self, moment: Moment) -> int:
+        return bisect_left(self.rows, moment.tick, key=lambda row: row.tick) if moment.tick > 0 else 0
+
+    def time_s(self, moment: Moment) -> float:
+        """Return the simulated time of a moment."""
+        if moment.time_s >= 0:
+            return moment.time_s
+        if moment.row >= 0:
+            return self.rows[moment.row].time_ns / NS_PER_S
+        return float(self.times_s[moment.tick]) if 0 <= moment.tick < len(self.records) else 0.0
+
+    def place_mm(self, tick: int) -> tuple[float, float]:
+        """Return where the robot is when a tick is complete."""
+        if not len(self.records):
+            return self.spec.world.start.x_mm, self.spec.world.start.y_mm
+        record = self.records[min(max(tick, 0), len(self.records) - 1)]
+        return float(record["x_mm"]), float(record["y_mm"])
+
+    def line(self, moment: Moment) -> int:
+        """Return the program's line at a moment; 0 if there is none."""
+        if moment.row >= 0 and moment.time_s < 0:
+            return self.rows[moment.row].line
+        if moment == self.last and self.end is not None and self.end.error_line:
+            return self.end.error_line
+        return int(self.records["line"][moment.tick]) if 0 <= moment.tick < len(self.records) else 0
+
+    def time_words(self, tick: int) -> str:
+        """Return the time of a tick for a sentence, such as `3.20 s`."""
+        return f"{float(self.times_s[tick]):.2f} s"

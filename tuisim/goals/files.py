@@ -1,0 +1,186 @@
+"""Goals files: the goals of a task in TOML, together with the world, and perhaps the program, that they are for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tuisim.config import files
+from tuisim.config.files import Location
+from tuisim.config.worlds import means_world, world_from_table
+from tuisim.errors import ConfigError, nearest
+from tuisim.goals.key_lines import line_of_key
+from tuisim.goals.picture import PictureTable, draw_from_table
+from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Condition, Dialogue, Draw, Goal, Kind, Points, Seconds
+
+MAX_NAME = 60
+_TEXTS = ("name", "say", "hint")
+_LIMITS = ("before", "after", "until")
+
+
+@dataclass(frozen=True, slots=True)
+class GoalsFile:
+    """The contents of a goals file."""
+
+    path: Path
+    title: str
+    """The task, in a line; empty if the file does not say."""
+    goals: tuple[Goal, ...]
+    settings: Mapping[str, Any]
+    """The world, by field of `Settings`; in precedence as those of a world file."""
+    program: str | None = None
+    """The program that it names, if any: a path, or the name of an example."""
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """The answers to `input()` that its dialogues give, in the order of the goals."""
+        dialogues = (goal.condition for goal in self.goals if isinstance(goal.condition, Dialogue))
+        return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns)
+
+
+def load_goals(path: Path | str) -> GoalsFile:
+    """Read a goals file, and the world and the pictures that it names.
+
+    Raises:
+        ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
+    """
+    path = Path(path).expanduser()
+    if not means_world(path.name):
+        raise ConfigError("is not a .toml file", "a goals file is TOML", file=str(path))
+    data = files.read_file(path, ConfigError)
+    try:
+        return _goals_file(data, path)
+    except ConfigError as error:
+        if error.file != str(path) or not error.key:
+            raise
+        line = line_of_key(path.read_text("utf-8", "replace").replace("\r\n", "\n"), error.key)
+        raise files.with_location(error, f"{path}, line {line}", error.key) from None
+
+
+def _goals_file(data: Any, path: Path) -> GoalsFile:
+    at = Location(str(path))
+    world = world_from_table(data, path)
+    if not data.get("goal"):
+        raise at.at("goal").wrong("there are no goals", "begin each with a line [[goal]]")
+    listed = files.entries(data["goal"], at.at("goal"), MAX_GOALS, "goals")
+    goals = tuple(_goal(entry, place, path.parent) for entry, place in listed)
+    _check_names(goals, [place for _, place in listed])
+    title = files.convert(data["title"], str, at.at("title")) if "title" in data else ""
+    return GoalsFile(path, title, goals, world.settings, world.program)
+
+
+def _goal(data: object, at: Location, folder: Path) -> Goal:
+    found = files.table(data, at, (*_TEXTS, "points", *CONDITIONS, *_LIMITS))
+    values: dict[str, Any] = {key: files.convert(found[key], str, at.at(key)) for key in _TEXTS if key in found}
+    files.required(found, "name", at)
+    if len(values["name"]) > MAX_NAME:
+        raise at.at("name").wrong(f"is too long, {len(values['name'])} characters", f"at most {MAX_NAME}")
+    keys = [key for key in CONDITIONS if key in found]
+    if not keys:
+        raise at.wrong("has no condition", f"one of {', '.join(CONDITIONS)}")
+    if len(keys) > 1:
+        hint = "give only one: further conditions are goals of their own, which `all` combines"
+        raise at.at(keys[1]).wrong(f"is given together with {keys[0]}", hint)
+    (key,) = keys
+    condition = _condition(CONDITIONS[key], found[key], at.at(key), folder)
+    if "points" in found:
+        values["points"] = files.convert(found["points"], Points, at.at("points"))
+    values |= {limit: _limit(found[limit], at.at(limit)) for limit in _LIMITS if limit in found}
+    goal = Goal(condition=condition, **values)
+    _check_limits(goal, at)
+    return goal
+
+
+def _condition(kind: type[Condition], data: object, at: Location, folder: Path) -> Condition:
+    if data is False:
+        raise at.wrong("cannot be false", "leave it out")
+    if data is True:
+        data = {}
+    elif not isinstance(data, dict) and kind.SHORT:
+        data = {kind.SHORT: data}
+    if isinstance(data, dict) and isinstance(data.get(kind.SHORT), str):
+        # A single one needs no list.
+        data = {**data, kind.SHORT: [data[kind.SHORT]]}
+    if kind is Draw:
+        table = files.convert(data, PictureTable, at)
+        try:
+            return draw_from_table(table, folder)
+        except ConfigError as error:
+            raise at.at("image").wrong(f"{error}") from None
+    return files.convert(data, kind, at)
+
+
+def _limit(data: object, at: Location) -> str | float:
+    if isinstance(data, str):
+        return files.convert(data, str, at)
+    if isinstance(data, bool) or not isinstance(data, int | float):
+        raise at.wrong(f"must be the name of a goal, or a time in seconds, got {files.shown(data)}")
+    return files.convert(float(data), Seconds, at)
+
+
+def _check_limits(goal: Goal, at: Location) -> None:
+    """Raise ConfigError for a limit that the kind of condition cannot have."""
+    kind = goal.condition.KIND
+    given = [limit for limit in _LIMITS if getattr(goal, limit) is not None]
+    allowed = {
+        Kind.REACHED: ("before", "after"),
+        Kind.HELD: ("after", "until"),
+        Kind.FIXED: (),
+        Kind.COMBINED: ("before",),
+    }[kind]
+    for limit in given:
+        if limit not in allowed:
+            hints = {
+                Kind.REACHED: "it is met once: use before",
+                Kind.HELD: "it must hold all the time: use until",
+                Kind.FIXED: "it is known before the run",
+                Kind.COMBINED: "give it to the goals that are combined",
+            }
+            raise at.at(limit).wrong("does not fit this condition", hints[kind])
+    times = [getattr(goal, limit) for limit in given]
+    if len(times) == 2 and all(isinstance(time, float) for time in times) and goal.after is not None:
+        end = goal.before if goal.before is not None else goal.until
+        if isinstance(end, float) and isinstance(goal.after, float) and goal.after >= end:
+            raise at.at("after").wrong(f"must be less than {end:g}, got {goal.after:g}")
+
+
+def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
+    """Raise ConfigError for two goals of one name, and for references to no goal or in a circle."""
+    by_name: dict[str, Goal] = {}
+    for goal, at in zip(goals, places, strict=True):
+        if goal.name in by_name:
+            raise at.at("name").wrong(f"there are two goals {goal.name!r}", "give each its own name")
+        by_name[goal.name] = goal
+    for goal, at in zip(goals, places, strict=True):
+        for name in goal.needs:
+            if name not in by_name:
+                raise _reference(goal, name, at).wrong(f"there is no goal {name!r}", nearest(name, by_name))
+    checked: set[str] = set()
+    for goal, at in zip(goals, places, strict=True):
+        circle = _circle(goal.name, by_name, (), checked)
+        if circle:
+            words = " needs ".join(f"{name!r}" for name in circle)
+            raise _reference(goal, circle[1], at).wrong(f"the goals need each other: {words}")
+
+
+def _reference(goal: Goal, name: str, at: Location) -> Location:
+    """Return the location of a reference to a goal; of the goal if the reference is farther away."""
+    limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
+    combined = next((key for key, kind in CONDITIONS.items() if type(goal.condition) is kind), "")
+    key = next(limits, combined if name in goal.needs else "")
+    return at.at(key) if key else at
+
+
+def _circle(name: str, goals: Mapping[str, Goal], above: tuple[str, ...], checked: set[str]) -> tuple[str, ...]:
+    """Return the names on a circle that begins with a goal or one that it needs; empty if there is none."""
+    if name in above:
+        return (*above[above.index(name) :], name)
+    if name in checked:
+        return ()
+    for other in goals[name].needs:
+        if circle := _circle(other, goals, (*above, name), checked):
+            return circle
+    checked.add(name)
+    return ()

@@ -1,0 +1,246 @@
+"""Judges the goals of a task on the recording of a run, which may still be running."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, assert_never
+
+from tuisim.core.field import Field
+from tuisim.errors import ConfigError
+from tuisim.goals import calls, drawing, output, places, readings
+from tuisim.goals.evidence import START, Evidence, JudgedRun, Moment, Span
+from tuisim.goals.found import Found
+from tuisim.goals.spec import (
+    AllOf,
+    AnyOf,
+    Avoid,
+    Dialogue,
+    Draw,
+    Finish,
+    Follow,
+    Goal,
+    Inside,
+    Kind,
+    Log,
+    Outside,
+    Pass,
+    Print,
+    Reach,
+    TouchNothing,
+    Use,
+)
+
+Finder = Callable[[Any, Evidence, Span], Found]
+
+FINDERS: Mapping[type, Finder] = {
+    Reach: places.find_reach,
+    Pass: places.find_pass,
+    Inside: places.find_left,
+    Outside: places.find_entered,
+    TouchNothing: places.find_touch,
+    Follow: readings.find_off_line,
+    Draw: drawing.find_drawn,
+    Print: output.find_printed,
+    Log: output.find_levels,
+    Dialogue: output.find_dialogue,
+    Finish: output.find_finish,
+    Use: calls.find_used,
+    Avoid: calls.find_avoided,
+}
+"""Finds when a condition was reached or violated in a span of a run."""
+
+
+class GoalState(StrEnum):
+    """State of a goal at an instant of a run."""
+
+    OPEN = "open"
+    MET = "met"
+    MISSED = "missed"
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change of a goal's state, and where the robot was then."""
+
+    tick: int
+    time_s: float
+    state: GoalState
+    x_mm: float
+    y_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """How a run did on a goal."""
+
+    goal: Goal
+    changes: tuple[Change, ...]
+    """Empty while the goal is open; it is decided once."""
+    reason: str = ""
+    """Why it is not met, in one sentence; empty if it is met, and possibly while it is open."""
+    line: int = 0
+    """The program's line that the last change, or the reason, is about; 0 if there is none."""
+
+    @property
+    def state(self) -> GoalState:
+        """The state at the end of the recording."""
+        return self.changes[-1].state if self.changes else GoalState.OPEN
+
+    def at(self, tick: int) -> GoalState:
+        """Return the state when a tick was complete."""
+        known = [change.state for change in self.changes if change.tick <= tick]
+        return known[-1] if known else GoalState.OPEN
+
+
+@dataclass(frozen=True, slots=True)
+class _Outcome:
+    state: GoalState
+    moment: Moment = START
+    """When it was decided; meaningless while it is open."""
+    reason: str = ""
+    line: int = 0
+
+
+def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> tuple[Judgement, ...]:
+    """Judge goals on the recording of a run. Blocks while it is read, and unpacked if it is packed.
+
+    Args:
+        goals: Goals as `load_goals` returns them; their names are unique.
+        run: A stored run, or a running one, whose goals may still be open.
+        field: The mat of the run; None opens it if a goal needs it.
+
+    Returns:
+        One judgement for each goal, in their order.
+
+    Raises:
+        LogError: the recording is damaged, or the mat no longer exists.
+        ConfigError: a goal refers to one that is not among them.
+    """
+    judged = _Judge(goals, Evidence(run, field))
+    return tuple(judged.judgement(goal) for goal in goals)
+
+
+def points(judgements: Iterable[Judgement]) -> float:
+    """Return the sum of the points of the goals that are met."""
+    return sum((each.goal.points for each in judgements if each.state is GoalState.MET), 0.0)
+
+
+class _Judge:
+    def __init__(self, goals: Sequence[Goal], evidence: Evidence) -> None:
+        self._goals = {goal.name: goal for goal in goals}
+        self._evidence = evidence
+        self._outcomes: dict[str, _Outcome] = {}
+
+    def judgement(self, goal: Goal) -> Judgement:
+        outcome = self._outcome(goal.name)
+        if outcome.state is GoalState.OPEN:
+            return Judgement(goal, (), outcome.reason, outcome.line)
+        tick = max(0, outcome.moment.tick)
+        x_mm, y_mm = self._evidence.place_mm(tick)
+        change = Change(tick, self._evidence.time_s(outcome.moment), outcome.state, x_mm, y_mm)
+        return Judgement(goal, (change,), outcome.reason, outcome.line or self._evidence.line(outcome.moment))
+
+    def _outcome(self, name: str) -> _Outcome:
+        if name not in self._goals:
+            raise ConfigError(f"there is no goal {name!r}")
+        if name not in self._outcomes:
+            self._outcomes[name] = self._judged(self._goals[name])
+        return self._outcomes[name]
+
+    def _judged(self, goal: Goal) -> _Outcome:
+        start = START
+        match goal.after:
+            case str(name):
+                first = self._outcome(name)
+                if first.state is GoalState.OPEN:
+                    return _Outcome(GoalState.OPEN, reason=f"“{name}” is not met yet.")
+                if first.state is GoalState.MISSED:
+                    return _Outcome(GoalState.MISSED, first.moment, f"“{name}” was not met.", first.line)
+                start = first.moment
+            case float() | int() as time_s:
+                moment = self._evidence.before_time(time_s)
+                if moment is None:
+                    return self._never(f"The program ended before {time_s:g} s.")
+                start = moment
+        stop = self._stop(goal)
+        condition = goal.condition
+        if isinstance(condition, AllOf | AnyOf):
+            return self._combined(condition, goal, stop)
+        span = self._evidence.span(start, stop)
+        found = FINDERS[type(condition)](condition, self._evidence, span)
+        match condition.KIND:
+            case Kind.REACHED:
+                return self._reached(goal, found, stop)
+            case Kind.HELD:
+                return self._held(goal, found, stop)
+            case Kind.FIXED:
+                state = GoalState.MET if found.moment is not None else GoalState.MISSED
+                return _Outcome(state, START, found.reason, found.line)
+            case Kind.COMBINED:
+                raise AssertionError(condition)
+            case _:
+                assert_never(condition.KIND)
+
+    def _stop(self, goal: Goal) -> Moment | None:
+        """Return the moment that limits a goal, if it has come."""
+        limit = goal.before if goal.before is not None else goal.until
+        if isinstance(limit, str):
+            outcome = self._outcome(limit)
+            return outcome.moment if outcome.state is GoalState.MET else None
+        return None if limit is None else self._evidence.at_time(limit)
+
+    def _never(self, reason: str, line: int = 0) -> _Outcome:
+        """Return the outcome of what has not happened: open, or missed if the run has ended."""
+        if not self._evidence.ended:
+            return _Outcome(GoalState.OPEN, reason="")
+        return _Outcome(GoalState.MISSED, self._evidence.last, reason, line)
+
+    def _reached(self, goal: Goal, found: Found, stop: Moment | None) -> _Outcome:
+        if found.moment is not None:
+            return _Outcome(GoalState.MET, found.moment, line=found.line)
+        if stop is not None:
+            return _Outcome(GoalState.MISSED, stop, _too_late(goal, found.reason), found.line)
+        if self._evidence.ended:
+            return _Outcome(GoalState.MISSED, self._evidence.last, found.reason, found.line)
+        return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line)
+
+    def _held(self, goal: Goal, found: Found, stop: Moment | None) -> _Outcome:
+        if found.moment is not None:
+            return _Outcome(GoalState.MISSED, found.moment, found.reason, found.line)
+        if stop is not None:
+            return _Outcome(GoalState.MET, stop)
+        if not self._evidence.ended:
+            return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line)
+        if isinstance(goal.until, str):
+            return _Outcome(GoalState.MISSED, self._evidence.last, f"“{goal.until}” was not met.")
+        return _Outcome(GoalState.MET, self._evidence.last)
+
+    def _combined(self, condition: AllOf | AnyOf, goal: Goal, stop: Moment | None) -> _Outcome:
+        parts = {name: self._outcome(name) for name in condition.goals}
+        every = isinstance(condition, AllOf)
+        # One missed part decides `all`, one met part decides `any`.
+        deciding = GoalState.MISSED if every else GoalState.MET
+        decided = [(part.moment, name) for name, part in parts.items() if part.state is deciding]
+        if decided:
+            moment, name = min(decided)
+            state, part = deciding, parts[name]
+        elif any(part.state is GoalState.OPEN for part in parts.values()):
+            state, moment, name, part = GoalState.OPEN, START, "", _Outcome(GoalState.OPEN)
+        else:
+            state = GoalState.MET if every else GoalState.MISSED
+            moment, name = max((part.moment, name) for name, part in parts.items())
+            part = parts[name]
+        if stop is not None and not (state is not GoalState.OPEN and moment < stop):
+            return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), part.line)
+        reason = ""
+        if state is GoalState.MISSED:
+            reason = f"“{name}” was missed." if every else "None of its goals was met."
+        return _Outcome(state, moment, reason, part.line)
+
+
+def _too_late(goal: Goal, reason: str) -> str:
+    """Return the reason of a goal that was not met before its limit."""
+    limit = f"{goal.before:g} s" if isinstance(goal.before, float | int) else f"“{goal.before}”"
+    return f"Not before {limit}: {reason[:1].lower()}{reason[1:]}" if reason else f"It was not met before {limit}."

@@ -1,0 +1,152 @@
+"""Conditions on what a program prints, logs and answers, and on how it ends."""
+
+from __future__ import annotations
+
+import re
+
+from tuisim.goals.evidence import Evidence, Moment, Span
+from tuisim.goals.found import Found
+from tuisim.goals.spec import Dialogue, Finish, Log, Print, Turn
+from tuisim.protocol import End
+from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.samples import Sample
+
+_MOST_SHOWN = 60
+
+
+def _shown(text: str) -> str:
+    return repr(text if len(text) <= _MOST_SHOWN else text[: _MOST_SHOWN - 1] + "…")
+
+
+def _printed(evidence: Evidence, span: Span) -> list[tuple[int, OutputRow]]:
+    """Return the printed lines of a span, each with its index."""
+    rows = evidence.rows[span.first_row : span.end_row]
+    return [(at, row) for at, row in enumerate(rows, start=span.first_row) if row.stream == Stream.STDOUT]
+
+
+def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
+    """Find when the last of the lines was printed."""
+    rows = _printed(evidence, span)
+    at, last, line = 0, -1, 0
+    for pattern in condition.lines:
+        search = re.compile(pattern).search
+        start = at if condition.in_order else 0
+        found = next((place for place in range(start, len(rows)) if search(rows[place][1].text)), None)
+        if found is None:
+            return Found(None, _no_line(condition, pattern, rows, line != 0), line)
+        at, line = found + 1, rows[found][1].line
+        last = max(last, found)
+    number, row = rows[last]
+    return Found(Moment(row.tick, number), line=row.line)
+
+
+def _no_line(condition: Print, pattern: str, rows: list[tuple[int, OutputRow]], some: bool) -> str:
+    if not rows:
+        return "The program printed nothing."
+    if some and condition.in_order and any(re.search(pattern, row.text) for _, row in rows):
+        return f"A line that matches {_shown(pattern)} was printed, but not after the lines before it."
+    printed = f"the last of the {len(rows)} is {_shown(rows[-1][1].text)}" if len(rows) > 1 else "the only one is "
+    return (
+        f"No printed line matches {_shown(pattern)}; {printed if len(rows) > 1 else printed + _shown(rows[0][1].text)}."
+    )
+
+
+def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
+    """Find when the samples of a variable had taken all levels."""
+    samples = [
+        (number, sample)
+        for number, sample in evidence.samples
+        if sample.name == condition.name and span.first_row <= number < span.end_row
+    ]
+    at, last, line = 0, -1, 0
+    for count, level in enumerate(condition.levels):
+        start = at if condition.in_order else 0
+        fits = (place for place in range(start, len(samples)) if _near(samples[place][1], level, condition))
+        found = next(fits, None)
+        if found is None:
+            return Found(None, _no_level(condition, count, samples[start:], evidence), line)
+        at, line = found + 1, samples[found][1].line
+        last = max(last, found)
+    number, sample = samples[last]
+    return Found(Moment(sample.tick, number), line=sample.line)
+
+
+def _near(sample: Sample, level: float, condition: Log) -> bool:
+    # Rounding of the difference must not matter.
+    return abs(sample.value - level) <= condition.within + 1e-9 * max(1.0, abs(level))
+
+
+def _no_level(condition: Log, count: int, rest: list[tuple[int, Sample]], evidence: Evidence) -> str:
+    name, levels = condition.name, condition.levels
+    if not any(sample.name == name for _, sample in evidence.samples):
+        others = sorted({sample.name for _, sample in evidence.samples})
+        logged = f" It logged {', '.join(others[:5])}." if others else ""
+        return f"The program logged no sample {name}.{logged}"
+    taken = f"{name} took {count} of {len(levels)} levels"
+    after = f" after {levels[count - 1]:g}" if count and condition.in_order else ""
+    if not rest:
+        return f"{taken}; no sample followed{after}, {levels[count]:g} was next."
+    _, nearest = min(rest, key=lambda each: abs(each[1].value - levels[count]))
+    return (
+        f"{taken}; {levels[count]:g} did not come{after}, the nearest was {nearest.value:.6g} at "
+        f"{nearest.time_ns / 1e9:.2f} s."
+    )
+
+
+def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:
+    """Find when the last of the turns was complete."""
+    rows = evidence.rows[: span.end_row]
+    asked = [at for at, row in enumerate(rows) if row.stream == Stream.INPUT and at >= span.first_row]
+    at, moment, line = 0, Moment(0, -1), 0
+    for number, turn in enumerate(condition.turns, start=1):
+        reply: int | None = None
+        reason = ""
+        while at < len(asked) and reply is None:
+            end = asked[at + 1] if at + 1 < len(asked) else len(rows)
+            reply, wrong = _turn(turn, rows, asked[at], end)
+            if wrong:
+                reason, line = wrong, rows[asked[at]].line
+            at += 1
+        if reply is None:
+            return Found(None, reason or _not_asked(number, turn, len(asked)), line)
+        moment, line = Moment(rows[reply].tick, reply), rows[reply].line
+    return Found(moment, line=line)
+
+
+def _turn(turn: Turn, rows: list[OutputRow], asked: int, end: int) -> tuple[int | None, str]:
+    """Return the row that completes a turn or None, and what is wrong with a turn that got its answer."""
+    text = rows[asked].text
+    if not text.endswith(turn.answer):
+        return None, ""
+    prompt = text[: len(text) - len(turn.answer)]
+    if turn.prompt and not re.search(turn.prompt, prompt):
+        return None, f"The question for {_shown(turn.answer)} was {_shown(prompt)}, not one like {_shown(turn.prompt)}."
+    if not turn.reply:
+        return asked, ""
+    printed = [at for at in range(asked + 1, end) if rows[at].stream == Stream.STDOUT]
+    found = next((at for at in printed if re.search(turn.reply, rows[at].text)), None)
+    if found is not None:
+        return found, ""
+    said = f"the program printed {_shown(rows[printed[0]].text)}" if printed else "the program printed nothing"
+    return None, f"After the answer {_shown(turn.answer)} {said}, and no line like {_shown(turn.reply)}."
+
+
+def _not_asked(number: int, turn: Turn, asked: int) -> str:
+    times = "once" if asked == 1 else f"{asked} times"
+    if not asked:
+        return "The program did not ask for input."
+    return f"The program asked {times}; no question got answer {number}, {_shown(turn.answer)}."
+
+
+def find_finish(condition: Finish, evidence: Evidence, span: Span) -> Found:
+    """Find when the program finished without an error."""
+    if not span.over:
+        return Found(None, "The program was still running.")
+    end = evidence.end
+    if end is None:
+        return Found(None, "The run was interrupted.")
+    if end.end is End.FINISHED and not end.exit_code:
+        return Found(evidence.last)
+    what = f"exit code {end.exit_code}" if end.end is End.FINISHED else end.end.replace("_", " ")
+    summary = f": {end.summary}" if end.summary and end.summary != what else ""
+    return Found(None, f"The program did not finish: {what}{summary}.".replace("..", "."), end.error_line)

@@ -1,0 +1,253 @@
+"""Conditions on where the robot is, goes and collides."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from tuisim.core.collision import Solids
+from tuisim.core.outline import outline_of
+from tuisim.core.spec import Obstacle, RobotSpec, WorldSpec
+from tuisim.goals.evidence import Evidence, Moment, Span
+from tuisim.goals.found import Found, distance_words
+from tuisim.goals.spec import Area, Inside, Outside, Part, Pass, Reach, TouchNothing
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+CONTACT_MM = 0.01
+"""A gap below this is contact: a robot that is stopped by an obstacle stands less than this before it."""
+
+_WALLS = ("the left wall", "the right wall", "the lower wall", "the upper wall")
+
+
+def find_reach(condition: Reach, evidence: Evidence, span: Span) -> Found:
+    """Find when the robot was at a place and heading."""
+    import numpy as np
+
+    records, first = evidence.records[span.ticks], span.first_tick
+    if not len(records):
+        return Found(None, "The robot was not simulated at that time.")
+    away_mm, turned_deg = _away_mm(condition, records), _turned_deg(condition, records)
+    there = (away_mm <= condition.within_mm) & (turned_deg <= condition.within_deg)
+    if condition.at_end:
+        if span.over and there[-1]:
+            return Found(evidence.last)
+        words = _off_words(condition, away_mm[-1], turned_deg[-1])
+        text = f"At the end the robot was {words}." if span.over else f"The robot is {words}."
+        return Found(None, "" if there[-1] else text, evidence.line(Moment(first + len(records) - 1)))
+    if not there.any():
+        nearest = int(np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg)))
+        words = _off_words(condition, away_mm[nearest], turned_deg[nearest])
+        text = f"The robot came no nearer than this: {words}, at {evidence.time_words(first + nearest)}."
+        return Found(None, text, evidence.line(Moment(first + nearest)))
+    times_s = evidence.times_s[span.ticks]
+    came = _came_at(there)
+    stayed_s = np.where(there, times_s - times_s[came], -1.0)
+    enough = np.flatnonzero(stayed_s >= condition.for_s - 1e-9)
+    if len(enough):
+        return Found(Moment(first + int(enough[0])))
+    longest = int(np.argmax(stayed_s))
+    text = f"The robot stayed there for at most {stayed_s[longest]:.2f} s, {condition.for_s:g} s are needed."
+    return Found(None, text, evidence.line(Moment(first + longest)))
+
+
+def _came_at(there: Array) -> Array:
+    """Return for each tick since which index it has been there without a break."""
+    import numpy as np
+
+    begins = there & ~np.concatenate(([False], there[:-1]))
+    since: Array = np.maximum.accumulate(np.where(begins, np.arange(len(there)), 0))
+    return since
+
+
+def _away_mm(condition: Reach, records: Array) -> Array:
+    import numpy as np
+
+    x_mm = 0.0 if condition.x_mm is None else records["x_mm"] - condition.x_mm
+    y_mm = 0.0 if condition.y_mm is None else records["y_mm"] - condition.y_mm
+    away: Array = np.broadcast_to(np.hypot(x_mm, y_mm), len(records))
+    return away
+
+
+def _turned_deg(condition: Reach, records: Array) -> Array:
+    import numpy as np
+
+    if condition.heading_deg is None:
+        return np.zeros(len(records))
+    turned: Array = np.abs((records["heading_deg"] - condition.heading_deg + 180.0) % 360.0 - 180.0)
+    return turned
+
+
+def _off_words(condition: Reach, away_mm: float, turned_deg: float) -> str:
+    words = []
+    if condition.x_mm is not None or condition.y_mm is not None:
+        words.append(f"{distance_words(away_mm)} away")
+    if condition.heading_deg is not None:
+        words.append(f"turned {turned_deg:.1f}° off")
+    return " and ".join(words)
+
+
+def find_pass(condition: Pass, evidence: Evidence, span: Span) -> Found:
+    """Find when the robot had passed the last of the places."""
+    records, first = evidence.records[span.ticks], span.first_tick
+    if not len(records):
+        return Found(None, "The robot was not simulated at that time.")
+    at = last = 0
+    for count, (x_mm, y_mm) in enumerate(condition.places_mm):
+        away_mm = _way_away_mm(records, x_mm, y_mm)
+        start = at if condition.in_order else 0
+        near = away_mm[start:] <= condition.within_mm
+        if not near.any():
+            nearest = start + int(away_mm[start:].argmin())
+            after = f" after place {count}" if count and condition.in_order else ""
+            text = (
+                f"The robot came no nearer than {distance_words(away_mm[nearest])} to place {count + 1} of "
+                f"{len(condition.places_mm)} ({x_mm:g}, {y_mm:g}){after}, at {evidence.time_words(first + nearest)}."
+            )
+            return Found(None, text, evidence.line(Moment(first + nearest)))
+        at = start + int(near.argmax())
+        last = max(last, at)
+    return Found(Moment(first + last))
+
+
+def _way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
+    """Return how near the robot came to a place during each tick."""
+    import numpy as np
+
+    x, y = records["x_mm"] - x_mm, records["y_mm"] - y_mm
+    away_mm = np.hypot(x, y)
+    dx, dy = np.diff(x), np.diff(y)
+    squared = dx * dx + dy * dy
+    # A robot that was moved by hand does not pass what is between.
+    driven = (np.diff(records["actions"].astype("i4")) == 0) & (squared > 0)
+    part = np.clip(-(x[:-1] * dx + y[:-1] * dy) / np.where(driven, squared, 1.0), 0.0, 1.0)
+    between = np.hypot(x[:-1] + part * dx, y[:-1] + part * dy)
+    away_mm[1:] = np.where(driven, np.minimum(between, away_mm[1:]), away_mm[1:])
+    return away_mm
+
+
+def find_left(condition: Inside, evidence: Evidence, span: Span) -> Found:
+    """Find when the robot left an area."""
+    import numpy as np
+
+    records = evidence.records[span.ticks]
+    inside = np.ones(len(records), np.bool_)
+    for x_mm, y_mm in _points(condition.part, records, evidence.spec.robot):
+        inside &= _in_area(condition, x_mm, y_mm)
+    return _first(~inside, "left the area", "was not in the area from the start", evidence, span)
+
+
+def find_entered(condition: Outside, evidence: Evidence, span: Span) -> Found:
+    """Find when the robot entered an area."""
+    import numpy as np
+
+    records = evidence.records[span.ticks]
+    if condition.part is Part.CENTRE:
+        within = _in_area(condition, records["x_mm"], records["y_mm"])
+    elif condition.radius_mm is not None:
+        within = _circle_gap_mm(condition, records, evidence.spec.robot) < condition.radius_mm
+    else:
+        left, lower, right, upper = condition.box_mm
+        world = WorldSpec(walls=False, obstacles=(Obstacle(left, lower, right - left, upper - lower),))
+        found = _first_contact(records, Solids(world, evidence.spec.robot), 0.0, forgiven=False)
+        within = np.zeros(len(records), np.bool_)
+        if found is not None:
+            within[found[0]] = True
+    return _first(within, "entered the area", "was in the area from the start", evidence, span)
+
+
+def _first(wrong: Array, text: str, at_start: str, evidence: Evidence, span: Span) -> Found:
+    if not wrong.any():
+        return Found()
+    tick = span.first_tick + int(wrong.argmax())
+    x_mm, y_mm = evidence.place_mm(tick)
+    what = at_start if tick == 0 else text
+    return Found(Moment(tick), f"The robot {what}, at {evidence.time_words(tick)}, x {x_mm:.0f} mm, y {y_mm:.0f} mm.")
+
+
+def _points(part: Part, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
+    """Return x and y of the points of the robot that matter, in mm, each at every tick."""
+    import numpy as np
+
+    x_mm, y_mm = records["x_mm"], records["y_mm"]
+    if part is Part.CENTRE:
+        return [(x_mm, y_mm)]
+    turn = np.radians(records["heading_deg"])
+    cos, sin = np.cos(turn), np.sin(turn)
+    corners = outline_of(robot).corners_mm
+    return [(x_mm + ahead * cos + aside * sin, y_mm + ahead * sin - aside * cos) for aside, ahead in corners]
+
+
+def _in_area(area: Area, x_mm: Array, y_mm: Array) -> Array:
+    import numpy as np
+
+    if area.radius_mm is not None:
+        round_in: Array = np.hypot(x_mm - area.x_mm, y_mm - area.y_mm) <= area.radius_mm
+        return round_in
+    left, lower, right, upper = area.box_mm
+    in_box: Array = (left <= x_mm) & (x_mm <= right) & (lower <= y_mm) & (y_mm <= upper)
+    return in_box
+
+
+def _circle_gap_mm(area: Area, records: Array, robot: RobotSpec) -> Array:
+    """Return the distance of the robot's body from the centre of a circle, at every tick."""
+    import numpy as np
+
+    outline = outline_of(robot)
+    turn = np.radians(records["heading_deg"])
+    dx, dy = area.x_mm - records["x_mm"], area.y_mm - records["y_mm"]
+    ahead, aside = dx * np.cos(turn) + dy * np.sin(turn), dx * np.sin(turn) - dy * np.cos(turn)
+    along = ahead - np.clip(ahead, outline.back_mm, outline.front_mm)
+    across = aside - np.clip(aside, -outline.half_width_mm, outline.half_width_mm)
+    gap: Array = np.hypot(along, across)
+    return gap
+
+
+def find_touch(condition: TouchNothing, evidence: Evidence, span: Span) -> Found:
+    """Find when the robot touched an obstacle or a wall, or came too near to one."""
+    world, robot = evidence.spec.world, evidence.spec.robot
+    walls = world.walls and condition.walls
+    obstacles = world.obstacles if condition.obstacles else ()
+    solids = Solids(WorldSpec(walls=walls, obstacles=obstacles), robot)
+    found = _first_contact(evidence.records[span.ticks], solids, max(condition.gap_mm, CONTACT_MM), forgiven=True)
+    if found is None:
+        return Found()
+    at, number = found
+    tick = span.first_tick + at
+    names = [*(_WALLS if walls else ()), *(f"the obstacle at x {o.x_mm:g}, y {o.y_mm:g}" for o in obstacles)]
+    did = "came too near to" if condition.gap_mm > CONTACT_MM else "touched"
+    x_mm, y_mm = evidence.place_mm(tick)
+    place = f"x {x_mm:.0f} mm, y {y_mm:.0f} mm"
+    return Found(Moment(tick), f"The robot {did} {names[number]} at {evidence.time_words(tick)}, {place}.")
+
+
+def _first_contact(records: Array, solids: Solids, gap_mm: float, *, forgiven: bool) -> tuple[int, int] | None:
+    """Return the first index at which a gap is below `gap_mm`, and the number of the gap; None if there is none.
+
+    Ticks during which the robot cannot have got so near are skipped.
+
+    Args:
+        forgiven: Whether what is too near at the start counts only once it has been farther away.
+    """
+    import numpy as np
+
+    if not len(records):
+        return None
+    turned = np.abs(np.diff(np.radians(records["heading_deg"])))
+    steps_mm = np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"])) + turned * solids.reach_mm
+    way_mm = np.concatenate(([0.0], np.cumsum(steps_mm)))
+    at, near_from_start = 0, None
+    while at < len(records):
+        x_mm, y_mm, heading_deg = (float(records[name][at]) for name in ("x_mm", "y_mm", "heading_deg"))
+        gaps = solids.gaps_mm((x_mm, y_mm, heading_deg))
+        near = {number for number, gap in enumerate(gaps) if gap < gap_mm}
+        if near_from_start is None:
+            near_from_start = near if forgiven else set()
+        near_from_start &= near
+        if near - near_from_start:
+            return at, min(near - near_from_start)
+        free_mm = min((abs(gap - gap_mm) for gap in gaps), default=np.inf)
+        at = max(at + 1, int(np.searchsorted(way_mm, way_mm[at] + free_mm - 1e-6)))
+    return None

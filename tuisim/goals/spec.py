@@ -1,0 +1,393 @@
+"""Goals and their conditions as frozen data.
+
+To add a kind of condition: its class and a line in `CONDITIONS` here, and its function and a line in `FINDERS`,
+`goals/judge.py`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Annotated, ClassVar, TypeAlias
+
+from msgspec import Meta
+
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.errors import ConfigError
+
+MAX_GOALS = 200
+MAX_PLACES = 1000
+"""Largest number of places, levels, lines, calls or turns in one condition."""
+
+X = Annotated[float, Meta(ge=0, le=FIELD_WIDTH_MM)]
+Y = Annotated[float, Meta(ge=0, le=FIELD_HEIGHT_MM)]
+Heading = Annotated[float, Meta(ge=-36_000, le=36_000)]
+Tolerance = Annotated[float, Meta(ge=1, le=2000)]
+Share = Annotated[float, Meta(ge=0.01, le=1)]
+Percent = Annotated[float, Meta(ge=0, le=100)]
+Seconds = Annotated[float, Meta(ge=0, le=1e6)]
+Points = Annotated[float, Meta(ge=0, le=1000)]
+Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
+
+
+class Kind(StrEnum):
+    """When a condition is decided."""
+
+    REACHED = "reached"
+    """Met as soon as it is true once; missed if that never happens."""
+    HELD = "held"
+    """Missed as soon as it is violated; met if that never happens."""
+    FIXED = "fixed"
+    """Known from the program's text, before the run."""
+    COMBINED = "combined"
+    """Decided by other goals."""
+
+
+class Part(StrEnum):
+    """What of the robot must be in or out of an area."""
+
+    CENTRE = "centre"
+    """The midpoint between its wheels."""
+    BODY = "body"
+    """Its whole outline."""
+
+
+def _check_regex(pattern: str, key: str) -> None:
+    try:
+        re.compile(pattern)
+    except (re.error, RecursionError, OverflowError) as error:
+        raise ConfigError(f"{pattern!r} is no regular expression: {error}", key=key) from None
+
+
+def _check_count(found: tuple[object, ...], key: str) -> None:
+    if not 1 <= len(found) <= MAX_PLACES:
+        raise ConfigError(f"must have 1 to {MAX_PLACES} entries, has {len(found)}", key=key)
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """The robot comes to a place, a heading, or both."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = ""
+
+    x_mm: X | None = None
+    """None: any."""
+    y_mm: Y | None = None
+    heading_deg: Heading | None = None
+    """Counter-clockwise from +x; full turns do not matter."""
+    within_mm: Tolerance = 20.0
+    within_deg: Annotated[float, Meta(ge=0.1, le=180)] = 5.0
+    for_s: Seconds = 0.0
+    """How long it must stay there without a break."""
+    at_end: bool = False
+    """Whether it must be there when the run ends."""
+
+    def __post_init__(self) -> None:
+        if self.x_mm is None and self.y_mm is None and self.heading_deg is None:
+            raise ConfigError("names no place and no heading", "give x_mm, y_mm or heading_deg")
+        if self.at_end and self.for_s:
+            raise ConfigError("is given together with at_end", "give only one of them", key="for_s")
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """A part of the field: a rectangle from its lower left corner, or a circle around its centre."""
+
+    KIND: ClassVar[Kind] = Kind.HELD
+    SHORT: ClassVar[str] = ""
+
+    x_mm: Annotated[float, Meta(ge=-10_000, le=10_000)]
+    y_mm: Annotated[float, Meta(ge=-10_000, le=10_000)]
+    width_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
+    height_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
+    radius_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
+    part: Part = Part.CENTRE
+
+    def __post_init__(self) -> None:
+        if self.radius_mm is not None and (self.width_mm is not None or self.height_mm is not None):
+            raise ConfigError("is given together with width_mm or height_mm", "give only one", key="radius_mm")
+        if self.radius_mm is None and (self.width_mm is None or self.height_mm is None):
+            raise ConfigError("has no size", "give width_mm and height_mm, or radius_mm")
+        left, lower, right, upper = self.box_mm
+        if left >= FIELD_WIDTH_MM or right <= 0 or lower >= FIELD_HEIGHT_MM or upper <= 0:
+            raise ConfigError("is not on the field", f"the field is {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM} mm")
+
+    @property
+    def box_mm(self) -> tuple[float, float, float, float]:
+        """Left, lower, right and upper edge."""
+        if self.radius_mm is not None:
+            radius = self.radius_mm
+            return self.x_mm - radius, self.y_mm - radius, self.x_mm + radius, self.y_mm + radius
+        assert self.width_mm is not None and self.height_mm is not None
+        return self.x_mm, self.y_mm, self.x_mm + self.width_mm, self.y_mm + self.height_mm
+
+
+@dataclass(frozen=True, slots=True)
+class Inside(Area):
+    """The robot stays inside an area."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outside(Area):
+    """The robot stays out of an area."""
+
+    def __post_init__(self) -> None:
+        # `super()` without arguments does not find the class that `slots=True` makes.
+        Area.__post_init__(self)
+        left, lower, right, upper = self.box_mm
+        covers = left <= 0 and lower <= 0 and right >= FIELD_WIDTH_MM and upper >= FIELD_HEIGHT_MM
+        if covers and self.radius_mm is None:
+            raise ConfigError("covers the whole field", "no robot can stay out of it")
+
+
+@dataclass(frozen=True, slots=True)
+class TouchNothing:
+    """The robot touches no obstacle and no wall; what it touches at the start counts once it has left it."""
+
+    KIND: ClassVar[Kind] = Kind.HELD
+    SHORT: ClassVar[str] = ""
+
+    obstacles: bool = True
+    walls: bool = True
+    gap_mm: Annotated[float, Meta(ge=0, le=1000)] = 0.0
+    """The distance that it must keep."""
+
+    def __post_init__(self) -> None:
+        if not (self.obstacles or self.walls):
+            raise ConfigError("is about neither obstacles nor walls", "leave one of them at true")
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """The robot passes places."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = "places_mm"
+
+    places_mm: tuple[tuple[X, Y], ...]
+    """x and y of each."""
+    within_mm: Tolerance = 20.0
+    in_order: bool = True
+
+    def __post_init__(self) -> None:
+        _check_count(self.places_mm, "places_mm")
+
+
+@dataclass(frozen=True, slots=True)
+class Follow:
+    """A colour sensor is on a line for a share of the time. Noise and the pen's marks do not count."""
+
+    KIND: ClassVar[Kind] = Kind.HELD
+    SHORT: ClassVar[str] = ""
+
+    sensors: tuple[str, ...]
+    """Names of colour sensors, such as `left`; one of them must be on the line."""
+    darker_than: Percent | None = None
+    """Reflected light below which a sensor is on the line."""
+    brighter_than: Percent | None = None
+    share: Share = 0.9
+
+    def __post_init__(self) -> None:
+        _check_count(self.sensors, "sensors")
+        if self.darker_than is None and self.brighter_than is None:
+            raise ConfigError("does not describe the line", "give darker_than or brighter_than, in percent")
+
+
+@dataclass(frozen=True, slots=True)
+class Draw:
+    """What the pen draws is near a picture: a share of the picture is drawn, and of the drawing lies on it."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = ""
+
+    picture: bytes
+    """Indices of the picture's cells on the field, 32-bit integers in ascending order; see `goals/picture.py`."""
+    within_mm: float
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
+class Print:
+    """The program prints lines."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = "lines"
+
+    lines: tuple[str, ...]
+    """Regular expressions, each searched for in single lines."""
+    in_order: bool = True
+
+    def __post_init__(self) -> None:
+        _check_count(self.lines, "lines")
+        for number, pattern in enumerate(self.lines, start=1):
+            _check_regex(pattern, f"lines[{number}]")
+
+
+@dataclass(frozen=True, slots=True)
+class Log:
+    """The samples of a variable take levels."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = ""
+
+    name: str
+    levels: tuple[Number, ...]
+    within: Annotated[float, Meta(ge=0, le=1e15)] = 0.5
+    in_order: bool = True
+
+    def __post_init__(self) -> None:
+        _check_count(self.levels, "levels")
+        if not self.name.isidentifier():
+            raise ConfigError(f"{self.name!r} cannot be the name of a sample", "such as Colour", key="name")
+
+
+@dataclass(frozen=True, slots=True)
+class Finish:
+    """The program finishes without an error."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Calls:
+    """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, also under other names."""
+
+    KIND: ClassVar[Kind] = Kind.FIXED
+    SHORT: ClassVar[str] = "calls"
+
+    calls: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        _check_count(self.calls, "calls")
+        for number, call in enumerate(self.calls, start=1):
+            if not all(word.isidentifier() for word in call.removesuffix("()").split(".")):
+                hint = "a name such as tank_drive.on_for_rotations"
+                raise ConfigError(f"{call!r} is not the name of a call", hint, key=f"calls[{number}]")
+
+
+@dataclass(frozen=True, slots=True)
+class Use(Calls):
+    """The program uses each of the calls."""
+
+
+@dataclass(frozen=True, slots=True)
+class Avoid(Calls):
+    """The program uses none of the calls."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """An answer to `input()`, and what the program prints next."""
+
+    answer: str
+    prompt: str = ""
+    """A regular expression for the prompt; empty for any."""
+    reply: str = ""
+    """A regular expression for a line printed before the next question; empty for none."""
+
+    def __post_init__(self) -> None:
+        for key in ("prompt", "reply"):
+            _check_regex(getattr(self, key), key)
+
+
+@dataclass(frozen=True, slots=True)
+class Dialogue:
+    """The program asks, is given answers, and replies."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = "turns"
+
+    turns: tuple[Turn, ...]
+
+    def __post_init__(self) -> None:
+        _check_count(self.turns, "turns")
+
+
+@dataclass(frozen=True, slots=True)
+class Combination:
+    """Other goals, by name."""
+
+    KIND: ClassVar[Kind] = Kind.COMBINED
+    SHORT: ClassVar[str] = "goals"
+
+    goals: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        _check_count(self.goals, "goals")
+
+
+@dataclass(frozen=True, slots=True)
+class AllOf(Combination):
+    """All of the goals are met."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnyOf(Combination):
+    """At least one of the goals is met."""
+
+
+Condition: TypeAlias = (
+    Reach
+    | Inside
+    | Outside
+    | TouchNothing
+    | Pass
+    | Follow
+    | Draw
+    | Print
+    | Log
+    | Finish
+    | Use
+    | Avoid
+    | Dialogue
+    | AllOf
+    | AnyOf
+)
+
+CONDITIONS: Mapping[str, type[Condition]] = {
+    "reach": Reach,
+    "pass": Pass,
+    "inside": Inside,
+    "outside": Outside,
+    "touch_nothing": TouchNothing,
+    "follow": Follow,
+    "draw": Draw,
+    "print": Print,
+    "log": Log,
+    "dialogue": Dialogue,
+    "finish": Finish,
+    "use": Use,
+    "avoid": Avoid,
+    "all": AllOf,
+    "any": AnyOf,
+}
+"""The kinds of conditions by their key in a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """One goal of a task. Times are simulated seconds."""
+
+    name: str
+    condition: Condition
+    say: str = ""
+    """The goal as a sentence for the student."""
+    points: float = 1.0
+    hint: str = ""
+    """Shown if the goal is missed."""
+    before: str | float | None = None
+    """A goal or a time: the condition must be reached before."""
+    after: str | float | None = None
+    """A goal or a time: only what happens later counts."""
+    until: str | float | None = None
+    """A goal, which must be met then, or a time: the condition must be held up to it."""
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The names of the goals that this one refers to."""
+        named = [word for word in (self.before, self.after, self.until) if isinstance(word, str)]
+        return (*(self.condition.goals if isinstance(self.condition, AllOf | AnyOf) else ()), *named)
