@@ -341,7 +341,7 @@ def convert(data: object, kind: type[Value], at: Location) -> Value:
     except ConfigError as error:
         # The specs begin the keys in their errors with the name of the part, in which `at` may already end.
         part = re.sub(r"\[\d+\]$", "", at.key).rpartition(".")[2]
-        inner = at.at(error.key.removeprefix(f"{part}."))
+        inner = at.at(error.key.removeprefix(f"{part}.")) if error.key else at
         raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
     except msgspec.ValidationError as error:
         message, _, path = str(error).partition(" - at `$")

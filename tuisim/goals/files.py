@@ -13,7 +13,20 @@ from tuisim.config.worlds import means_world, world_from_table
 from tuisim.errors import ConfigError, nearest
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table
-from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Condition, Dialogue, Draw, Goal, Kind, Points, Seconds
+from tuisim.goals.spec import (
+    CONDITIONS,
+    MAX_GOALS,
+    AllOf,
+    AnyOf,
+    Condition,
+    Dialogue,
+    Draw,
+    Goal,
+    Kind,
+    Points,
+    Seconds,
+    Together,
+)
 
 MAX_NAME = 60
 _TEXTS = ("name", "say", "hint")
@@ -36,7 +49,7 @@ class GoalsFile:
     @property
     def answers(self) -> tuple[str, ...]:
         """The answers to `input()` that its dialogues give, in the order of the goals."""
-        dialogues = (goal.condition for goal in self.goals if isinstance(goal.condition, Dialogue))
+        dialogues = (part for goal in self.goals for part in goal.parts if isinstance(part, Dialogue))
         return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns)
 
 
@@ -77,14 +90,12 @@ def _goal(data: object, at: Location, folder: Path) -> Goal:
     files.required(found, "name", at)
     if len(values["name"]) > MAX_NAME:
         raise at.at("name").wrong(f"is too long, {len(values['name'])} characters", f"at most {MAX_NAME}")
-    keys = [key for key in CONDITIONS if key in found]
-    if not keys:
+    conditions = tuple(
+        _condition(kind, found[key], at.at(key), folder) for key, kind in CONDITIONS.items() if key in found
+    )
+    if not conditions:
         raise at.wrong("has no condition", f"one of {', '.join(CONDITIONS)}")
-    if len(keys) > 1:
-        hint = "give only one: further conditions are goals of their own, which `all` combines"
-        raise at.at(keys[1]).wrong(f"is given together with {keys[0]}", hint)
-    (key,) = keys
-    condition = _condition(CONDITIONS[key], found[key], at.at(key), folder)
+    condition = conditions[0] if len(conditions) == 1 else Together(conditions)
     if "points" in found:
         values["points"] = files.convert(found["points"], Points, at.at("points"))
     values |= {limit: _limit(found[limit], at.at(limit)) for limit in _LIMITS if limit in found}
@@ -120,30 +131,24 @@ def _limit(data: object, at: Location) -> str | float:
     return files.convert(float(data), Seconds, at)
 
 
+_UNFIT = {
+    Kind.REACHED: "it is met once: use before",
+    Kind.HELD: "it must hold all the time: use until",
+    Kind.FIXED: "it is known before the run",
+    Kind.COMBINED: "give it to the goals that are combined",
+}
+
+
 def _check_limits(goal: Goal, at: Location) -> None:
-    """Raise ConfigError for a limit that the kind of condition cannot have."""
-    kind = goal.condition.KIND
-    given = [limit for limit in _LIMITS if getattr(goal, limit) is not None]
-    allowed = {
-        Kind.REACHED: ("before", "after"),
-        Kind.HELD: ("after", "until"),
-        Kind.FIXED: (),
-        Kind.COMBINED: ("before",),
-    }[kind]
-    for limit in given:
-        if limit not in allowed:
-            hints = {
-                Kind.REACHED: "it is met once: use before",
-                Kind.HELD: "it must hold all the time: use until",
-                Kind.FIXED: "it is known before the run",
-                Kind.COMBINED: "give it to the goals that are combined",
-            }
-            raise at.at(limit).wrong("does not fit this condition", hints[kind])
-    times = [getattr(goal, limit) for limit in given]
-    if len(times) == 2 and all(isinstance(time, float) for time in times) and goal.after is not None:
-        end = goal.before if goal.before is not None else goal.until
-        if isinstance(end, float) and isinstance(goal.after, float) and goal.after >= end:
-            raise at.at("after").wrong(f"must be less than {end:g}, got {goal.after:g}")
+    """Raise ConfigError for a limit that applies to none of the conditions, or comes before the goal counts."""
+    kinds = [part.KIND for part in goal.parts]
+    fitting = {limit for kind in kinds for limit in goal.limits(kind)}
+    for limit in _LIMITS:
+        if getattr(goal, limit) is not None and limit not in fitting:
+            raise at.at(limit).wrong("does not fit this condition", _UNFIT[kinds[0]])
+        end = getattr(goal, limit)
+        if limit != "after" and isinstance(end, float) and isinstance(goal.after, float) and goal.after >= end:
+            raise at.at("after").wrong(f"must be less than {limit}, {end:g}, got {goal.after:g}")
 
 
 def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
@@ -168,8 +173,13 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
 def _reference(goal: Goal, name: str, at: Location) -> Location:
     """Return the location of a reference to a goal; of the goal if the reference is farther away."""
     limits = (limit for limit in _LIMITS if getattr(goal, limit) == name)
-    combined = next((key for key, kind in CONDITIONS.items() if type(goal.condition) is kind), "")
-    key = next(limits, combined if name in goal.needs else "")
+    combined = (
+        key
+        for key, kind in CONDITIONS.items()
+        for part in goal.parts
+        if type(part) is kind and isinstance(part, AllOf | AnyOf) and name in part.goals
+    )
+    key = next(limits, next(combined, ""))
     return at.at(key) if key else at
 
 

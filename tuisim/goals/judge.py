@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, assert_never
 
@@ -16,6 +16,7 @@ from tuisim.goals.spec import (
     AllOf,
     AnyOf,
     Avoid,
+    Condition,
     Dialogue,
     Draw,
     Finish,
@@ -142,12 +143,14 @@ class _Judge:
         change = Change(tick, self._evidence.time_s(outcome.moment), outcome.state, x_mm, y_mm)
         return Judgement(goal, (change,), outcome.reason, outcome.line or self._evidence.line(outcome.moment))
 
-    def _outcome(self, name: str) -> _Outcome:
+    def _outcome(self, name: str, if_missed: str = "") -> _Outcome:
+        """Return the outcome of a goal, if it is missed perhaps with another reason."""
         if name not in self._goals:
             raise ConfigError(f"there is no goal {name!r}")
         if name not in self._outcomes:
             self._outcomes[name] = self._judged(self._goals[name])
-        return self._outcomes[name]
+        outcome = self._outcomes[name]
+        return replace(outcome, reason=if_missed) if if_missed and outcome.state is GoalState.MISSED else outcome
 
     def _judged(self, goal: Goal) -> _Outcome:
         start = START
@@ -164,10 +167,14 @@ class _Judge:
                 if moment is None:
                     return self._never(f"The program ended before {time_s:g} s.")
                 start = moment
-        stop = self._stop(goal)
-        condition = goal.condition
+        outcomes = [self._part(part, goal, start) for part in goal.parts]
+        return outcomes[0] if len(outcomes) == 1 else _first_of(outcomes, GoalState.MISSED)
+
+    def _part(self, condition: Condition, goal: Goal, start: Moment) -> _Outcome:
+        """Return the outcome of one condition of a goal, which counts after a moment."""
         if isinstance(condition, AllOf | AnyOf):
-            return self._combined(condition, goal, stop)
+            return self._combined(condition, goal)
+        stop = self._stop(goal, condition.KIND)
         span = self._evidence.span(start, stop)
         found = FINDERS[type(condition)](condition, self._evidence, span)
         match condition.KIND:
@@ -183,13 +190,16 @@ class _Judge:
             case _:
                 assert_never(condition.KIND)
 
-    def _stop(self, goal: Goal) -> Moment | None:
-        """Return the moment that limits a goal, if it has come."""
-        limit = goal.before if goal.before is not None else goal.until
+    def _stop(self, goal: Goal, kind: Kind) -> Moment | None:
+        """Return the moment that limits a goal's conditions of a kind, if it has come."""
+        limits = [getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"]
+        if not limits:
+            return None
+        (limit,) = limits
         if isinstance(limit, str):
             outcome = self._outcome(limit)
             return outcome.moment if outcome.state is GoalState.MET else None
-        return None if limit is None else self._evidence.at_time(limit)
+        return self._evidence.at_time(limit)
 
     def _never(self, reason: str, line: int = 0) -> _Outcome:
         """Return the outcome of what has not happened: open, or missed if the run has ended."""
@@ -217,27 +227,27 @@ class _Judge:
             return _Outcome(GoalState.MISSED, self._evidence.last, f"“{goal.until}” was not met.")
         return _Outcome(GoalState.MET, self._evidence.last)
 
-    def _combined(self, condition: AllOf | AnyOf, goal: Goal, stop: Moment | None) -> _Outcome:
-        parts = {name: self._outcome(name) for name in condition.goals}
-        every = isinstance(condition, AllOf)
-        # One missed part decides `all`, one met part decides `any`.
-        deciding = GoalState.MISSED if every else GoalState.MET
-        decided = [(part.moment, name) for name, part in parts.items() if part.state is deciding]
-        if decided:
-            moment, name = min(decided)
-            state, part = deciding, parts[name]
-        elif any(part.state is GoalState.OPEN for part in parts.values()):
-            state, moment, name, part = GoalState.OPEN, START, "", _Outcome(GoalState.OPEN)
+    def _combined(self, condition: AllOf | AnyOf, goal: Goal) -> _Outcome:
+        stop = self._stop(goal, condition.KIND)
+        if isinstance(condition, AllOf):
+            parts = [self._outcome(name, f"“{name}” was missed.") for name in condition.goals]
+            outcome = _first_of(parts, GoalState.MISSED)
         else:
-            state = GoalState.MET if every else GoalState.MISSED
-            moment, name = max((part.moment, name) for name, part in parts.items())
-            part = parts[name]
-        if stop is not None and not (state is not GoalState.OPEN and moment < stop):
-            return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), part.line)
-        reason = ""
-        if state is GoalState.MISSED:
-            reason = f"“{name}” was missed." if every else "None of its goals was met."
-        return _Outcome(state, moment, reason, part.line)
+            parts = [self._outcome(name, "None of its goals was met.") for name in condition.goals]
+            outcome = _first_of(parts, GoalState.MET)
+        if stop is not None and not (outcome.state is not GoalState.OPEN and outcome.moment < stop):
+            return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), outcome.line)
+        return outcome
+
+
+def _first_of(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
+    """Return the outcome of a combination: the first part with the deciding state, else the last one to be decided."""
+    decided = [part for part in parts if part.state is deciding]
+    if decided:
+        return min(decided, key=lambda part: part.moment)
+    if any(part.state is GoalState.OPEN for part in parts):
+        return next(part for part in parts if part.state is GoalState.OPEN)
+    return max(parts, key=lambda part: part.moment)
 
 
 def _too_late(goal: Goal, reason: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.sensors.color import columns
-from tuisim.core.spec import ColorSensorSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
 from tuisim.goals.spec import Follow
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
-    """Find out at the end of a span whether a sensor was on a line for too small a share of the time."""
+    """Find out at the end of a span whether the robot was on a line for too small a share of the time."""
     import numpy as np
 
     named = {sensor.name: sensor for sensor in evidence.spec.robot.color_sensors}
@@ -29,21 +29,38 @@ def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
     records = evidence.records[span.ticks]
     if not len(records):
         return Found()
-    on_line = np.zeros(len(records), np.bool_)
-    for name in condition.sensors:
-        on_line |= _on_line(condition, _reflected_percent(records, named[name], evidence))
+    if condition.point_mm is not None:
+        on_line = _is_line(condition, _light_at_percent(records, *condition.point_mm, evidence))
+    else:
+        on_line = np.zeros(len(records), np.bool_)
+        for name in condition.sensors:
+            on_line |= _is_line(condition, _reflected_percent(records, named[name], evidence))
     share = float(on_line.mean())
-    sensors = " or ".join(condition.sensors)
-    text = (
-        f"The sensor {sensors} was on the line for {share_words(share)} of the time, "
-        f"{share_words(condition.share)} are needed"
-    )
     if share >= condition.share:
         return Found()
     lost = span.first_tick + _longest_gap(on_line)
-    text = f"{text}; it was off for longest from {evidence.time_words(lost)}."
+    what = f"The sensor {' or '.join(condition.sensors)}" if condition.sensors else "The robot"
+    text = (
+        f"{what} was on the line for {share_words(share)} of the time, {share_words(condition.share)} are needed; it "
+        f"was off for longest from {evidence.time_words(lost)}."
+    )
     decided = span.stop or (evidence.last if span.over else None)
     return Found(decided, text, evidence.line(Moment(lost)))
+
+
+def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
+    """Return the light of the mat's pixel under a point of the robot, at every tick; 0 off the mat."""
+    import numpy as np
+
+    mat = evidence.mat
+    turn = np.radians(records["heading_deg"] - 90.0)
+    col = np.floor(records["x_mm"] + np.cos(turn) * x_mm - np.sin(turn) * y_mm)
+    row = np.floor(FIELD_HEIGHT_MM - (records["y_mm"] + np.sin(turn) * x_mm + np.cos(turn) * y_mm))
+    inside = (col >= 0) & (col < mat.width_px) & (row >= 0) & (row < mat.height_px)
+    pixels = np.frombuffer(mat.pixels, np.uint8).reshape(mat.height_px, mat.width_px, 3)
+    percent = np.zeros(len(records))
+    percent[inside] = pixels[row[inside].astype("i8"), col[inside].astype("i8"), 0] / 255 * 100
+    return percent
 
 
 def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Evidence) -> Array:
@@ -53,7 +70,7 @@ def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Eviden
     return percent
 
 
-def _on_line(condition: Follow, percent: Array) -> Array:
+def _is_line(condition: Follow, percent: Array) -> Array:
     import numpy as np
 
     on_line = np.ones(len(percent), np.bool_)

@@ -27,6 +27,7 @@ Heading = Annotated[float, Meta(ge=-36_000, le=36_000)]
 Tolerance = Annotated[float, Meta(ge=1, le=2000)]
 Share = Annotated[float, Meta(ge=0.01, le=1)]
 Percent = Annotated[float, Meta(ge=0, le=100)]
+Offset = Annotated[float, Meta(ge=-500, le=500)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]
 Points = Annotated[float, Meta(ge=0, le=1000)]
 Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
@@ -43,6 +44,15 @@ class Kind(StrEnum):
     """Known from the program's text, before the run."""
     COMBINED = "combined"
     """Decided by other goals."""
+
+
+LIMITS: Mapping[Kind, tuple[str, ...]] = {
+    Kind.REACHED: ("before", "after"),
+    Kind.HELD: ("after", "until"),
+    Kind.FIXED: (),
+    Kind.COMBINED: ("before",),
+}
+"""The limits that a condition of a kind can have."""
 
 
 class Part(StrEnum):
@@ -72,6 +82,7 @@ class Reach:
 
     KIND: ClassVar[Kind] = Kind.REACHED
     SHORT: ClassVar[str] = ""
+    """The key that is meant if a file gives a value instead of a table; its value may be one text instead of a list."""
 
     x_mm: X | None = None
     """None: any."""
@@ -178,20 +189,23 @@ class Pass:
 
 @dataclass(frozen=True, slots=True)
 class Follow:
-    """A colour sensor is on a line for a share of the time. Noise and the pen's marks do not count."""
+    """A part of the robot is on a line for a share of the time. Noise and the pen's marks do not count."""
 
     KIND: ClassVar[Kind] = Kind.HELD
-    SHORT: ClassVar[str] = ""
+    SHORT: ClassVar[str] = "sensors"
 
-    sensors: tuple[str, ...]
+    sensors: tuple[str, ...] = ()
     """Names of colour sensors, such as `left`; one of them must be on the line."""
+    point_mm: tuple[Offset, Offset] | None = None
+    """Instead of sensors: a point of the robot, to the right and forward of the midpoint between its wheels."""
     darker_than: Percent | None = None
-    """Reflected light below which a sensor is on the line."""
+    """Reflected light below which it is on the line."""
     brighter_than: Percent | None = None
     share: Share = 0.9
 
     def __post_init__(self) -> None:
-        _check_count(self.sensors, "sensors")
+        if bool(self.sensors) == (self.point_mm is not None):
+            raise ConfigError("does not say what follows the line", "give sensors or point_mm, not both")
         if self.darker_than is None and self.brighter_than is None:
             raise ConfigError("does not describe the line", "give darker_than or brighter_than, in percent")
 
@@ -289,10 +303,6 @@ class Turn:
     reply: str = ""
     """A regular expression for a line printed before the next question; empty for none."""
 
-    def __post_init__(self) -> None:
-        for key in ("prompt", "reply"):
-            _check_regex(getattr(self, key), key)
-
 
 @dataclass(frozen=True, slots=True)
 class Dialogue:
@@ -305,6 +315,9 @@ class Dialogue:
 
     def __post_init__(self) -> None:
         _check_count(self.turns, "turns")
+        for number, turn in enumerate(self.turns, start=1):
+            _check_regex(turn.prompt, f"turns[{number}].prompt")
+            _check_regex(turn.reply, f"turns[{number}].reply")
 
 
 @dataclass(frozen=True, slots=True)
@@ -330,6 +343,16 @@ class AnyOf(Combination):
     """At least one of the goals is met."""
 
 
+@dataclass(frozen=True, slots=True)
+class Together:
+    """Several conditions of one goal, which are all met; in a file, several keys of a goal."""
+
+    KIND: ClassVar[Kind] = Kind.COMBINED
+    SHORT: ClassVar[str] = ""
+
+    conditions: tuple[Condition, ...]
+
+
 Condition: TypeAlias = (
     Reach
     | Inside
@@ -346,6 +369,7 @@ Condition: TypeAlias = (
     | Dialogue
     | AllOf
     | AnyOf
+    | Together
 )
 
 CONDITIONS: Mapping[str, type[Condition]] = {
@@ -390,4 +414,14 @@ class Goal:
     def needs(self) -> tuple[str, ...]:
         """The names of the goals that this one refers to."""
         named = [word for word in (self.before, self.after, self.until) if isinstance(word, str)]
-        return (*(self.condition.goals if isinstance(self.condition, AllOf | AnyOf) else ()), *named)
+        combined = [part for part in self.parts if isinstance(part, AllOf | AnyOf)]
+        return (*(name for part in combined for name in part.goals), *named)
+
+    @property
+    def parts(self) -> tuple[Condition, ...]:
+        """The conditions, usually one."""
+        return self.condition.conditions if isinstance(self.condition, Together) else (self.condition,)
+
+    def limits(self, kind: Kind) -> tuple[str, ...]:
+        """Return which of `before`, `after` and `until` apply to its conditions of a kind."""
+        return tuple(limit for limit in LIMITS[kind] if getattr(self, limit) is not None)

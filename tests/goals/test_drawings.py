@@ -1,0 +1,91 @@
+"""What sensors see and the pen draws: following a line, and drawings compared with pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PIL import Image, ImageDraw
+
+from tests.goals.recorded import Run, Step, ahead, drive, goals_of, turn, wait, world
+from tuisim.goals.judge import judge
+from tuisim.runs.store import RunStore
+
+BANDS = world(100, 500, background="Grey_bands")
+"""The black band is from x 1450 to 1651; the sensors are 30 mm ahead."""
+
+TO_BLACK = (ahead(1400, line=3), wait(2, line=4))
+"""8 s to x 1500 on the black band, then 2 s on it."""
+
+FOLLOWED = {
+    "sensor": ("sensors = 'left', darker_than = 50, share = 0.2", "met", ""),
+    "too short": ("sensors = 'left', darker_than = 50, share = 0.5", "missed", "left was on the line for 24"),
+    "bright": ("sensors = 'left', brighter_than = 99, share = 0.3", "met", ""),
+    "between": ("sensors = 'left', darker_than = 60, brighter_than = 40, share = 0.1", "met", ""),
+    "any of two": ("sensors = ['left', 'right'], darker_than = 50, share = 0.2", "met", ""),
+    "point": ("point_mm = [0, 30], darker_than = 50, share = 0.2", "met", ""),
+    "point too short": (
+        "point_mm = [0, 30], darker_than = 50, share = 0.9",
+        "missed",
+        "The robot was on the line for 24",
+    ),
+    "no such sensor": ("sensors = 'front', darker_than = 50", "missed", "no colour sensor front; it has: left, right"),
+}
+
+
+@pytest.mark.parametrize(("keys", "state", "reason"), FOLLOWED.values(), ids=FOLLOWED)
+def test_follow(keys: str, state: str, reason: str, home: Path, tmp_path: Path) -> None:
+    (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\nfollow = {{ {keys} }}\n")
+    run = Run(RunStore(), BANDS, "")
+    run.do(TO_BLACK)
+    (found,) = judge([goal], run.end())
+    assert found.state == state, found
+    assert reason in found.reason
+
+
+def test_follow_counts_only_after_and_until(home: Path, tmp_path: Path) -> None:
+    text = "follow = { sensors = 'left', darker_than = 50, share = 1 }\nafter = 8\nuntil = 9\n"
+    (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{text}")
+    run = Run(RunStore(), BANDS, "")
+    run.do(TO_BLACK)
+    (found,) = judge([goal], run.end())
+    assert [(change.state, change.time_s) for change in found.changes] == [("met", 9.0)]
+
+
+SQUARE = "lines_mm = [[[500, 500], [700, 500], [700, 700], [500, 700], [500, 500]]]"
+SIDES = (ahead(200, 1), turn(90, 2)) * 4
+
+DRAWN: dict[str, tuple[str, tuple[Step, ...], str, str]] = {
+    "square": (f"{SQUARE}, within_mm = 10", SIDES, "met", ""),
+    "three sides": (
+        f"{SQUARE}, within_mm = 10",
+        SIDES[:5],
+        "missed",
+        "% of the picture is drawn, not the part at x 50",
+    ),
+    "too far": (
+        f"{SQUARE}, within_mm = 10",
+        (*SIDES, drive(-360, -360, 2, line=7)),
+        "missed",
+        "% of the drawing is on the picture, it leaves it at x 489, y 500 mm at",
+    ),
+    "small share": (f"{SQUARE}, within_mm = 10, share = 0.7", SIDES[:5], "met", ""),
+    "nothing": (f"{SQUARE}, within_mm = 10", (), "missed", "of the picture is drawn"),
+    "image": ("image = 'square.png', within_mm = 10", SIDES, "met", ""),
+    "image of a part": ("image = 'part.png', within_mm = 10", SIDES, "missed", "of the drawing is on the picture"),
+    "wide tolerance": (f"{SQUARE}, within_mm = 400", SIDES[:1], "met", ""),
+}
+
+
+@pytest.mark.parametrize(("keys", "steps", "state", "reason"), DRAWN.values(), ids=DRAWN)
+def test_draw(keys: str, steps: tuple[Step, ...], state: str, reason: str, home: Path, tmp_path: Path) -> None:
+    for name, corners in (("square", (500, 443, 700, 643)), ("part", (500, 443, 600, 643))):
+        picture = Image.new("L", (2362, 1143), 255)
+        ImageDraw.Draw(picture).rectangle(corners, outline=0, width=3)
+        picture.save(tmp_path / f"{name}.png")
+    (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\ndraw = {{ {keys} }}\n")
+    run = Run(RunStore(), world(), "")
+    run.do((wait(0.1), *steps))
+    (found,) = judge([goal], run.end())
+    assert found.state == state, found
+    assert reason in found.reason
