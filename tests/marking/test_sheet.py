@@ -78,7 +78,7 @@ def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
         ["ben", "8.25", "75%", "5.25", "3", "line 2: it stopped 40 m…"],
         ["cleo", "0", "0%", "0", "0", "stuck in line 1"],
     ]
-    assert summary_of(SHEET) == "5 students, mean 4.25 of 10 points; 1 with all points on every seed"
+    assert summary_of(SHEET) == "5 students, 4 seeds: mean 4.25 of 10 points; 1 with all points for every seed"
 
 
 TAGS = {

@@ -68,7 +68,8 @@ def _how_often(row: Row) -> list[str]:
 def _goal(column: Column, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
     is_met = bool(runs) and cell.met == runs
     mark = "met" if is_met else "missed" if not cell.met else "met in part"
-    found = [_wrapped(f"[{mark}] {column.say} ({in_words(cell.points)} of {in_words(column.points)})")]
+    points = f" ({in_words(cell.points)} of {in_words(column.points)})" if column.points else ""
+    found = [_wrapped(f"[{mark}] {column.say}{points}")]
     if is_met:
         return found
     if cell.met:

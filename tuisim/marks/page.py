@@ -15,7 +15,7 @@ body { max-width: 90rem; }
 .met { background: #1f8a4c2e; }
 .part { background: #c98a0033; }
 .missed { background: #c0392b2b; }
-td.number, th.number { padding-left: .7rem; }
+td.number, th.number, td:last-child, th:last-child { padding-left: .7rem; }
 tbody tr:hover { background: var(--area); }
 details pre { margin: .3rem 0; }
 code { font: .85rem ui-monospace, monospace; }
@@ -34,10 +34,9 @@ def page_of(sheet: Sheet, links: Links = MappingProxyType({}), ignored: Sequence
     """
     title = f"Marks: {sheet.title}" if sheet.title else "Marks"
     goals = [[one.name, one.say, in_words(one.points)] for one in sheet.columns]
-    seeds = "1 seed" if len(sheet.seeds) == 1 else f"{len(sheet.seeds)} seeds"
     notes = paragraph(f"Not marked, because they are no Python programs: {', '.join(ignored)}", soft=True)
     body = [
-        f"{_STYLE}\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(f'{summary_of(sheet)}, {seeds}')}\n</header>",
+        f"{_STYLE}\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(summary_of(sheet))}\n</header>",
         section("Students", _students(sheet, links), notes if ignored else ""),
         section("Goals", table(("goal", "", "points"), goals, numbers=2)),
     ]
@@ -86,7 +85,7 @@ def _reason(row: Row, links: Links) -> str:
     elsewhere = [(one.seed, links[row.name, one.seed]) for one in row.outcomes if (row.name, one.seed) in links]
     if elsewhere:
         shown = ", ".join(f'<a href="{quote(path)}">{seed}</a>' for seed, path in elsewhere)
-        found.append(f'<div class="soft">runs with seed {shown}</div>')
+        found.append(f'<div class="soft">reports of runs by seed: {shown}</div>')
     if row.stopped_early:
         found.append('<div class="soft">not run with further seeds</div>')
     if row.error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import shutil
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from tuisim.charts.files import write_whole
 from tuisim.errors import ExportError, LogError
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.sheet import Sheet
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 MOST_OUTPUT_BYTES = 4 << 20
@@ -25,9 +27,10 @@ def folder_of(page: Path) -> Path:
 
 
 def write_reports(sheet: Sheet, page: Path) -> Iterator[tuple[str, int, str]]:
-    """Write the report of each kept run; yield student, seed and path relative to the page.
+    """Write the reports of kept runs; yield student, seed and path relative to the page.
 
-    Runs that were removed from the store are left out. Reports of an earlier page of this name are replaced.
+    Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
+    Reports of an earlier page of this name are replaced.
 
     Raises:
         ExportError: a report cannot be written.
@@ -35,25 +38,40 @@ def write_reports(sheet: Sheet, page: Path) -> Iterator[tuple[str, int, str]]:
     folder, store = folder_of(page), RunStore()
     shutil.rmtree(folder, ignore_errors=True)
     for stem, row in zip(file_stems(one.name for one in sheet.rows), sheet.rows, strict=True):
+        written: dict[str, str] = {}
         for outcome in row.outcomes:
-            content = outcome.run_id and _report(store, outcome.run_id, f"{row.name}, seed {outcome.seed}")
-            if not content:
+            run = _stored(store, outcome.run_id) if outcome.run_id else None
+            if run is None:
                 continue
-            try:
-                os.makedirs(folder, exist_ok=True)
-            except OSError as error:
-                raise ExportError(f"cannot write to {folder}: {error.strerror or error}") from error
-            path = folder / f"{stem}-seed-{outcome.seed}.html"
-            write_whole(path, content.encode())
-            yield row.name, outcome.seed, f"{folder.name}/{path.name}"
+            recorded = _digest(run)
+            if recorded not in written:
+                name = f"{stem}-seed-{outcome.seed}.html"
+                *_, opened = opening(LogRequest(runs=(run.id,)))
+                _write(folder / name, report_of(opened, title=f"{row.name}, seed {outcome.seed}"))
+                written[recorded] = f"{folder.name}/{name}"
+            yield row.name, outcome.seed, written[recorded]
 
 
-def _report(store: RunStore, run_id: str, title: str) -> str:
-    """Return the report of a run; empty if there is none."""
+def _write(path: Path, content: str) -> None:
     try:
-        if store.load_run(run_id).output.length > MOST_OUTPUT_BYTES:
-            return ""
-        *_, opened = opening(LogRequest(runs=(run_id,)))
-        return report_of(opened, title=title)
+        os.makedirs(path.parent, exist_ok=True)
+    except OSError as error:
+        raise ExportError(f"cannot write to {path.parent}: {error.strerror or error}") from error
+    write_whole(path, content.encode())
+
+
+def _stored(store: RunStore, run_id: str) -> StoredRun | None:
+    """Return a run; None if it no longer exists, or is too large for a report."""
+    try:
+        run = store.load_run(run_id)
+        return run if run.output.length <= MOST_OUTPUT_BYTES else None
     except LogError:
-        return ""
+        return None
+
+
+def _digest(run: StoredRun) -> str:
+    """Return a hash of what a run recorded, hexadecimal."""
+    found = hashlib.sha256(run.telemetry.array().tobytes())
+    for stream, text in run.output.raw_rows():
+        found.update(b"%d %d " % (stream, len(text)) + text)
+    return found.hexdigest()

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from tuisim.errors import printable
+from tuisim.errors import counted, printable
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.students import Student
 from tuisim.source import source_lines
@@ -113,14 +113,14 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
     totals = [_points(columns, one) for one in ordered]
     full = sum(math.isclose(total, most) for total in totals)
     failed = next((one for one, total in zip(ordered, totals, strict=True) if not math.isclose(total, most)), None)
-    reason, line = _reason(failed) if failed else ("", 0)
+    reason, line = _reason(failed, columns) if failed else ("", 0)
     lines = source_lines(student.text)
     return Row(
         name=student.name,
         program=student.main,
         points=_rounded(math.fsum(totals) / len(totals)),
         robustness=_rounded(full / len(totals)),
-        cells=tuple(_cell(column, at, ordered) for at, column in enumerate(columns)),
+        cells=tuple(_cell(column, ordered) for column in columns),
         reason=reason,
         line=line,
         source_line=printable(lines[line - 1].strip()) if 0 < line <= len(lines) else "",
@@ -134,12 +134,12 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
 
 def _points(columns: Sequence[Column], outcome: Outcome) -> float:
     """Return the points of one run; a program that could not be started has no judgements, and no points."""
-    pairs = zip(columns, outcome.goals, strict=False)
-    return math.fsum(column.points for column, goal in pairs if goal.met)
+    met = {goal.name for goal in outcome.goals if goal.met}
+    return math.fsum(column.points for column in columns if column.name in met)
 
 
-def _cell(column: Column, at: int, outcomes: Sequence[Outcome]) -> Cell:
-    goals = [(one.seed, one.goals[at] if one.goals else None) for one in outcomes]
+def _cell(column: Column, outcomes: Sequence[Outcome]) -> Cell:
+    goals = [(one.seed, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
     met = sum(goal is not None and goal.met for _, goal in goals)
     points = _rounded(column.points * met / len(goals))
     for seed, goal in goals:
@@ -150,11 +150,12 @@ def _cell(column: Column, at: int, outcomes: Sequence[Outcome]) -> Cell:
     return Cell(points, met)
 
 
-def _reason(outcome: Outcome) -> tuple[str, int]:
+def _reason(outcome: Outcome, columns: Sequence[Column]) -> tuple[str, int]:
     """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
     if outcome.failure:
         return outcome.failure, outcome.line
-    missed = [goal for goal in outcome.goals if not goal.met]
+    names = [column.name for column in columns if column.points]
+    missed = [goal for goal in outcome.goals if not goal.met and goal.name in names]
     return (missed[0].reason, missed[0].line) if missed else ("", 0)
 
 
@@ -189,6 +190,6 @@ def summary_of(sheet: Sheet) -> str:
     """Return one sentence about the class."""
     full = sum(row.robustness == 1 for row in sheet.rows)
     mean = math.fsum(row.points for row in sheet.rows) / len(sheet.rows) if sheet.rows else 0.0
-    students = "1 student" if len(sheet.rows) == 1 else f"{len(sheet.rows)} students"
-    points = f"{in_words(mean)} of {in_words(sheet.most_points)} points"
-    return f"{students}, mean {points}; {full} with all points on every seed"
+    size = f"{counted(len(sheet.rows), 'student')}, {counted(len(sheet.seeds), 'seed')}"
+    points = f"mean {in_words(mean)} of {in_words(sheet.most_points)} points"
+    return f"{size}: {points}; {full} with all points" + (" for every seed" if len(sheet.seeds) > 1 else "")
