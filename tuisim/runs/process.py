@@ -10,14 +10,17 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
 import msgspec
 
 from tuisim.atomic import private
 from tuisim.errors import HostError
 from tuisim.protocol import EVENTS, Message
+from tuisim.runs.warm import ChildProcess, WarmProcess
 from tuisim.source import source_lines
 
 PATIENCE_S = 0.2
@@ -39,8 +42,25 @@ MOST_SHOWN = 500
 """Stacks contain at most this many characters of a file name."""
 
 
-def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[bytes], int, int, int]:
+class _Starts:
+    """What this process has started: the warm process, and how many children."""
+
+    warm: WarmProcess | None = None
+    count = 0
+
+
+def warm_up() -> None:
+    """Start the warm process, from which all later children are forked, unless it is running. Does not block."""
+    if _Starts.warm is None or not _Starts.warm.is_usable:
+        # If it cannot be started, each child is started by itself.
+        with suppress(OSError):
+            _Starts.warm = WarmProcess(_command(), _environment())
+
+
+def start_child(folder: Path, working_directory: str) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run of a folder.
+
+    The first child of this process is started by itself; with the second comes the warm process.
 
     Args:
         folder: The run folder.
@@ -50,29 +70,52 @@ def start_child(folder: Path, working_directory: str) -> tuple[subprocess.Popen[
         The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
         whose end it dies.
     """
+    _Starts.count += 1
+    if _Starts.count > 1:
+        warm_up()
     command_read, command_fd = os.pipe()
     event_fd, event_write = os.pipe()
     lifeline_read, lifeline_fd = os.pipe()
-    package_folder = str(Path(__file__).parent.parent.parent)
     inherited = (command_read, event_write, lifeline_read)
     try:
         with open(folder / "child.log", "wb", opener=private) as log:
-            process = subprocess.Popen(
-                [sys.executable, "-s", "-P", "-c", BOOT, package_folder, str(folder), *map(str, inherited)],
-                pass_fds=inherited,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=log,
-                env=_environment(),
-                cwd=working_directory if os.path.isdir(working_directory) else None,
-                start_new_session=True,
-            )
+            cwd = working_directory if os.path.isdir(working_directory) else None
+            process = _fork(folder, cwd, log.fileno(), inherited) or _spawn(folder, cwd, log, inherited)
     finally:
         for fd in inherited:
             os.close(fd)
     os.set_blocking(event_fd, False)
     os.set_blocking(command_fd, False)
     return process, command_fd, event_fd, lifeline_fd
+
+
+def _command() -> list[str]:
+    """Return the command of a child without its arguments."""
+    return [sys.executable, "-s", "-P", "-c", BOOT, str(Path(__file__).parent.parent.parent)]
+
+
+def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int]) -> ChildProcess | None:
+    """Fork a child from the warm process; return None if there is none, or it cannot."""
+    if _Starts.warm is None or not _Starts.warm.is_usable:
+        return None
+    try:
+        return _Starts.warm.fork(str(folder), cwd or os.getcwd(), _environment(), [log_fd, *inherited])
+    except OSError:
+        _Starts.warm = None
+        return None
+
+
+def _spawn(folder: Path, cwd: str | None, log: IO[bytes], inherited: Sequence[int]) -> ChildProcess:
+    return subprocess.Popen(
+        [*_command(), str(folder), *map(str, inherited)],
+        pass_fds=inherited,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=log,
+        env=_environment(),
+        cwd=cwd,
+        start_new_session=True,
+    )
 
 
 def mark(pid: int) -> int:

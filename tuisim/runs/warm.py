@@ -1,0 +1,160 @@
+"""Host side of the warm process, which forks the children of runs: importing the runtime costs more than most runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from typing import Protocol
+
+_NUMBER_BYTES = 8
+_LENGTH_BYTES = 4
+
+
+class ChildProcess(Protocol):
+    """What a run needs of its process; `subprocess.Popen` has it, too."""
+
+    pid: int
+    returncode: int | None
+
+    def poll(self) -> int | None:
+        """Return the exit status, negative for a signal; None while it runs."""
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Block until it has ended; raises subprocess.TimeoutExpired."""
+
+    def send_signal(self, number: int, /) -> None:
+        """Send a signal, unless it has ended."""
+
+
+class ForkedChild:
+    """A child of the warm process.
+
+    Args:
+        pid: Its process id.
+        status_fd: Where the warm process reports its end.
+    """
+
+    def __init__(self, pid: int, status_fd: int) -> None:
+        self.pid = pid
+        self.returncode: int | None = None
+        self._status_fd = status_fd
+        self._lock = threading.Lock()
+
+    def poll(self) -> int | None:
+        """Return the exit status, negative for a signal; None while it runs."""
+        with self._lock:
+            if self.returncode is None and select.select([self._status_fd], [], [], 0)[0]:
+                data = os.read(self._status_fd, _NUMBER_BYTES)
+                os.close(self._status_fd)
+                if len(data) == _NUMBER_BYTES:
+                    self.returncode = int.from_bytes(data, sys.byteorder, signed=True)
+                else:
+                    # The warm process has ended, and nobody will know how its children do.
+                    with suppress(OSError):
+                        os.killpg(self.pid, signal.SIGKILL)
+                    self.returncode = -signal.SIGKILL
+        return self.returncode
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Block until it has ended.
+
+        Raises:
+            subprocess.TimeoutExpired: it is still running after `timeout` seconds.
+        """
+        give_up = None if timeout is None else time.monotonic() + timeout
+        while self.poll() is None:
+            left_s = None if give_up is None else max(give_up - time.monotonic(), 0.0)
+            with suppress(OSError, ValueError):
+                # Another thread may close it.
+                if not select.select([self._status_fd], [], [], left_s)[0]:
+                    raise subprocess.TimeoutExpired("child of the warm process", timeout or 0.0)
+        assert self.returncode is not None
+        return self.returncode
+
+    def send_signal(self, number: int, /) -> None:
+        """Send a signal, unless it has ended."""
+        if self.poll() is None:
+            with suppress(ProcessLookupError):
+                os.kill(self.pid, number)
+
+
+class WarmProcess:
+    """A process that has imported the runtime. It is started with the first child, and ends with this process.
+
+    Args:
+        command: Command of a child without its arguments.
+        environment: Its environment.
+    """
+
+    def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
+        self._lock = threading.Lock()
+        self._pid = os.getpid()
+        mine, theirs = socket.socketpair()
+        with theirs:
+            self._process = subprocess.Popen(
+                [*command, "--warm", str(theirs.fileno())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env=environment,
+                cwd="/",
+                start_new_session=True,
+            )
+        self._socket = mine
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether it runs, and was started by this process, not by one that has forked this one."""
+        return self._pid == os.getpid() and self._process.poll() is None
+
+    def fork(
+        self, folder: str, working_directory: str, environment: Mapping[str, str], files: Sequence[int]
+    ) -> ForkedChild:
+        """Fork a child. Blocks until it exists, about a millisecond; the first time until the imports are done.
+
+        Args:
+            folder: The run folder.
+            working_directory: Its initial working directory.
+            environment: Its environment variables.
+            files: Descriptors: its error output; its commands, events and lifeline.
+
+        Raises:
+            OSError: it cannot be forked, or the warm process has ended.
+        """
+        request = {"folder": folder, "working_directory": working_directory, "environment": dict(environment)}
+        data = json.dumps(request).encode()
+        status_fd, theirs = os.pipe()
+        try:
+            with open(os.devnull, "r+b", buffering=0) as null, self._lock:
+                message = len(data).to_bytes(_LENGTH_BYTES, "little") + data
+                sent = socket.send_fds(self._socket, [message], [theirs, null.fileno(), *files])
+                self._socket.sendall(message[sent:])
+                os.close(theirs)
+                theirs = -1
+                answer = os.read(status_fd, _NUMBER_BYTES)
+        except OSError:
+            os.close(status_fd)
+            raise
+        finally:
+            if theirs >= 0:
+                os.close(theirs)
+        pid = int.from_bytes(answer, sys.byteorder, signed=True) if answer else 0
+        if pid <= 0:
+            os.close(status_fd)
+            raise OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the warm process has ended")
+        return ForkedChild(pid, status_fd)
+
+    def close(self) -> None:
+        """End it; its children go on."""
+        self._socket.close()
+        self._process.wait()

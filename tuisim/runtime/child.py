@@ -1,0 +1,180 @@
+"""The child process of a run: its parts, and how they are connected."""
+
+from __future__ import annotations
+
+from tuisim.runtime import wallclock  # isort: skip - must come first: it saves the real clock
+from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - imported for its effect
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from tuisim import protocol
+from tuisim.config.mat_cache import open_field
+from tuisim.core.profile import NS_PER_S
+from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
+from tuisim.runs.brick_state import motors_row
+from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
+from tuisim.runs.side_files import hold
+from tuisim.runtime.channel import Channel
+from tuisim.runtime.clock import (
+    finish_pandas,
+    finish_resource,
+    loop_hook,
+    patch_datetime,
+    patch_process_times,
+    patch_time,
+)
+from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
+from tuisim.runtime.file_waits import FileWaits
+from tuisim.runtime.interrupts import Interrupts, die_with_host
+from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
+from tuisim.runtime.output import Output
+from tuisim.runtime.randomness import finish_random, finish_uuid, patch_urandom
+from tuisim.runtime.replacement import replace
+from tuisim.runtime.run_config import RunConfig, read_config
+from tuisim.runtime.session import Limits, Session
+from tuisim.runtime.stack import finish_inspect, finish_traceback
+from tuisim.runtime.tracebacks import own_files, remember_source
+
+if TYPE_CHECKING:
+    from tuisim.runtime.debugger.debugger import Debugger
+    from tuisim.runtime.program import ProgramRunner
+    from tuisim.runtime.scheduler import Scheduler
+
+LOOP_TURNS = 500
+LOOP_COST_NS = 5_000_000
+"""Cost of `LOOP_TURNS` loop iterations in which no time passed."""
+
+
+def main(arguments: list[str]) -> NoReturn:
+    """Run what a folder describes, then end the process.
+
+    Args:
+        arguments: The run folder; descriptors of the commands, the events and the lifeline.
+    """
+    folder = Path(arguments[0])
+    command_fd, event_fd, lifeline_fd = map(int, arguments[1:4])
+    die_with_host(lifeline_fd)
+    channel = Channel(command_fd, event_fd)
+    try:
+        hold(folder)
+        child = Child(folder, read_config(folder), channel)
+    except OSError as error:
+        if not is_full(error):
+            raise
+        for name in (TELEMETRY_FILE, OUTPUT_FILE):
+            (folder / name).unlink(missing_ok=True)
+        channel.send(protocol.Ended(protocol.End.DISK_FULL, 0, 0, 1, _no_room(error)))
+        wallclock.exit_process(0)
+    child.run()
+
+
+def _no_room(error: OSError) -> str:
+    return f"the recording cannot grow: {error.strerror}"
+
+
+class Child:
+    """One run with all its parts.
+
+    Args:
+        folder: Run folder.
+        config: The run.
+        channel: Pipes to the host.
+    """
+
+    def __init__(self, folder: Path, config: RunConfig, channel: Channel) -> None:
+        self._folder, self._config, self._channel = folder, config, channel
+        self._pid = wallclock.getpid()
+        self._telemetry = TelemetryWriter(folder)
+        self._sim = simulation_of(config.spec, self._telemetry)
+        writer = OutputWriter(folder)
+        self._output = Output(writer)
+        steering = RunControl(channel, folder, config.live, config.speed, config.start_paused, config.actions)
+        limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
+        file = config.path or config.name
+        self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)
+        session = self._session
+        session.replies = config.replies
+        self._telemetry.full = writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))
+        self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
+        self._output.after_write = self._after_write
+        if isinstance(self._sim, FurtherMotors):
+            self._sim.on_turns = self._write_turns
+
+    def _write_turns(self, turns: tuple[Turn, ...]) -> None:
+        sim = self._sim
+        # Not at the session's time: in a paced run it advances in smaller steps.
+        self._output.row_at(motors_row(turns), Stream.MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
+
+    def _after_write(self) -> None:
+        if self._session.flags & (ATTENTION | STOPPING):
+            self._session.checkpoint()
+
+    def run(self) -> NoReturn:
+        """Run the program and end the process."""
+        # Imported here: threads must be patched before anything else imports `threading`.
+        from tuisim.runtime.alarm import patch_alarm
+        from tuisim.runtime.program import Outcome, ProgramRunner
+        from tuisim.runtime.scheduler import Scheduler
+        from tuisim.runtime.threads import patch_threads
+        from tuisim.shim.install import install
+
+        session = self._session
+        turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
+        interrupts = Interrupts(session, frozenset({turn.__code__}))
+        scheduler = Scheduler(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
+        patch_time(session)
+        patch_datetime(session, self._config.own_folder)
+        patch_process_times(session)
+        patch_urandom(self._config.spec.seed)
+        waits = FileWaits(session)
+        waits.patch_select()
+        refuse_processes()
+        patch_threads(scheduler)
+        patch_alarm(session, scheduler)
+        wallclock.stack_size(STACK_BYTES)
+        limit_memory()
+        install(
+            session,
+            {
+                "pandas": lambda module: finish_pandas(session, module),
+                "random": lambda module: finish_random(self._config.spec.seed, module),
+                "linecache": lambda _module: remember_source(session.program_file, self._config.text),
+                "traceback": finish_traceback,
+                "inspect": finish_inspect,
+                "resource": lambda module: finish_resource(session, module),
+                "selectors": waits.finish_selectors,
+                "socket": waits.finish_socket,
+                "uuid": lambda module: finish_uuid(self._config.spec.seed, module),
+            },
+            replace,
+            own_files(session.program_file),
+        )
+
+        def leave(outcome: Outcome) -> NoReturn:
+            interrupts.remove()
+            self._end(outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line)
+
+        runner = ProgramRunner(self._config, session, self._output, scheduler, turn, leave)
+        session.make_debugger = lambda: _debugger(session, scheduler, runner)
+        interrupts.install(self._folder)
+        self._channel.send(protocol.Started(protocol.PROTOCOL_VERSION, os.getpid()))
+        leave(runner.run())
+
+    def _end(self, end: protocol.End, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
+        if wallclock.getpid() != self._pid:
+            # A copy that the program has forked at a lower level: only the original records and reports.
+            wallclock.exit_process(0)
+        self._telemetry.close()
+        self._output.close()
+        self._channel.send(
+            protocol.Ended(end, self._sim.tick, self._session.now, exit_code, summary, error, error_line)
+        )
+        wallclock.exit_process(0)
+
+
+def _debugger(session: Session, scheduler: Scheduler, runner: ProgramRunner) -> Debugger:
+    from tuisim.runtime.debugger.debugger import Debugger
+
+    return Debugger(session, scheduler, runner.names, runner.prepared, runner.code)

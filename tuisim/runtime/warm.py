@@ -1,0 +1,173 @@
+"""The warm process: it has imported what a child imports, and forks one child for each request of its host.
+
+A request is a line of JSON with the files of the child attached; `tuisim.runs.warm` sends it. A forked child runs the
+same code as any other child, in a session of its own, and has only the files that it was given.
+"""
+
+from __future__ import annotations
+
+from tuisim.runtime import wallclock  # isort: skip - must come first: it saves the real clock
+
+import errno
+import gc
+import json
+import os
+import select
+import signal
+import sys
+from importlib import import_module
+from typing import Any
+
+LENGTH_BYTES = 4
+"""Each request begins with its length."""
+MOST_FILES = 8
+_READ_BYTES = 1 << 16
+_NEEDED_LATER = (
+    "tuisim.runtime.alarm", "tuisim.runtime.program", "tuisim.runtime.scheduler", "tuisim.runtime.threads",
+    "tuisim.shim.install",
+)  # fmt: skip
+"""What a child imports after it has begun."""
+_ONLY_HERE = ("_socket", "tuisim.runtime.warm")
+"""Modules that other children have not imported."""
+
+
+def serve(socket_fd: int) -> None:
+    """Fork a child for each request until the host closes the socket; return in each child.
+
+    Args:
+        socket_fd: The socket to the host.
+    """
+    for name in _NEEDED_LATER:
+        import_module(name)
+    gc.freeze()
+    server = WarmProcess(socket_fd)
+    while not server.next_child():
+        pass
+    for name in _ONLY_HERE:
+        sys.modules.pop(name, None)
+
+
+class WarmProcess:
+    """Answers requests, and reports how children end.
+
+    Args:
+        socket_fd: The socket to the host.
+    """
+
+    def __init__(self, socket_fd: int) -> None:
+        self._socket: Any = import_module("_socket").socket(fileno=socket_fd)
+        self._ended, self._wake = os.pipe()
+        for fd in (self._ended, self._wake):
+            os.set_blocking(fd, False)
+        signal.set_wakeup_fd(self._wake)
+        # Any handler makes the signal arrive at the pipe.
+        signal.signal(signal.SIGCHLD, lambda *_: None)
+        self._status_fds: dict[int, int] = {}
+        """Where to report the end of each child, by process id."""
+
+    def next_child(self) -> bool:
+        """Wait for a request or the end of a child; return True in a newly forked child."""
+        ready = select.select([self._socket, self._ended], [], [])[0]
+        if self._ended in ready:
+            os.read(self._ended, _READ_BYTES)
+            self._report_ended()
+        return self._socket in ready and self._fork(*self._receive())
+
+    def _receive(self) -> tuple[dict[str, Any], list[int]]:
+        size = self._socket_buffer_of(MOST_FILES)
+        data, attached, _flags, _address = self._socket.recvmsg(_READ_BYTES, size)
+        files = [
+            int.from_bytes(part[at : at + 4], sys.byteorder)
+            for _level, _kind, part in attached
+            for at in range(0, len(part) - len(part) % 4, 4)
+        ]
+        while data and len(data) < LENGTH_BYTES + int.from_bytes(data[:LENGTH_BYTES], "little"):
+            more = self._socket.recv(_READ_BYTES)
+            data = data + more if more else b""
+        if not data:
+            # The host has ended; children are ended by their lifelines.
+            wallclock.exit_process(0)
+        return json.loads(data[LENGTH_BYTES:]), files
+
+    @staticmethod
+    def _socket_buffer_of(files: int) -> int:
+        size: int = import_module("_socket").CMSG_SPACE(files * 4)
+        return size
+
+    def _fork(self, request: dict[str, Any], files: list[int]) -> bool:
+        status_fd, *given = files
+        try:
+            _assert_one_thread()
+            pid = wallclock.fork()
+        except OSError as error:
+            _report(status_fd, -(error.errno or errno.EAGAIN))
+            os.close(status_fd)
+        else:
+            if not pid:
+                self._become_child(request, given, status_fd)
+                return True
+            _report(status_fd, pid)
+            self._status_fds[pid] = status_fd
+        for fd in given:
+            os.close(fd)
+        return False
+
+    def _report_ended(self) -> None:
+        while self._status_fds:
+            try:
+                pid, status = os.waitpid(-1, os.WNOHANG)
+            except ChildProcessError:
+                return
+            if not pid:
+                return
+            status_fd = self._status_fds.pop(pid)
+            _report(status_fd, os.waitstatus_to_exitcode(status))
+            os.close(status_fd)
+
+    def _become_child(self, request: dict[str, Any], given: list[int], status_fd: int) -> None:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        os.setsid()
+        self._socket.close()
+        for fd in (self._ended, self._wake, status_fd, *self._status_fds.values()):
+            os.close(fd)
+        null, log, *channel = given
+        for fd, file in ((0, null), (1, null), (2, log)):
+            os.dup2(file, fd)
+        for fd in {null, log} - {0, 1, 2}:
+            os.close(fd)
+        _set_surroundings(request, channel)
+
+
+def _report(status_fd: int, number: int) -> None:
+    try:
+        os.write(status_fd, number.to_bytes(8, sys.byteorder, signed=True))
+    except OSError:
+        # The host has given up this child, or has ended.
+        return
+
+
+def _assert_one_thread() -> None:
+    try:
+        count = len(os.listdir("/proc/self/task"))
+    except OSError:
+        # No such file system.
+        return
+    assert count == 1, f"{count} threads"
+
+
+def _set_surroundings(request: dict[str, Any], channel: list[int]) -> None:
+    """Set what a child that was started by itself gets from its host."""
+    arguments = [request["folder"], *map(str, channel)]
+    sys.argv[:] = [sys.argv[0], *arguments]
+    at = sys.orig_argv.index("--warm")
+    sys.orig_argv[at:] = arguments
+    if os.environ != request["environment"]:
+        os.environ.clear()
+        os.environ.update(request["environment"])
+    try:
+        os.chdir(request["working_directory"])
+    except OSError:
+        # As for a process that is started there: it no longer exists.
+        pass
+    wallclock.start_folder = wallclock._start_folder()
