@@ -9,12 +9,10 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from tests.forkserver import ForkServer
 from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.atomic import make_private_folder
 from tuisim.cli import run_command
@@ -61,13 +59,10 @@ def _own_home(tmp_path_factory: pytest.TempPathFactory) -> object:
 
 @pytest.fixture(scope="session", autouse=True)
 def _forked_children() -> Iterator[None]:
-    """Fork the children of runs, where that is possible: to import the runtime costs more than most runs."""
-    patch, server = pytest.MonkeyPatch(), ForkServer()
-    if sys.platform == "linux":
-        patch.setattr(process, "subprocess", SimpleNamespace(Popen=server.child, DEVNULL=subprocess.DEVNULL))
+    """Fork the children of all runs from the warm process, also the first."""
+    process.warm_up()
     yield
-    patch.undo()
-    server.close()
+    process.cool_down()
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -104,8 +99,8 @@ def real_mats(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def real_start(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Start the children of runs as users do."""
-    monkeypatch.setattr(process, "subprocess", subprocess)
+    """Start each child by itself, as the first one of a process is started."""
+    monkeypatch.setattr(process, "_fork", lambda *_: None)
 
 
 @pytest.fixture

@@ -223,9 +223,8 @@ class RunHandle:
         if self._stack_asked:
             summary = f"stuck in line {line}: no simulated time passed" if line else "stuck: no simulated time passed"
             return Ended(End.STALLED, tick, time_ns, 1, summary, error_line=line)
-        return Ended(
-            End.CRASHED, tick, time_ns, 1, what_ended(self._process.returncode, self.folder, line), error_line=line
-        )
+        status = self._process.wait()
+        return Ended(End.CRASHED, tick, time_ns, 1, what_ended(status, self.folder, line), error_line=line)
 
     def _finish(self, final: Ended) -> None:
         self.ended = final

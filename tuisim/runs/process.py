@@ -57,6 +57,13 @@ def warm_up() -> None:
             _Starts.warm = WarmProcess(_command(), _environment())
 
 
+def cool_down() -> None:
+    """End the warm process; its children go on."""
+    if _Starts.warm is not None:
+        _Starts.warm.close()
+    _Starts.warm = None
+
+
 def start_child(folder: Path, working_directory: str) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run of a folder.
 
@@ -99,7 +106,12 @@ def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int]) 
     if _Starts.warm is None or not _Starts.warm.is_usable:
         return None
     try:
-        return _Starts.warm.fork(str(folder), cwd or os.getcwd(), _environment(), [log_fd, *inherited])
+        here = cwd or os.getcwd()
+    except OSError:
+        # The working directory no longer exists; only a process that is started there can be in it.
+        return None
+    try:
+        return _Starts.warm.fork(str(folder), here, _environment(), [log_fd, *inherited])
     except OSError:
         _Starts.warm = None
         return None

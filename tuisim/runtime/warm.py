@@ -15,6 +15,7 @@ import os
 import select
 import signal
 import sys
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
@@ -165,9 +166,6 @@ def _set_surroundings(request: dict[str, Any], channel: list[int]) -> None:
     if os.environ != request["environment"]:
         os.environ.clear()
         os.environ.update(request["environment"])
-    try:
+    with suppress(OSError):
         os.chdir(request["working_directory"])
-    except OSError:
-        # As for a process that is started there: it no longer exists.
-        pass
     wallclock.start_folder = wallclock._start_folder()
