@@ -41,6 +41,7 @@ from tuisim.config.options import DEFAULT_FPS, Settings
 from tuisim.core.spec import RunSpec
 from tuisim.errors import TuisimError
 from tuisim.protocol import End, Ended
+from tuisim.runs.process import warm_up
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
@@ -55,6 +56,8 @@ AFTER_FIRST_PAINT_S = 0.05
 _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
 """Seconds between two polls of the run while nothing happens."""
+_WARM_UP_AFTER_S = 0.3
+"""Seconds until the warm process is started, from which runs are forked: the first paint needs the processor."""
 _AWAKE_S = 1.0
 """Seconds to keep polling at frame rate after something has happened."""
 
@@ -165,6 +168,7 @@ class LabApp(PanelMessages):
         self._frame_timer = self.set_interval(1 / self.settings.fps, self._on_frame_timer)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
+        self.set_timer(_WARM_UP_AFTER_S, warm_up)
 
     def check_files(self) -> None:
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""

@@ -11,9 +11,11 @@ import select
 import signal
 import subprocess
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
 from tuisim.breakpoints import parse_breakpoints
 from tuisim.config.mat_cache import FieldFiles
@@ -49,7 +51,7 @@ from tuisim.runs.process import (
 )
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.side_files import copy_modules
-from tuisim.runs.store import RunStore
+from tuisim.runs.store import NewRun, RunStore
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
@@ -102,11 +104,30 @@ def program_again(run: StoredRun | RunHandle) -> Program:
     return replace(run.program, modules_from=run.folder)
 
 
+class RunFolders(Protocol):
+    """Where a handle stores its run: a `RunStore`, or a `TemporaryRun`."""
+
+    def new_run(
+        self,
+        program: Program,
+        spec: RunSpec,
+        field: Mapping[str, Any] | None = None,
+        options: Mapping[str, Any] | None = None,
+        live: bool = False,
+    ) -> NewRun: ...
+
+    def finish(self, run_id: str, end: Ended, /) -> None: ...
+
+    def forget(self, run_id: str, /) -> None: ...
+
+    def load_run(self, run: Path, /) -> StoredRun: ...
+
+
 class RunHandle:
     """One run: its child process, pipes and recording. Create it with `start_run`."""
 
     def __init__(
-        self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunStore
+        self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunFolders
     ) -> None:
         self.program, self.spec, self.field = program, spec, field
         self._options, self._store = options, store

@@ -52,6 +52,7 @@ class _Starts:
 def warm_up() -> None:
     """Start the warm process, from which all later children are forked, unless it is running. Does not block."""
     if _Starts.warm is None or not _Starts.warm.is_usable:
+        cool_down()
         # If it cannot be started, each child is started by itself.
         with suppress(OSError):
             _Starts.warm = WarmProcess(_command(), _environment())
@@ -113,7 +114,7 @@ def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int]) 
     try:
         return _Starts.warm.fork(str(folder), here, _environment(), [log_fd, *inherited])
     except OSError:
-        _Starts.warm = None
+        cool_down()
         return None
 
 

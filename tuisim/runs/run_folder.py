@@ -15,7 +15,7 @@ from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
-from tuisim.core.spec import NoiseSpec, RunSpec, from_plain
+from tuisim.core.spec import NoiseSpec, RunSpec, from_plain, to_plain
 from tuisim.errors import ConfigError, LogError, TuisimError
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.runs.side_files import is_held, read_actions
@@ -24,6 +24,10 @@ from tuisim.source import Program
 
 RUN_FILE = "run.json"
 RUN_FORMAT = 1
+_PROGRAM_KEYS = (
+    "name", "path", "text", "sha256", "prelude", "arguments", "python_path", "working_directory", "module_folder",
+)  # fmt: skip
+"""What `run.json` holds of the program, in this order."""
 
 _START_GRACE_S = 10.0
 """Time after the creation of its folder during which a run may have no process."""
@@ -102,6 +106,32 @@ def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -
         if isinstance(action.command, SetNoise):
             return NoiseSpec(int(action.command.light), int(action.command.motor))
     return spec.world.noise
+
+
+def new_run_data(
+    run_id: str,
+    number: int,
+    created: str,
+    program: Program,
+    spec: RunSpec,
+    field: Mapping[str, Any] | None,
+    options: Mapping[str, Any] | None,
+    live: bool,
+) -> dict[str, Any]:
+    """Return the contents of the `run.json` of a run that is about to start."""
+    return {
+        "format": RUN_FORMAT,
+        "id": run_id,
+        "number": number,
+        "created": created,
+        "live": live,
+        "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
+        "spec": to_plain(spec),
+        "field": None if field is None else dict(field),
+        "options": dict(options or {}),
+        "tags": [],
+        "end": None,
+    }
 
 
 def run_document(data: Mapping[str, Any]) -> bytes:

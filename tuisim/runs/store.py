@@ -23,15 +23,15 @@ from typing import Any
 from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
 from tuisim.core.profile import NS_PER_S, due_ns
-from tuisim.core.spec import RunSpec, to_plain
+from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, Ended, Unended
 from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
 from tuisim.runs.packed_files import compact
 from tuisim.runs.run_folder import (
     RUN_FILE,
-    RUN_FORMAT,
     StoredRun,
+    new_run_data,
     read_run,
     read_run_file,
     state_without_end,
@@ -44,10 +44,6 @@ from tuisim.source import Program
 
 RUNS_FOLDER = "runs"
 LAST = "last"
-_PROGRAM_KEYS = (
-    "name", "path", "text", "sha256", "prelude", "arguments", "python_path", "working_directory", "module_folder",
-)  # fmt: skip
-"""What `run.json` holds of the program, in this order."""
 _COUNT_AT_ONCE_BYTES = 1 << 20
 """Longer outputs are counted later, so that the end of a run is not delayed."""
 
@@ -121,26 +117,30 @@ class RunStore:
         info = RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
         try:
             number = self._catalogue.add(info)
-            write_run_file(
-                folder,
-                {
-                    "format": RUN_FORMAT,
-                    "id": run_id,
-                    "number": number,
-                    "created": created,
-                    "live": live,
-                    "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
-                    "spec": to_plain(spec),
-                    "field": None if field is None else dict(field),
-                    "options": dict(options or {}),
-                    "tags": [],
-                    "end": None,
-                },
-            )
+            write_run_file(folder, new_run_data(run_id, number, created, program, spec, field, options, live))
         except LogError:
             shutil.rmtree(folder, ignore_errors=True)
             raise
         return NewRun(run_id, number, folder)
+
+    def adopt(self, folder: Path) -> NewRun:
+        """Move the folder of a finished run from elsewhere into the store, and list it; return where it is now.
+
+        Raises:
+            LogError: it holds no run, or the home folder cannot be written.
+        """
+        data = read_run_file(folder)
+        run_id, place = self._new_folder(datetime.now(UTC))
+        info = _info_from(run_id, data)
+        try:
+            shutil.copytree(folder, place, dirs_exist_ok=True)
+            number = self._catalogue.add(info)
+            write_run_file(place, {**data, "id": run_id, "number": number})
+        except OSError as error:
+            shutil.rmtree(place, ignore_errors=True)
+            raise LogError(f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)) from error
+        shutil.rmtree(folder, ignore_errors=True)
+        return NewRun(run_id, number, place)
 
     def finish(self, run_id: str, end: Ended) -> None:
         """Record how a run ended.

@@ -155,6 +155,7 @@ class WarmProcess:
         return ForkedChild(pid, status_fd)
 
     def close(self) -> None:
-        """End it; its children go on."""
+        """End it, unless it belongs to a process that has forked this one; its children go on."""
         self._socket.close()
-        self._process.wait()
+        if self._pid == os.getpid():
+            self._process.wait()

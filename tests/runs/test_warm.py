@@ -1,0 +1,100 @@
+"""The warm process: forked children are as those that were started by themselves."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import closing
+
+import pytest
+
+from tests.running import over, until_tick
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs import process
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.warm import ForkedChild
+from tuisim.source import Program
+
+SURROUNDINGS = {
+    "modules": "print(sorted(sys.modules))",
+    "environment": "print(sorted(os.environ.items()))",
+    "files": "print(sorted(os.path.basename(os.path.realpath(f'/proc/self/fd/{fd}')).partition(':')[0]"
+    " for fd in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{fd}')))",
+    "limits": "print([resource.getrlimit(getattr(resource, n)) for n in dir(resource) if n.startswith('RLIMIT')])",
+    "random": "print(random.random(), os.urandom(4), hash('a'), uuid.uuid4())",
+    "interpreter": "print(sys.flags, sys.path, list(map(type, sys.meta_path)), gc.get_threshold(), gc.isenabled())",
+    "signals": "print([(n, type(signal.getsignal(n))) for n in range(1, 32)], signal.pthread_sigmask(0, []))",
+    "session": "print(os.getcwd(), os.getsid(0) == os.getpid(), os.getpgrp() == os.getpid(), os.umask(0o77))",
+    "threads": "print(threading.active_count(), _thread._count(), os.listdir('/proc/self/task') == [str(os.getpid())])",
+    "times": "print(time.time(), time.process_time(), datetime.datetime.now())",
+}
+IMPORTS = "import datetime, gc, os, random, resource, signal, sys, threading, time, uuid, _thread\n"
+
+
+def _printed(text: str) -> list[str]:
+    handle = start_run(Program("p.py", text), build_run_spec(Settings()), RunOptions())
+    over(handle)
+    assert handle.ended is not None
+    assert handle.ended.end == "finished", handle.ended.error
+    return [row.text for row in handle.output.all_rows()]
+
+
+@pytest.mark.parametrize("name", SURROUNDINGS)
+def test_a_program_cannot_tell_how_it_was_started(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (IMPORTS if name != "modules" else "import os, sys\n") + SURROUNDINGS[name]
+    warm = _printed(text)
+    monkeypatch.setattr(process, "_fork", lambda *_: None)
+    assert _printed(text) == warm
+
+
+def _start(text: str = "import time\ntime.sleep(1e6)\n") -> RunHandle:
+    return start_run(Program("p.py", text), build_run_spec(Settings()), RunOptions(live=True, speed=1.0))
+
+
+@pytest.fixture
+def warm(monkeypatch: pytest.MonkeyPatch) -> Iterator[process.WarmProcess]:
+    """A warm process that the test may end."""
+    monkeypatch.setattr(process._Starts, "warm", None)
+    process.warm_up()
+    mine = process._Starts.warm
+    assert mine is not None
+    yield mine
+    process.cool_down()
+
+
+def test_without_its_warm_process_a_run_is_started_by_itself(warm: process.WarmProcess) -> None:
+    os.kill(warm._process.pid, signal.SIGKILL)
+    warm._process.wait()
+    assert _printed("print('on')") == ["on"]
+
+
+def test_a_run_whose_warm_process_was_killed_is_not_left_behind(warm: process.WarmProcess) -> None:
+    with closing(_start()) as handle:
+        until_tick(handle, 1)
+        assert isinstance(handle._process, ForkedChild)
+        os.kill(warm._process.pid, signal.SIGKILL)
+        over(handle)
+    assert handle.ended is not None
+    assert handle.ended.end == "crashed"
+
+
+def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(warm: process.WarmProcess) -> None:
+    pid = os.fork()
+    if not pid:
+        os._exit(7 if warm.is_usable else 0)
+    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0
+
+
+def test_how_a_child_ends_is_known(warm: process.WarmProcess) -> None:
+    with closing(_start()) as handle:
+        until_tick(handle, 1)
+        os.kill(handle._process.pid, signal.SIGSEGV)
+        ended = over(handle).ended
+    assert (ended.end, handle._process.returncode) == ("crashed", -signal.SIGSEGV)
+
+
+def test_the_warm_process_ends_with_its_host(warm: process.WarmProcess) -> None:
+    warm.close()
+    assert warm._process.returncode == 0
