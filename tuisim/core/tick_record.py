@@ -38,3 +38,16 @@ class TickSink(Protocol):
 
     def publish(self, count: int) -> None:
         """Make the first `count` records visible to readers."""
+
+
+class NoRecording:
+    """Discards tick records: for a simulation that is prepared before its run is known."""
+
+    count = 0
+
+    def room(self, records: int) -> Buffer:
+        """Return a buffer that nobody reads."""
+        return bytearray(64 * (records + 1))
+
+    def publish(self, count: int) -> None:
+        """Do nothing."""

@@ -6,6 +6,7 @@ from tuisim.runtime import wallclock  # isort: skip - must come first: it saves 
 from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - imported for its effect
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -13,6 +14,7 @@ from tuisim import protocol
 from tuisim.config.mat_cache import open_field
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
+from tuisim.core.tick_record import NoRecording
 from tuisim.runs.brick_state import motors_row
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
 from tuisim.runs.side_files import hold
@@ -47,11 +49,12 @@ LOOP_COST_NS = 5_000_000
 """Cost of `LOOP_TURNS` loop iterations in which no time passed."""
 
 
-def main(arguments: list[str]) -> NoReturn:
+def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
     """Run what a folder describes, then end the process.
 
     Args:
         arguments: The run folder; descriptors of the commands, the events and the lifeline.
+        prepared: The child, if it has been prepared already.
     """
     folder = Path(arguments[0])
     command_fd, event_fd, lifeline_fd = map(int, arguments[1:4])
@@ -59,7 +62,9 @@ def main(arguments: list[str]) -> NoReturn:
     channel = Channel(command_fd, event_fd)
     try:
         hold(folder)
-        child = Child(folder, read_config(folder), channel)
+        config = read_config(folder)
+        child = Child(config) if prepared is None else prepared
+        child.connect(config, channel)
     except OSError as error:
         if not is_full(error):
             raise
@@ -75,44 +80,24 @@ def _no_room(error: OSError) -> str:
 
 
 class Child:
-    """One run with all its parts.
+    """One run with all its parts: prepared for a robot in a world, then connected with the run.
 
     Args:
-        folder: Run folder.
-        config: The run.
-        channel: Pipes to the host.
+        config: The run, or another one that differs at most in its program, its options, seed, noise and start.
     """
 
-    def __init__(self, folder: Path, config: RunConfig, channel: Channel) -> None:
-        self._folder, self._config, self._channel = folder, config, channel
-        self._pid = wallclock.getpid()
-        self._telemetry = TelemetryWriter(folder)
-        self._sim = simulation_of(config.spec, self._telemetry)
-        writer = OutputWriter(folder)
-        self._output = Output(writer)
-        steering = RunControl(channel, folder, config.live, config.speed, config.start_paused, config.actions)
-        limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
-        file = config.path or config.name
-        self._session = Session(self._sim, open_field(config.field), self._output, channel, steering, limits, file)
-        session = self._session
-        session.replies = config.replies
-        self._telemetry.full = writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))
-        self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
-        self._output.after_write = self._after_write
-        if isinstance(self._sim, FurtherMotors):
-            self._sim.on_turns = self._write_turns
+    def __init__(self, config: RunConfig) -> None:
+        self._config = config
+        self._sim = simulation_of(config.spec, NoRecording())
+        self._output = Output()
+        self._session = session = Session(self._sim, open_field(config.field), self._output)
+        turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
+        self._interrupts = Interrupts(session, frozenset({turn.__code__}))
+        self._patch_modules(turn)
+        self._runner.prepare(config.prelude)
 
-    def _write_turns(self, turns: tuple[Turn, ...]) -> None:
-        sim = self._sim
-        # Not at the session's time: in a paced run it advances in smaller steps.
-        self._output.row_at(motors_row(turns), Stream.MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
-
-    def _after_write(self) -> None:
-        if self._session.flags & (ATTENTION | STOPPING):
-            self._session.checkpoint()
-
-    def run(self) -> NoReturn:
-        """Run the program and end the process."""
+    def _patch_modules(self, turn: Callable[[], None]) -> None:
+        """Patch what programs find, and make what runs them."""
         # Imported here: threads must be patched before anything else imports `threading`.
         from tuisim.runtime.alarm import patch_alarm
         from tuisim.runtime.program import Outcome, ProgramRunner
@@ -120,14 +105,12 @@ class Child:
         from tuisim.runtime.threads import patch_threads
         from tuisim.shim.install import install
 
-        session = self._session
-        turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
-        interrupts = Interrupts(session, frozenset({turn.__code__}))
+        session, interrupts = self._session, self._interrupts
         scheduler = Scheduler(session, lambda parked: setattr(interrupts, "main_is_parked", parked))
         patch_time(session)
-        patch_datetime(session, self._config.own_folder)
+        patch_datetime(session, lambda: self._config.own_folder)
         patch_process_times(session)
-        patch_urandom(self._config.spec.seed)
+        patch_urandom(lambda: self._config.spec.seed)
         waits = FileWaits(session)
         waits.patch_select()
         refuse_processes()
@@ -140,7 +123,6 @@ class Child:
             {
                 "pandas": lambda module: finish_pandas(session, module),
                 "random": lambda module: finish_random(self._config.spec.seed, module),
-                "linecache": lambda _module: remember_source(session.program_file, self._config.text),
                 "traceback": finish_traceback,
                 "inspect": finish_inspect,
                 "resource": lambda module: finish_resource(session, module),
@@ -149,18 +131,59 @@ class Child:
                 "uuid": lambda module: finish_uuid(self._config.spec.seed, module),
             },
             replace,
-            own_files(session.program_file),
+            lambda file: own_files(session.program_file)(file),
         )
 
         def leave(outcome: Outcome) -> NoReturn:
             interrupts.remove()
             self._end(outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line)
 
-        runner = ProgramRunner(self._config, session, self._output, scheduler, turn, leave)
-        session.make_debugger = lambda: _debugger(session, scheduler, runner)
-        interrupts.install(self._folder)
+        self._leave = leave
+        self._runner = ProgramRunner(session, self._output, scheduler, turn, leave)
+        session.make_debugger = lambda: _debugger(session, scheduler, self._runner)
+
+    def connect(self, config: RunConfig, channel: Channel) -> None:
+        """Create the recording of a run, and connect everything with it.
+
+        Args:
+            config: The run.
+            channel: Pipes to the host.
+
+        Raises:
+            OSError: there is no space for the recording.
+        """
+        self._config, self._channel = config, channel
+        self._pid = wallclock.getpid()
+        session = self._session
+        self._telemetry, self._output.writer = TelemetryWriter(config.folder), OutputWriter(config.folder)
+        self._sim.restart(config.spec, self._telemetry)
+        steering = RunControl(channel, config.folder, config.live, config.speed, config.start_paused, config.actions)
+        limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
+        session.connect(channel, steering, limits, config.path or config.name)
+        session.replies = config.replies
+        for writer in (self._telemetry, self._output.writer):
+            writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))
+        self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
+        self._output.after_write = self._after_write
+        if isinstance(self._sim, FurtherMotors):
+            self._sim.on_turns = self._write_turns
+        remember_source(session.program_file, config.text)
+        self._runner.connect(config)
+
+    def _write_turns(self, turns: tuple[Turn, ...]) -> None:
+        sim = self._sim
+        # Not at the session's time: in a paced run it advances in smaller steps.
+        self._output.row_at(motors_row(turns), Stream.MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
+
+    def _after_write(self) -> None:
+        if self._session.flags & (ATTENTION | STOPPING):
+            self._session.checkpoint()
+
+    def run(self) -> NoReturn:
+        """Run the program and end the process."""
+        self._interrupts.install(self._config.folder)
         self._channel.send(protocol.Started(protocol.PROTOCOL_VERSION, os.getpid()))
-        leave(runner.run())
+        self._leave(self._runner.run())
 
     def _end(self, end: protocol.End, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
         if wallclock.getpid() != self._pid:

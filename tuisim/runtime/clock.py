@@ -77,11 +77,15 @@ def _patch_calendar(wall: Callable[[], float]) -> None:
     replace(time, "strftime", lambda form, *when: strftime(form, *when or (localtime(wall()),)), (1, 2))
 
 
-def patch_datetime(session: Session, folder: str) -> None:
+def patch_datetime(session: Session, folder: Callable[[], str]) -> None:
     """Give the program, its own modules and the library a `datetime` with simulated time.
 
     All other modules keep the real one: compiled code, such as that of pandas, relies on
     the real classes and crashes on others.
+
+    Args:
+        session: The program's clock.
+        folder: Returns the folder of the program's own modules.
     """
     real_import = builtins.__import__
     shadow: list[types.ModuleType] = []
@@ -91,7 +95,7 @@ def patch_datetime(session: Session, folder: str) -> None:
         if name == "__main__" or name.partition(".")[0] == "ev3dev2":
             return True
         file = str(importer.get("__file__") or "/")
-        return file in OWN_FILES or os.path.dirname(real.absolute(file)) == folder
+        return file in OWN_FILES or os.path.dirname(real.absolute(file)) == folder()
 
     def import_module(
         name: str,

@@ -26,6 +26,9 @@ LEFT_TO_OTHERS_S = 0.1
 STALL_LOOK_S = 1.0
 STACK_FILE = "stack.txt"
 
+# Saved: the program gets others.
+_enable, _register = faulthandler.enable, faulthandler.register
+
 
 def die_with_host(lifeline_fd: int) -> None:
     """Make the kernel kill this process and its group when the host ends, even inside a long C call.
@@ -66,8 +69,8 @@ class Interrupts:
         """
         self._stack_file = os.fdopen(private(str(folder / STACK_FILE), os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w")
         # Crashes such as SIGSEGV are written there, too.
-        faulthandler.enable(self._stack_file, all_threads=False)
-        faulthandler.register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
+        _enable(self._stack_file, all_threads=False)
+        _register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
         signal.signal(signal.SIGUSR1, self._on_command)
         wallclock.set_signal(signal.SIGALRM, self._on_alarm)
         signal.signal(signal.SIGINT, signal.SIG_IGN)

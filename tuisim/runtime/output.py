@@ -10,14 +10,12 @@ from tuisim.runs.records import MAX_OUTPUT_BYTES, OutputWriter, Stream
 
 
 class Output:
-    """Rows of output, each with the time, tick and source line that wrote it.
+    """Rows of output, each with the time, tick and source line that wrote it."""
 
-    Args:
-        writer: The file.
-    """
+    writer: OutputWriter
+    """The file; set before the first row."""
 
-    def __init__(self, writer: OutputWriter) -> None:
-        self._writer = writer
+    def __init__(self) -> None:
         self.place: Callable[[], tuple[int, int, int]] = lambda: (0, 0, 0)
         """Returns tick, simulated ns and source line; set once the session exists."""
         self.after_write: Callable[[], None] = lambda: None
@@ -27,17 +25,17 @@ class Output:
     def row(self, text: str, stream: Stream) -> None:
         """Write one row."""
         tick, now, line = self.place()
-        self._writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
+        self.writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
 
     def row_at(self, text: str, stream: Stream, tick: int, time_ns: int, line: int) -> None:
         """Write one row that belongs to a tick, not to a time between two."""
-        self._writer.write(text.encode(), tick, time_ns, line, stream)
+        self.writer.write(text.encode(), tick, time_ns, line, stream)
 
     def close(self) -> None:
         """Close the file and truncate it to its size."""
-        self._writer.close()
+        self.writer.close()
 
 
 class LineStream(io.TextIOBase):

@@ -68,7 +68,6 @@ class ProgramRunner:
     """The environment that the program sees in this process.
 
     Args:
-        config: The run.
         session: The program's clock.
         output: Where its lines go.
         scheduler: The program's threads.
@@ -78,23 +77,17 @@ class ProgramRunner:
 
     def __init__(
         self,
-        config: RunConfig,
         session: Session,
         output: Output,
         scheduler: Scheduler,
         loop_hook: Callable[[], None],
         leave: Callable[[Outcome], NoReturn],
     ) -> None:
-        self._config, self._session, self._output, self._scheduler = config, session, output, scheduler
+        self._session, self._output, self._scheduler = session, output, scheduler
         self._leave = leave
-        has_own_folder = bool(config.path or config.module_folder)
-        self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and has_own_folder
-        # A relative path would mean another file from there.
-        in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
-        self._file = in_own_folder if self._starts_in_own_folder else session.program_file
-        self._answers = list(config.answers)
         self.stdout, self.stderr = LineStream(output), LineStream(output, Stream.STDERR)
         self._module = types.ModuleType("__main__")
+        self._prelude_error: BaseException | None = None
         self.prepared: dict[str, int] = {}
         """Identities of the objects that the prelude has created, by name."""
         self.code: types.CodeType | None = None
@@ -102,6 +95,39 @@ class ProgramRunner:
         self.names = self._module.__dict__
         """The program's global names."""
         setattr(builtins, LOOP_HOOK, loop_hook)
+
+    def prepare(self, prelude: str) -> None:
+        """Do what comes before the program and is the same for every program: streams, and the prelude of a name."""
+        self._patch()
+        vars(self._module)["__builtins__"] = builtins
+        sys.modules["__main__"] = self._module
+        # The prelude is free of charge.
+        self._session.free += 1
+        try:
+            self._run_prelude(prelude)
+        except BaseException as error:  # it is an error of the program, and is raised when that begins
+            self._prelude_error = error
+        self._session.free -= 1
+
+    def _run_prelude(self, prelude: str) -> None:
+        for part, code in compile_prelude(prelude):
+            try:
+                exec(code, self.names)
+            except Exception as error:  # such as a sensor that this robot does not have
+                if not part:
+                    raise
+                self.names[part] = MissingPart(part, error)
+
+    def connect(self, config: RunConfig) -> None:
+        """Connect it with the program of a run."""
+        self._config, session = config, self._session
+        has_own_folder = bool(config.path or config.module_folder)
+        self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and has_own_folder
+        # A relative path would mean another file from there.
+        in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
+        self._file = in_own_folder if self._starts_in_own_folder else session.program_file
+        self._answers = list(config.answers)
+        sys.argv = [self._file, *config.arguments]
 
     def run(self) -> Outcome:
         """Run prelude and program to their end; never raises."""
@@ -113,7 +139,6 @@ class ProgramRunner:
 
     def _run(self) -> Outcome:
         try:
-            self._prepare()
             self._execute()
             self._scheduler.join_all()
             outcome = Outcome(End.FINISHED)
@@ -166,11 +191,10 @@ class ProgramRunner:
                 # The file is full, and reports that itself.
                 continue
 
-    def _prepare(self) -> None:
+    def _patch(self) -> None:
         sys.stdout, sys.stderr = self.stdout, self.stderr
         # Also for code that replaces a stream and restores it.
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
-        sys.argv = [self._file, *self._config.arguments]
         replace(sys, "excepthook", self._thread_error, (3, 3))
         replace(sys, "unraisablehook", self._ignored_error, (1, 1))
         vars(sys).update(__excepthook__=sys.excepthook, __unraisablehook__=sys.unraisablehook)
@@ -183,19 +207,9 @@ class ProgramRunner:
 
     def _execute(self) -> None:
         self.code = program = compile_program(self._config.text, self._session.program_file)
-        module = self._module
-        module.__dict__.update(__file__=self._file, __builtins__=builtins)
-        sys.modules["__main__"] = module
-        # The prelude is free of charge.
-        self._session.free += 1
-        for part, code in compile_prelude(self._config.prelude):
-            try:
-                exec(code, module.__dict__)
-            except Exception as error:  # such as a sensor that this robot does not have
-                if not part:
-                    raise
-                module.__dict__[part] = MissingPart(part, error)
-        self._session.free -= 1
+        self.names["__file__"] = self._file
+        if self._prelude_error is not None:
+            raise self._prelude_error
         # Not earlier: a program named logging.py is not what the library means by `import logging`.
         folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.python_path]
@@ -204,13 +218,13 @@ class ProgramRunner:
             # If a repeated run's folder no longer exists, only files that it opens there are missing.
             with suppress(OSError):
                 os.chdir(folder)
-        self.prepared |= {name: id(value) for name, value in module.__dict__.items()}
+        self.prepared |= {name: id(value) for name, value in self.names.items()}
         # Existing objects stay; only the program's own garbage is collected from here on.
         gc.freeze()
         gc.enable()
         if self._config.debugged:
             self._session.debug().begin(self._config)
-        exec(program, module.__dict__)
+        exec(program, self.names)
 
     # Ends
 

@@ -14,15 +14,15 @@ from tuisim.core.noise import stream
 from tuisim.runtime.replacement import replace
 
 
-def patch_urandom(seed: int) -> None:
-    """Derive the system's random bytes from the seed: uuid4, secrets and numpy use them."""
+def patch_urandom(seed: Callable[[], int]) -> None:
+    """Derive the system's random bytes from the seed that a function returns: uuid4, secrets and numpy use them."""
     draws = count()
     real_urandom = os.urandom
 
     def urandom(size: Any) -> bytes:
         length = operator.index(size)
         # For negative sizes the real function raises the proper error.
-        return stream(seed, next(draws), "urandom", length) if length >= 0 else real_urandom(length)
+        return stream(seed(), next(draws), "urandom", length) if length >= 0 else real_urandom(length)
 
     replace(os, "urandom", urandom, (1, 1))
     if hasattr(os, "getrandom"):

@@ -108,39 +108,30 @@ class Debugger(Protocol):
 class Session:
     """Clock of one run.
 
+    It is prepared without a run; time may pass after `connect`.
+
     Args:
         sim: The simulation.
         field: The mat.
         output: Receives printed lines.
-        channel: Pipes to the host.
-        steering: Commands: pause, speed, user actions.
-        limits: Limits of the run.
-        program_file: File name of the program's own frames.
     """
 
-    def __init__(
-        self,
-        sim: Simulation,
-        field: Field,
-        output: Output,
-        channel: Channel,
-        steering: RunControl,
-        limits: Limits,
-        program_file: str,
-    ) -> None:
-        self.sim, self.output, self.channel, self.steering = sim, output, channel, steering
+    channel: Channel
+    """Pipes to the host."""
+    steering: RunControl
+    """Commands: pause, speed, user actions."""
+    limits: Limits
+    """Limits of the run."""
+
+    def __init__(self, sim: Simulation, field: Field, output: Output) -> None:
+        self.sim, self.output = sim, output
         self._field = field
         self._pen: PenMarks | None = None
-        if sim.spec.world.pen_marks:
-            # Imported on demand: most programs start faster without it.
-            from tuisim.core.pen_marks import PenMarks
-
-            self._pen = PenMarks(field, sim.spec)
-        self.limits = limits
-        self.program_file = program_file
+        self.program_file = ""
+        """File name of the program's own frames."""
         self.now = 0
         self.free = 0
-        self.flags: int = LIVE if steering.wanted else 0
+        self.flags = 0
         """Bits of `SessionFlag`."""
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that are pressed."""
@@ -149,8 +140,7 @@ class Session:
         self._hz = hz
         self._tick_ns = 0 if NS_PER_S % hz else NS_PER_S // hz
         """Length of a tick; 0 if it is not a whole number."""
-        self._limit_ns = limits.time_ns or 1 << 62
-        self._quick_ns = self._limit_ns
+        self._limit_ns = self._quick_ns = 1 << 62
         """Up to this time a wait needs only ticks, while `flags` has no bits."""
         self._commands, self._commands_at = 0, -1
         self.replies = False
@@ -166,6 +156,17 @@ class Session:
         """Set by the scheduler: blocks until a time (or a motor change) while other threads run."""
         self.spawn_daemon: Callable[[Callable[[], None]], None]
         """Set by the scheduler: runs a function in the background while the program continues."""
+
+    def connect(self, channel: Channel, steering: RunControl, limits: Limits, program_file: str) -> None:
+        """Connect it with the run that is about to begin; arguments as the attributes."""
+        self.channel, self.steering, self.limits, self.program_file = channel, steering, limits, program_file
+        self._limit_ns = self._quick_ns = limits.time_ns or 1 << 62
+        self.flags |= LIVE if steering.wanted else 0
+        if self.sim.spec.world.pen_marks:
+            # Imported on demand: most programs start faster without it.
+            from tuisim.core.pen_marks import PenMarks
+
+            self._pen = PenMarks(self._field, self.sim.spec)
 
     # What the shim calls
 
