@@ -1,1 +1,1 @@
-"""Batches: one program, or several, over many seeds and settings."""
+"""Many runs: tasks as plain values, the processes that run them, and their results as a table."""

@@ -11,7 +11,7 @@ import select
 import signal
 import subprocess
 import time
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -19,8 +19,9 @@ from typing import Any, Protocol
 
 from tuisim.breakpoints import parse_breakpoints
 from tuisim.config.mat_cache import FieldFiles
+from tuisim.core.geometry import Pose
 from tuisim.core.profile import due_ns
-from tuisim.core.spec import RunSpec
+from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import HostError, LogError
 from tuisim.protocol import (
     PROTOCOL_VERSION,
@@ -123,11 +124,26 @@ class RunFolders(Protocol):
     def load_run(self, run: Path, /) -> StoredRun: ...
 
 
+def _template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
+    """Return what a template is prepared for: all of a run except its program, its options, seed, noise and start."""
+    world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
+    return program.prelude, field, replace(spec, seed=0, world=world)
+
+
 class RunHandle:
-    """One run: its child process, pipes and recording. Create it with `start_run`."""
+    """One run: its child process, pipes and recording. Create it with `start_run`.
+
+    With `of_many` its process is forked from a template that is kept for other runs of the same robot and world.
+    """
 
     def __init__(
-        self, program: Program, spec: RunSpec, field: FieldFiles, options: RunOptions, store: RunFolders
+        self,
+        program: Program,
+        spec: RunSpec,
+        field: FieldFiles,
+        options: RunOptions,
+        store: RunFolders,
+        of_many: bool = False,
     ) -> None:
         self.program, self.spec, self.field = program, spec, field
         self._options, self._store = options, store
@@ -156,7 +172,7 @@ class RunHandle:
         """Why the run or its end is not stored; empty if it is."""
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
-                run.folder, program.working_directory
+                run.folder, program.working_directory, _template_key(program, spec, field) if of_many else None
             )
         except OSError as error:
             self._store.forget(run.id)

@@ -10,17 +10,18 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections import OrderedDict
+from collections.abc import Hashable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, ClassVar
 
 import msgspec
 
 from tuisim.atomic import private
 from tuisim.errors import HostError
 from tuisim.protocol import EVENTS, Message
-from tuisim.runs.warm import ChildProcess, WarmProcess
+from tuisim.runs.warm import ChildProcess, Template, WarmProcess
 from tuisim.source import source_lines
 
 PATIENCE_S = 0.2
@@ -31,6 +32,8 @@ BOOT = (
     "runpy.run_module('tuisim.runtime', run_name='__main__', alter_sys=True)"
 )
 """Startup code of the child: the package comes last in the path, so that nothing beside it shadows Python's modules."""
+
+MOST_TEMPLATES = 4
 
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
@@ -43,9 +46,11 @@ MOST_SHOWN = 500
 
 
 class _Starts:
-    """What this process has started: the warm process, and how many children."""
+    """What this process has started: the warm process, templates by what they are prepared for, number of children."""
 
     warm: WarmProcess | None = None
+    templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
+    """The one used last comes last."""
     count = 0
 
 
@@ -59,13 +64,17 @@ def warm_up() -> None:
 
 
 def cool_down() -> None:
-    """End the warm process; its children go on."""
+    """End the warm process and all templates; their children go on."""
+    while _Starts.templates:
+        _Starts.templates.popitem()[1].close()
     if _Starts.warm is not None:
         _Starts.warm.close()
     _Starts.warm = None
 
 
-def start_child(folder: Path, working_directory: str) -> tuple[ChildProcess, int, int, int]:
+def start_child(
+    folder: Path, working_directory: str, template_key: Hashable = None
+) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run of a folder.
 
     The first child of this process is started by itself; with the second comes the warm process.
@@ -73,6 +82,7 @@ def start_child(folder: Path, working_directory: str) -> tuple[ChildProcess, int
     Args:
         folder: The run folder.
         working_directory: Initial working directory, if it still exists.
+        template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
 
     Returns:
         The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
@@ -88,7 +98,7 @@ def start_child(folder: Path, working_directory: str) -> tuple[ChildProcess, int
     try:
         with open(folder / "child.log", "wb", opener=private) as log:
             cwd = working_directory if os.path.isdir(working_directory) else None
-            process = _fork(folder, cwd, log.fileno(), inherited) or _spawn(folder, cwd, log, inherited)
+            process = _fork(folder, cwd, log.fileno(), inherited, template_key) or _spawn(folder, cwd, log, inherited)
     finally:
         for fd in inherited:
             os.close(fd)
@@ -102,8 +112,8 @@ def _command() -> list[str]:
     return [sys.executable, "-s", "-P", "-c", BOOT, str(Path(__file__).parent.parent.parent)]
 
 
-def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int]) -> ChildProcess | None:
-    """Fork a child from the warm process; return None if there is none, or it cannot."""
+def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int], key: Hashable) -> ChildProcess | None:
+    """Fork a child from a template or the warm process; return None if there is none, or it cannot."""
     if _Starts.warm is None or not _Starts.warm.is_usable:
         return None
     try:
@@ -112,10 +122,21 @@ def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int]) 
         # The working directory no longer exists; only a process that is started there can be in it.
         return None
     try:
-        return _Starts.warm.fork(str(folder), here, _environment(), [log_fd, *inherited])
+        server = _Starts.warm if key is None else _template(_Starts.warm, key, folder)
+        return server.fork(str(folder), here, _environment(), [log_fd, *inherited])
     except OSError:
         cool_down()
         return None
+
+
+def _template(warm: WarmProcess, key: Hashable, folder: Path) -> Template:
+    templates = _Starts.templates
+    if key not in templates:
+        if len(templates) >= MOST_TEMPLATES:
+            templates.popitem(last=False)[1].close()
+        templates[key] = warm.template(str(folder))
+    templates.move_to_end(key)
+    return templates[key]
 
 
 def _spawn(folder: Path, cwd: str | None, log: IO[bytes], inherited: Sequence[int]) -> ChildProcess:

@@ -77,7 +77,7 @@ _STREAMS = {stream.value: stream for stream in Stream}
 
 TELEMETRY_FILE = "telemetry.bin"
 OUTPUT_FILE = "output.bin"
-TELEMETRY_CHUNK = 64 * 16384
+TELEMETRY_CHUNK = 64 * 1024
 OUTPUT_CHUNK = 1 << 16
 """Initial size of an output file after the header; it is truncated to its true size at the end."""
 

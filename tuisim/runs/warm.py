@@ -87,51 +87,49 @@ class ForkedChild:
                 os.kill(self.pid, number)
 
 
-class WarmProcess:
-    """A process that has imported the runtime. It is started with the first child, and ends with this process.
+class ForkServer:
+    """A process that forks children.
 
     Args:
-        command: Command of a child without its arguments.
-        environment: Its environment.
+        connection: The socket to it.
     """
 
-    def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
+    def __init__(self, connection: socket.socket) -> None:
         self._lock = threading.Lock()
         self._pid = os.getpid()
-        mine, theirs = socket.socketpair()
-        with theirs:
-            self._process = subprocess.Popen(
-                [*command, "--warm", str(theirs.fileno())],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                env=environment,
-                cwd="/",
-                start_new_session=True,
-            )
-        self._socket = mine
+        self._socket = connection
 
     @property
     def is_usable(self) -> bool:
-        """Whether it runs, and was started by this process, not by one that has forked this one."""
-        return self._pid == os.getpid() and self._process.poll() is None
+        """Whether it belongs to this process, not to one that has forked this one."""
+        return self._pid == os.getpid()
 
     def fork(
-        self, folder: str, working_directory: str, environment: Mapping[str, str], files: Sequence[int]
+        self,
+        folder: str,
+        working_directory: str,
+        environment: Mapping[str, str],
+        files: Sequence[int],
+        serves: bool = False,
     ) -> ForkedChild:
-        """Fork a child. Blocks until it exists, about a millisecond; the first time until the imports are done.
+        """Fork a child. Blocks until it exists, about a millisecond; the first time until the server is ready.
 
         Args:
             folder: The run folder.
             working_directory: Its initial working directory.
             environment: Its environment variables.
-            files: Descriptors: its error output; its commands, events and lifeline.
+            files: Descriptors: its error output; its commands, events and lifeline, or the socket of a template.
+            serves: Whether it becomes a template.
 
         Raises:
-            OSError: it cannot be forked, or the warm process has ended.
+            OSError: it cannot be forked, or the server has ended.
         """
-        request = {"folder": folder, "working_directory": working_directory, "environment": dict(environment)}
+        request = {
+            "folder": folder,
+            "working_directory": working_directory,
+            "environment": dict(environment),
+            "serves": serves,
+        }
         data = json.dumps(request).encode()
         status_fd, theirs = os.pipe()
         try:
@@ -151,11 +149,81 @@ class WarmProcess:
         pid = int.from_bytes(answer, sys.byteorder, signed=True) if answer else 0
         if pid <= 0:
             os.close(status_fd)
-            raise OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the warm process has ended")
+            raise OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the server has ended")
         return ForkedChild(pid, status_fd)
 
     def close(self) -> None:
-        """End it, unless it belongs to a process that has forked this one; its children go on."""
+        """End it; its children go on."""
         self._socket.close()
+
+
+class Template(ForkServer):
+    """A process that is prepared for a robot and a world, and forks children for them.
+
+    Args:
+        connection: The socket to it.
+        process: The process.
+    """
+
+    def __init__(self, connection: socket.socket, process: ForkedChild) -> None:
+        super().__init__(connection)
+        self._process = process
+
+    def close(self) -> None:
+        """End it; its children go on."""
+        super().close()
+        self._process.wait()
+
+
+class WarmProcess(ForkServer):
+    """A process that has imported the runtime. It is started with the first child, and ends with this process.
+
+    Args:
+        command: Command of a child without its arguments.
+        environment: Its environment.
+    """
+
+    def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
+        mine, theirs = socket.socketpair()
+        super().__init__(mine)
+        self._environment = environment
+        with theirs:
+            self._process = subprocess.Popen(
+                [*command, "--warm", str(theirs.fileno())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env=environment,
+                cwd="/",
+                start_new_session=True,
+            )
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether it runs, and belongs to this process, not to one that has forked this one."""
+        return super().is_usable and self._process.poll() is None
+
+    def template(self, folder: str) -> Template:
+        """Fork a template for the robot and the world of a run. Does not block until it is ready.
+
+        Args:
+            folder: The folder of a run.
+
+        Raises:
+            OSError: it cannot be forked, or the warm process has ended.
+        """
+        mine, theirs = socket.socketpair()
+        try:
+            with theirs, open(os.devnull, "wb") as log:
+                files = [log.fileno(), theirs.fileno()]
+                return Template(mine, self.fork(folder, "/", self._environment, files, serves=True))
+        except OSError:
+            mine.close()
+            raise
+
+    def close(self) -> None:
+        """End it, unless it belongs to a process that has forked this one; its children go on."""
+        super().close()
         if self._pid == os.getpid():
             self._process.wait()

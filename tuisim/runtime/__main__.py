@@ -6,9 +6,10 @@ import sys
 
 from tuisim.runtime.child import main
 
+prepared = None
 if sys.argv[1] == "--warm":
     from tuisim.runtime.warm import serve
 
-    # Returns in each forked child, whose arguments are set as those of a child that was started by itself.
-    serve(int(sys.argv[2]))
-main(sys.argv[1:])
+    # Returns in each forked child, whose arguments are then as those of a child that was started by itself.
+    prepared = serve(int(sys.argv[2]))
+main(sys.argv[1:], prepared)

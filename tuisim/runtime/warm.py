@@ -1,7 +1,9 @@
 """The warm process: it has imported what a child imports, and forks one child for each request of its host.
 
-A request is a line of JSON with the files of the child attached; `tuisim.runs.warm` sends it. A forked child runs the
+A request is JSON with the files of the child attached; `tuisim.runs.warm` sends it. A forked child runs the
 same code as any other child, in a session of its own, and has only the files that it was given.
+
+A template is a child that is prepared for a robot and a world, and forks children that need not be prepared any more.
 """
 
 from __future__ import annotations
@@ -12,12 +14,15 @@ import errno
 import gc
 import json
 import os
-import select
 import signal
 import sys
 from contextlib import suppress
 from importlib import import_module
+from pathlib import Path
 from typing import Any
+
+from tuisim.runtime.child import Child
+from tuisim.runtime.run_config import read_config
 
 LENGTH_BYTES = 4
 """Each request begins with its length."""
@@ -32,23 +37,34 @@ _ONLY_HERE = ("_socket", "tuisim.runtime.warm")
 """Modules that other children have not imported."""
 
 
-def serve(socket_fd: int) -> None:
+def serve(socket_fd: int) -> Child | None:
     """Fork a child for each request until the host closes the socket; return in each child.
 
     Args:
         socket_fd: The socket to the host.
+
+    Returns:
+        The prepared child, if a template has forked this one.
     """
     for name in _NEEDED_LATER:
         import_module(name)
-    gc.freeze()
-    server = WarmProcess(socket_fd)
-    while not server.next_child():
-        pass
+    command = sys.orig_argv[: sys.orig_argv.index("--warm")]
+    prepared = None
+    while True:
+        gc.freeze()
+        request = ForkServer(socket_fd).next_request()
+        if not request["serves"]:
+            break
+        prepared = Child(read_config(Path(request["folder"])))
+        (socket_fd,) = request["channel"]
     for name in _ONLY_HERE:
         sys.modules.pop(name, None)
+    sys.argv[:] = [sys.argv[0], request["folder"], *map(str, request["channel"])]
+    sys.orig_argv[:] = [*command, *sys.argv[1:]]
+    return prepared
 
 
-class WarmProcess:
+class ForkServer:
     """Answers requests, and reports how children end.
 
     Args:
@@ -62,17 +78,19 @@ class WarmProcess:
             os.set_blocking(fd, False)
         signal.set_wakeup_fd(self._wake)
         # Any handler makes the signal arrive at the pipe.
-        signal.signal(signal.SIGCHLD, lambda *_: None)
+        wallclock.set_signal(signal.SIGCHLD, lambda *_: None)
         self._status_fds: dict[int, int] = {}
         """Where to report the end of each child, by process id."""
 
-    def next_child(self) -> bool:
-        """Wait for a request or the end of a child; return True in a newly forked child."""
-        ready = select.select([self._socket, self._ended], [], [])[0]
-        if self._ended in ready:
-            os.read(self._ended, _READ_BYTES)
-            self._report_ended()
-        return self._socket in ready and self._fork(*self._receive())
+    def next_request(self) -> dict[str, Any]:
+        """Fork a child for each request; return the request, with the descriptors of its `channel`, in each child."""
+        while True:
+            ready = wallclock.select_files([self._socket, self._ended], [], [])[0]
+            if self._ended in ready:
+                os.read(self._ended, _READ_BYTES)
+                self._report_ended()
+            if self._socket in ready and (request := self._fork(*self._receive())):
+                return request
 
     def _receive(self) -> tuple[dict[str, Any], list[int]]:
         size = self._socket_buffer_of(MOST_FILES)
@@ -95,7 +113,7 @@ class WarmProcess:
         size: int = import_module("_socket").CMSG_SPACE(files * 4)
         return size
 
-    def _fork(self, request: dict[str, Any], files: list[int]) -> bool:
+    def _fork(self, request: dict[str, Any], files: list[int]) -> dict[str, Any] | None:
         status_fd, *given = files
         try:
             _assert_one_thread()
@@ -106,12 +124,12 @@ class WarmProcess:
         else:
             if not pid:
                 self._become_child(request, given, status_fd)
-                return True
+                return request
             _report(status_fd, pid)
             self._status_fds[pid] = status_fd
         for fd in given:
             os.close(fd)
-        return False
+        return None
 
     def _report_ended(self) -> None:
         while self._status_fds:
@@ -127,17 +145,17 @@ class WarmProcess:
 
     def _become_child(self, request: dict[str, Any], given: list[int], status_fd: int) -> None:
         signal.set_wakeup_fd(-1)
-        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        wallclock.set_signal(signal.SIGCHLD, int(signal.SIG_DFL))
         os.setsid()
         self._socket.close()
         for fd in (self._ended, self._wake, status_fd, *self._status_fds.values()):
             os.close(fd)
-        null, log, *channel = given
+        null, log, *request["channel"] = given
         for fd, file in ((0, null), (1, null), (2, log)):
             os.dup2(file, fd)
         for fd in {null, log} - {0, 1, 2}:
             os.close(fd)
-        _set_surroundings(request, channel)
+        _set_surroundings(request)
 
 
 def _report(status_fd: int, number: int) -> None:
@@ -157,12 +175,8 @@ def _assert_one_thread() -> None:
     assert count == 1, f"{count} threads"
 
 
-def _set_surroundings(request: dict[str, Any], channel: list[int]) -> None:
+def _set_surroundings(request: dict[str, Any]) -> None:
     """Set what a child that was started by itself gets from its host."""
-    arguments = [request["folder"], *map(str, channel)]
-    sys.argv[:] = [sys.argv[0], *arguments]
-    at = sys.orig_argv.index("--warm")
-    sys.orig_argv[at:] = arguments
     if os.environ != request["environment"]:
         os.environ.clear()
         os.environ.update(request["environment"])

@@ -1,0 +1,129 @@
+"""Runs one task: starts the program, waits for its end, evaluates the recording and deletes or keeps it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+
+from tuisim.batch.task import OUTPUT_CHARACTERS, Keep, Result, Task, VariableStatistics
+from tuisim.config.mat_cache import FieldFiles, prepare
+from tuisim.config.mats import background
+from tuisim.core.spec import RunSpec
+from tuisim.errors import TuisimError
+from tuisim.goals.judge import GoalState, Judgement, judge
+from tuisim.protocol import End, Ended
+from tuisim.runs.handle import RunHandle
+from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.samples import samples_of
+from tuisim.runs.store import RunStore
+from tuisim.runs.temporary import TemporaryRun
+
+MATS_KEPT = 20
+
+
+def execute(task: Task) -> Result:
+    """Run a task and return its result. Blocks until the run is over; never raises an error of the run.
+
+    Raises:
+        LogError: the recording cannot be read, or a run to be kept cannot be stored.
+    """
+    with TemporaryRun() as temporary:
+        try:
+            handle = RunHandle(task.program, task.spec, _field_files(task.spec), task.options, temporary, of_many=True)
+        except TuisimError as error:
+            return _not_started(task, error)
+        try:
+            ended = _to_the_end(handle, task.real_time_limit_s)
+            run = handle.stored()
+        finally:
+            handle.close()
+        judgements = judge(task.goals, run) if task.goals else ()
+        run_id = _keep(temporary, ended) if _is_kept(task, ended, judgements) else ""
+        return _result(task, run, ended, judgements, run_id)
+
+
+def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
+    ended = handle.wait(limit_s or None)
+    if ended is None:
+        handle.stop()
+        ended = handle.wait()
+    assert ended is not None
+    return ended
+
+
+@lru_cache(MATS_KEPT)
+def _prepared(background_name: str, fit: str, diameters: frozenset[int]) -> FieldFiles:
+    return prepare(background(background_name).image, diameters, fit=fit)
+
+
+def _field_files(spec: RunSpec) -> FieldFiles:
+    """Return the prepared mat of a run; looked for on disk only once in a process."""
+    diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
+    return _prepared(spec.world.background, spec.world.background_fit, diameters)
+
+
+def _is_kept(task: Task, ended: Ended, judgements: Sequence[Judgement]) -> bool:
+    if task.keep is Keep.FAILED:
+        is_good = ended.end is End.FINISHED and not ended.exit_code
+        return not is_good or any(one.state is not GoalState.MET for one in judgements)
+    return task.keep is Keep.ALL
+
+
+def _keep(temporary: TemporaryRun, ended: Ended) -> str:
+    temporary.write_end(ended)
+    return RunStore().adopt(temporary.folder).id
+
+
+def _not_started(task: Task, error: TuisimError) -> Result:
+    return Result(task.index, task.parameters, "", 2, str(error), str(error), 0, 0, 0.0, math.nan, math.nan, math.nan)
+
+
+def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...], run_id: str) -> Result:
+    last = run.telemetry.last()
+    pose = last.pose if last else run.spec.world.start
+    rows = run.output.all_rows()
+    return Result(
+        index=task.index,
+        parameters=task.parameters,
+        end=ended.end.value,
+        exit_code=ended.exit_code,
+        summary=ended.summary,
+        error=ended.error,
+        error_line=ended.error_line,
+        ticks=ended.tick,
+        time_s=run.time_s,
+        x_mm=pose.x_mm,
+        y_mm=pose.y_mm,
+        heading_deg=pose.heading_deg,
+        variables=statistics_of(rows),
+        judgements=judgements,
+        output=_beginning(rows),
+        run_id=run_id,
+    )
+
+
+def statistics_of(rows: Iterable[OutputRow]) -> dict[str, VariableStatistics]:
+    """Return statistics of the samples among the rows of a run, by name."""
+    values: dict[str, list[float]] = {}
+    for sample in samples_of(rows):
+        values.setdefault(sample.name, []).append(sample.value)
+    return {name: _statistics(found) for name, found in values.items()}
+
+
+def _statistics(values: Sequence[float]) -> VariableStatistics:
+    count = len(values)
+    # Exact sums: the result does not depend on the order of equal values.
+    mean = math.fsum(values) / count
+    std = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / count)
+    return VariableStatistics(values[-1], count, mean, std, min(values), max(values))
+
+
+def _beginning(rows: Iterable[OutputRow]) -> str:
+    text, size = [], 0
+    for row in rows:
+        if row.stream is Stream.STDOUT and size < OUTPUT_CHARACTERS:
+            text.append(row.text)
+            size += len(row.text) + 1
+    return "\n".join(text)[:OUTPUT_CHARACTERS]

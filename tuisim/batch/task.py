@@ -1,0 +1,85 @@
+"""A task of a batch and its result, as plain values that any process can exchange."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from tuisim.core.spec import RunSpec
+from tuisim.goals.judge import Judgement
+from tuisim.goals.spec import Goal
+from tuisim.runs.handle import RunOptions
+from tuisim.source import Program
+
+Value = str | float | int | bool
+"""Value of a parameter."""
+
+OUTPUT_CHARACTERS = 2000
+"""A result contains at most this much of the program's output."""
+
+
+class Keep(StrEnum):
+    """Which runs are stored."""
+
+    ALL = "all"
+    FAILED = "failed"
+    """Those that raised an exception, were stopped, or missed a goal."""
+    NONE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One run of a batch."""
+
+    index: int
+    """Its place in the batch, from 0."""
+    program: Program
+    spec: RunSpec
+    options: RunOptions = field(default_factory=RunOptions)
+    goals: tuple[Goal, ...] = ()
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+    """Values that distinguish it from the other tasks, by name."""
+    keep: Keep = Keep.NONE
+    real_time_limit_s: float = 0.0
+    """Real seconds after which it is stopped; 0 is no limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class VariableStatistics:
+    """Statistics of the samples of one name."""
+
+    last: float
+    count: int
+    mean: float
+    std: float
+    """Of the population; 0 for one sample."""
+    min: float
+    max: float
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What is known of a task's run after its end. Does not depend on the process that ran it."""
+
+    index: int
+    parameters: Mapping[str, Value]
+    end: str
+    """A value of `protocol.End`; empty if the run could not be started."""
+    exit_code: int
+    summary: str
+    error: str
+    """The program's traceback, or why the run could not be started."""
+    error_line: int
+    ticks: int
+    time_s: float
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    variables: Mapping[str, VariableStatistics] = field(default_factory=dict)
+    """Statistics by name of sample, in the order of the first samples."""
+    judgements: tuple[Judgement, ...] = ()
+    output: str = ""
+    """The beginning of what it printed on stdout."""
+    run_id: str = ""
+    """Its id in the store; empty if it was not kept."""
