@@ -14,6 +14,8 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.runs import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.run_folder import field_files
+from tuisim.runs.store import RunStore
 from tuisim.runs.warm import ForkedChild
 from tuisim.source import Program
 
@@ -33,20 +35,25 @@ SURROUNDINGS = {
 IMPORTS = "import datetime, gc, os, random, resource, signal, sys, threading, time, uuid, _thread\n"
 
 
-def _printed(text: str) -> list[str]:
-    handle = start_run(Program("p.py", text), build_run_spec(Settings()), RunOptions())
+def _printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str]:
+    spec, store = build_run_spec(Settings(seed=3, light_noise=10)), RunStore()
+    program = Program("p.py", text, prelude=prelude)
+    handle = RunHandle(program, spec, field_files(spec), RunOptions(), store, of_many=of_many)
     over(handle)
     assert handle.ended is not None
     assert handle.ended.end == "finished", handle.ended.error
     return [row.text for row in handle.output.all_rows()]
 
 
+@pytest.mark.parametrize("prelude", ["none", "preloaded"])
 @pytest.mark.parametrize("name", SURROUNDINGS)
-def test_a_program_cannot_tell_how_it_was_started(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_cannot_tell_how_it_was_started(name: str, prelude: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (IMPORTS if name != "modules" else "import os, sys\n") + SURROUNDINGS[name]
-    warm = _printed(text)
+    _printed("print('prepares the template')", True, prelude)
+    forked = _printed(text, False, prelude), _printed(text, True, prelude)
     monkeypatch.setattr(process, "_fork", lambda *_: None)
-    assert _printed(text) == warm
+    alone = _printed(text, False, prelude)
+    assert forked == (alone, alone)
 
 
 def _start(text: str = "import time\ntime.sleep(1e6)\n") -> RunHandle:

@@ -1,0 +1,124 @@
+"""Tasks in worker processes: results do not depend on who runs them, and none is lost."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.running import over
+from tuisim.batch import pool
+from tuisim.batch.execute import execute
+from tuisim.batch.pool import run_many
+from tuisim.batch.task import Keep, Result, Task
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.goals.judge import GoalState
+from tuisim.goals.spec import Finish, Goal
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.store import RunStore
+from tuisim.source import Program
+
+LOGS = """
+import random, time
+tank_drive.on(30, 20 + random.randint(0, 9))
+for _ in range(10):
+    print('Light:', colorLeft.reflected_light_intensity_pc)
+    time.sleep(0.1)
+"""
+ENDS = {
+    "finished": ("print('A: 1')", 0, ""),
+    "raised": ("x = 1\n1 / 0", 1, "ZeroDivisionError"),
+    "crashed": ("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)", 1, ""),
+    "output_limit": ("while True: print('x' * 1000000)", 0, ""),
+    "stalled": ("import signal\nsum(range(10**12))", 1, ""),
+}
+
+
+def _task(text: str, index: int = 0, prelude: str = "preloaded", **changes: object) -> Task:
+    spec = replace(build_run_spec(Settings(light_noise=20, motor_noise=50)), seed=index)
+    program = Program("p.py", text, prelude=prelude, working_directory=os.getcwd())
+    return replace(Task(index, program, spec), **changes)  # type: ignore[arg-type]
+
+
+def _by_index(results: list[Result]) -> list[Result]:
+    return sorted(results, key=lambda one: one.index)
+
+
+@pytest.mark.slow
+def test_results_do_not_depend_on_the_number_of_jobs() -> None:
+    tasks = [_task(LOGS, index) for index in range(12)]
+    alone, together = (_by_index(list(run_many(tasks, jobs))) for jobs in (1, 3))
+    assert alone == together
+    assert len({one.x_mm for one in alone}) == 12
+
+
+def test_a_task_gives_what_a_single_run_gives() -> None:
+    task = _task(LOGS, 5, keep=Keep.ALL)
+    result = execute(task)
+    handle = start_run(task.program, task.spec, task.options)
+    over(handle)
+    kept = RunStore().load_run(result.run_id)
+    for view in ("telemetry.bin", "output.bin"):
+        assert (kept.folder / view).read_bytes() == (handle.folder / view).read_bytes()
+    assert kept.end == handle.ended
+    assert result.variables["Light"].count == 10
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_each_end_is_a_result(end: str) -> None:
+    text, code, error = ENDS[end]
+    options = RunOptions(stall_limit_s=0.2 if end == "stalled" else 60.0)
+    result = execute(_task(text, prelude="none", options=options))
+    assert (result.end, result.exit_code) == (end, code)
+    assert error in result.error
+    assert result.run_id == ""
+
+
+@pytest.mark.parametrize(("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
+def test_failed_runs_are_kept(text: str, kept: bool) -> None:
+    goals = (Goal(name="end", condition=Finish()),)
+    result = execute(_task(text, goals=goals, keep=Keep.FAILED))
+    assert bool(result.run_id) is kept
+    assert (result.judgements[0].state is GoalState.MET) is not kept
+
+
+def test_a_mat_that_does_not_exist_is_a_result() -> None:
+    task = _task("x = 1")
+    world = replace(task.spec.world, background="Nowhere")
+    result = execute(replace(task, spec=replace(task.spec, world=world)))
+    assert result.end == ""
+    assert "Nowhere" in result.error
+
+
+@pytest.mark.slow
+def test_tasks_of_a_worker_that_was_killed_are_executed_again() -> None:
+    tasks = [_task(LOGS, index) for index in range(12)]
+    expected = list(map(execute, tasks))
+    running = pool._Pool(2)
+    try:
+        results = running.results(iter(tasks))
+        found = [next(results)]
+        os.kill(running._context.processes[0].pid or 0, signal.SIGKILL)
+        found += results
+    finally:
+        running.stop()
+    assert _by_index(found) == expected
+
+
+@pytest.mark.slow
+def test_a_script_needs_no_guard(tmp_path: Path, root: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from tests.batch.test_pool import _task\nfrom tuisim.batch.pool import run_many\n"
+        "print(sorted(one.end for one in run_many([_task('x = 1', index) for index in range(3)], 2)))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(root)}
+    )
+    assert (done.stdout, done.stderr) == ("['finished', 'finished', 'finished']\n", "")
