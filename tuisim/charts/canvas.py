@@ -37,6 +37,8 @@ class Curve:
     """`braille`, or one character, for terminals without colours."""
     rising: bool = True
     """Whether the times rise, so that points may be left out; a path may go anywhere."""
+    joined: bool = True
+    """Whether braille dots are joined by lines."""
 
 
 @lru_cache(maxsize=1)
@@ -78,7 +80,7 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
         if len(times_s):
             marker = plotext.marker(curve.marker, curve.rgb)
             signal = figure.signal(times_s.tolist(), values.tolist(), marker=marker)
-            figure.draw(signal.lines(curve.marker == BRAILLE))
+            figure.draw(signal.lines(curve.joined and curve.marker == BRAILLE))
     text = figure.build().string()
     return [_runs(line, columns) for line in text.split("\n")[:rows]]
 
@@ -142,6 +144,8 @@ def xy_lines(
     marker: str,
     width: int,
     height: int,
+    *,
+    joined: bool = True,
 ) -> list[list[Run]]:
     """Return the chart as lines of text.
 
@@ -151,6 +155,7 @@ def xy_lines(
         names: Of x and of y.
         marker: `braille`, or one character.
         width, height: Size in characters.
+        joined: Whether braille dots are joined by lines.
     """
     good = np.isfinite(xs) & np.isfinite(ys)
     title: list[Run] = [(f"{names[1]} against {names[0]}", PLAIN)]
@@ -162,7 +167,7 @@ def xy_lines(
     left = max(map(len, labels.values())) + 1
     columns = max(width - left, 2)
     points = seen_points(xs[good], ys[good], (x_limits, y_limits), columns, rows)
-    curve = Curve(*points, rgb, marker, rising=False)
+    curve = Curve(*points, rgb, marker, rising=False, joined=joined)
     drawn = canvas([curve], columns, rows, x_limits, y_limits)
     lines = [title]
     for row in range(rows):

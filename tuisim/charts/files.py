@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import re
 from collections.abc import Callable, Mapping
@@ -11,7 +12,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.atomic import replacing
-from tuisim.charts.layout import FONT_PX, Chart, Drawing, Rule, Shade, Shape, Stroke, Words, laid_out
+from tuisim.charts.layout import (
+    FONT_PX,
+    Chart,
+    Drawing,
+    Fill,
+    Raster,
+    Rule,
+    Shade,
+    Shape,
+    Stroke,
+    Words,
+    laid_out,
+)
 from tuisim.core.css_colors import Rgb
 from tuisim.errors import ExportError
 from tuisim.logs.export import check_place
@@ -155,8 +168,7 @@ def _svg_shape(shape: Shape) -> str:
             strong = ' font-weight="bold"' if shape.strong else ""
             return f'<text {place} fill="{color}"{strong}>{clean(shape.text)}</text>'
         case Shade():
-            place = f'x="{shape.x:.1f}" y="{shape.y:.1f}" width="{shape.width:.1f}" height="{shape.height:.1f}"'
-            return f'<rect {place} fill="currentColor" fill-opacity="0.08"/>'
+            return f'<rect {_place(shape)} fill="currentColor" fill-opacity="0.08"/>'
         case Stroke():
             points = [f"{x:.1f} {y:.1f}" for x, y in shape.points.tolist()]
             color = _hex(shape.rgb)
@@ -166,6 +178,23 @@ def _svg_shape(shape: Shape) -> str:
                 return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="5" stroke-linecap="round"/>'
             path = "M" + "L".join(points)
             return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.8" stroke-linejoin="round"/>'
+        case Fill():
+            return f'<rect {_place(shape)} fill="{_hex(shape.rgb)}"/>'
+        case Raster():
+            content = io.BytesIO()
+            _image(shape).save(content, "png")
+            data = base64.b64encode(content.getvalue()).decode()
+            return f'<image {_place(shape)} preserveAspectRatio="none" href="data:image/png;base64,{data}"/>'
+
+
+def _place(shape: Shade | Fill | Raster) -> str:
+    return f'x="{shape.x:.1f}" y="{shape.y:.1f}" width="{shape.width:.1f}" height="{shape.height:.1f}"'
+
+
+def _image(shape: Raster) -> Image:
+    from PIL import Image
+
+    return Image.fromarray(shape.pixels)
 
 
 _INK, _FAINT, _SHADE = (34, 34, 34), (222, 222, 222), (238, 238, 238)
@@ -182,11 +211,15 @@ def image_of(drawing: Drawing) -> Image:
     draw = ImageDraw.Draw(image)
     font = ImageFont.load_default(FONT_PX * _FINE)
     for shape in drawing.shapes:
-        _paint(draw, shape, font)
+        if isinstance(shape, Raster):
+            sides = round(shape.width * _FINE), round(shape.height * _FINE)
+            image.paste(_image(shape).resize(sides), (round(shape.x * _FINE), round(shape.y * _FINE)))
+        else:
+            _paint(draw, shape, font)
     return image.resize((drawing.width, drawing.height), Image.Resampling.LANCZOS)
 
 
-def _paint(draw: ImageDraw, shape: Shape, font: FreeTypeFont | BitmapFont) -> None:
+def _paint(draw: ImageDraw, shape: Rule | Words | Shade | Stroke | Fill, font: FreeTypeFont | BitmapFont) -> None:
     match shape:
         case Rule():
             ends = [end * _FINE for end in (shape.x1, shape.y1, shape.x2, shape.y2)]
@@ -196,9 +229,11 @@ def _paint(draw: ImageDraw, shape: Shape, font: FreeTypeFont | BitmapFont) -> No
             # The font has one weight: bold text is drawn twice, half a pixel apart.
             for place in ((x, y), (x + 1, y))[: 1 + shape.strong]:
                 draw.text(place, shape.text, fill=shape.rgb or _INK, font=font, anchor=_ANCHORS[shape.anchor])
-        case Shade():
+        case Shade() | Fill():
             corners = (shape.x, shape.y, shape.x + shape.width, shape.y + shape.height)
-            draw.rectangle([corner * _FINE for corner in corners], fill=_SHADE)
+            draw.rectangle(
+                [corner * _FINE for corner in corners], fill=shape.rgb if isinstance(shape, Fill) else _SHADE
+            )
         case Stroke():
             points = [(x * _FINE, y * _FINE) for x, y in shape.points.tolist()]
             if not shape.dots:

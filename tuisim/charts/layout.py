@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from tuisim.charts.axes import Limits, label, ticks, value_limits
 from tuisim.core.css_colors import Rgb
@@ -22,9 +23,10 @@ COLORS: tuple[Rgb, ...] = (
 
 FONT_PX = 13
 """Height of the letters."""
-_LETTER_PX = 7.2
+LETTER_PX = 7.2
 """Upper estimate of a character's width."""
-_PAD, _LINE_PX = 10, 20
+PAD, LINE_PX = 10, 20
+"""Margin of a picture, and height of a line of text."""
 _FACET_GAP_PX = 12
 _LONG = 9
 """Labels with more characters than that are written with a power of ten."""
@@ -135,7 +137,30 @@ class Stroke:
     dots: bool = False
 
 
-Shape: TypeAlias = Rule | Words | Shade | Stroke
+@dataclass(frozen=True, slots=True)
+class Fill:
+    """A rectangle filled with a colour."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    rgb: Rgb
+
+
+@dataclass(frozen=True, slots=True)
+class Raster:
+    """Pixels stretched over a rectangle."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    pixels: npt.NDArray[np.uint8]
+    """Shape (rows, columns, 3)."""
+
+
+Shape: TypeAlias = Rule | Words | Shade | Stroke | Fill | Raster
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,8 +174,8 @@ class Drawing:
 
 
 @dataclass(frozen=True, slots=True)
-class _Frame:
-    """The rectangle in which data are drawn."""
+class Frame:
+    """The rectangle in which data are drawn, in pixels, and the limits of its axes."""
 
     left: float
     top: float
@@ -160,46 +185,49 @@ class _Frame:
     y: Limits
 
     def xs(self, values: FloatArray | float) -> FloatArray:
+        """Return the pixel columns of values."""
         return np.asarray(self.left + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0])
                           * (self.right - self.left))  # fmt: skip
 
     def ys(self, values: FloatArray | float) -> FloatArray:
+        """Return the pixel rows of values."""
         return np.asarray(self.bottom - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0])
                           * (self.bottom - self.top))  # fmt: skip
 
-    def with_y(self, limits: Limits) -> _Frame:
-        return _Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
+    def with_y(self, limits: Limits) -> Frame:
+        """Return the frame with other limits of y."""
+        return Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
 
 
 def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> Drawing:
     """Return the picture of a chart in a size in pixels, with or without the title above it."""
     shapes: list[Shape] = []
-    top: float = _PAD
+    top: float = PAD
     if titled:
-        shapes.append(Words(_PAD, top + _LINE_PX / 2, _cut(chart.title, width - 2 * _PAD), strong=True))
-        top += _LINE_PX + 4
+        shapes.append(Words(PAD, top + LINE_PX / 2, shortened(chart.title, width - 2 * PAD), strong=True))
+        top += LINE_PX + 4
     if not chart.facets:
         legend, lines = _legend(chart.lines, width, top)
         shapes += legend
-        top += lines * _LINE_PX + 4
+        top += lines * LINE_PX + 4
     groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
     scales = [_Scales.of(group, chart.zoomed or chart.path) for group in groups]
-    left = _PAD + max(scale.left_px for scale in scales)
-    right = max(width - _PAD - max(max(scale.right_px for scale in scales), 3 * _LETTER_PX), left + 1)
-    bottom = height - _PAD - 2 * _LINE_PX
+    left = PAD + max(scale.left_px for scale in scales)
+    right = max(width - PAD - max(max(scale.right_px for scale in scales), 3 * LETTER_PX), left + 1)
+    bottom = height - PAD - 2 * LINE_PX
     each = (bottom - top) / len(groups)
     for at, (group, scale) in enumerate(zip(groups, scales, strict=True)):
         upper, lower = top + at * each, top + (at + 1) * each
         if chart.facets:
-            shapes.append(Words(left, upper + _LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True))
-            upper += _LINE_PX + 4
+            shapes.append(Words(left, upper + LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True))
+            upper += LINE_PX + 4
         last = at == len(groups) - 1
         lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
-        frame = _squared(chart, _Frame(left, upper, right, lower, chart.x_limits, scale.left))
+        frame = _squared(chart, Frame(left, upper, right, lower, chart.x_limits, scale.left))
         shapes += _spans(chart, group, frame)
         shapes += _axes(frame, scale, with_x=last)
         shapes += _strokes(chart, group, scale, frame)
-    shapes.append(Words((left + right) / 2, bottom + 1.7 * _LINE_PX, chart.x_label, "middle"))
+    shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, chart.x_label, "middle"))
     return Drawing(chart.title, width, height, tuple(shapes))
 
 
@@ -208,22 +236,23 @@ def color_of(line: Line) -> Rgb:
     return COLORS[line.number % len(COLORS)]
 
 
-def _cut(text: str, width_px: float) -> str:
-    most = max(int(width_px / _LETTER_PX), 1)
+def shortened(text: str, width_px: float) -> str:
+    """Return a text that fits into a width; a truncated one ends in an ellipsis."""
+    most = max(int(width_px / LETTER_PX), 1)
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
 def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape], int]:
     """Return the legend and its number of text lines: a stroke and a name per line, and which use the right scale."""
     shapes: list[Shape] = []
-    x, row = float(_PAD), 0
+    x, row = float(PAD), 0
     two = _with_two_scales(lines)
     for line in lines:
-        text = _cut(line.label + (", right scale" if two and line.other_scale else ""), width - 2 * _PAD - 30)
-        width_px = 30 + len(text) * _LETTER_PX
-        if x > _PAD and x + width_px > width - _PAD:
-            x, row = float(_PAD), row + 1
-        y = top + (row + 0.5) * _LINE_PX
+        text = shortened(line.label + (", right scale" if two and line.other_scale else ""), width - 2 * PAD - 30)
+        width_px = 30 + len(text) * LETTER_PX
+        if x > PAD and x + width_px > width - PAD:
+            x, row = float(PAD), row + 1
+        y = top + (row + 0.5) * LINE_PX
         shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), color_of(line)))
         shapes.append(Words(x + 28, y, text))
         x += width_px + 14
@@ -271,7 +300,7 @@ def limits_of(ends: Sequence[tuple[str, float, float]], zoomed: bool) -> Limits:
     return value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
 
 
-def _labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
+def labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
     """Return round positions between limits, with their labels."""
     positions = ticks(limits, max(count, 1))
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
@@ -283,10 +312,10 @@ def _labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
 
 def _widest(limits: Limits) -> float:
     # The number of ticks depends on the height; with twenty, labels are longest.
-    return max((len(text) for _, text in _labelled(limits, 20)), default=1) * _LETTER_PX + 8
+    return max((len(text) for _, text in labelled(limits, 20)), default=1) * LETTER_PX + 8
 
 
-def _squared(chart: Chart, frame: _Frame) -> _Frame:
+def _squared(chart: Chart, frame: Frame) -> Frame:
     """Use equal scales on both axes, for a path on the field."""
     names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
     if not chart.path or {unit_of(name) for name in names} != {"mm"}:
@@ -297,32 +326,47 @@ def _squared(chart: Chart, frame: _Frame) -> _Frame:
     for (low, high), size_px in ((frame.x, width_px), (frame.y, height_px)):
         more = (scale * size_px - (high - low)) / 2
         limits.append((low - more, high + more))
-    return _Frame(frame.left, frame.top, frame.right, frame.bottom, limits[0], limits[1])
+    return Frame(frame.left, frame.top, frame.right, frame.bottom, limits[0], limits[1])
 
 
-def _axes(frame: _Frame, scale: _Scales, *, with_x: bool) -> list[Shape]:
+def grid_of(frame: Frame, *, with_x: bool = True) -> list[Shape]:
+    """Return the grid behind the data with the labels of the left scale, and of the lower one if `with_x`."""
     shapes: list[Shape] = []
-    count = max(int((frame.bottom - frame.top) / 40), 2)
-    for value, text in _labelled(frame.y, count):
+    for value, text in labelled(frame.y, _labels_above(frame)):
         y = float(frame.ys(value))
         shapes += [Rule(frame.left, y, frame.right, y, faint=True), Words(frame.left - 6, y, text, "end")]
-    for value, text in _labelled(frame.x, max(int((frame.right - frame.left) / 90), 2)):
+    for value, text in labelled(frame.x, max(int((frame.right - frame.left) / 90), 2)):
         x = float(frame.xs(value))
         shapes.append(Rule(x, frame.top, x, frame.bottom, faint=True))
         if with_x:
-            shapes.append(Words(x, frame.bottom + 0.7 * _LINE_PX, text, "middle"))
-    if scale.right:
-        other = frame.with_y(scale.right)
-        for value, text in _labelled(scale.right, count):
-            y = float(other.ys(value))
-            shapes += [Rule(frame.right, y, frame.right + 4, y), Words(frame.right + 7, y, text)]
-        shapes.append(Rule(frame.right, frame.top, frame.right, frame.bottom))
-    shapes.append(Rule(frame.left, frame.top, frame.left, frame.bottom))
-    shapes.append(Rule(frame.left, frame.bottom, frame.right, frame.bottom))
+            shapes.append(Words(x, frame.bottom + 0.7 * LINE_PX, text, "middle"))
     return shapes
 
 
-def _strokes(chart: Chart, lines: Sequence[Line], scale: _Scales, frame: _Frame) -> list[Shape]:
+def _labels_above(frame: Frame) -> int:
+    return max(int((frame.bottom - frame.top) / 40), 2)
+
+
+def borders_of(frame: Frame) -> list[Shape]:
+    """Return the left and the lower axis."""
+    return [
+        Rule(frame.left, frame.top, frame.left, frame.bottom),
+        Rule(frame.left, frame.bottom, frame.right, frame.bottom),
+    ]
+
+
+def _axes(frame: Frame, scale: _Scales, *, with_x: bool) -> list[Shape]:
+    shapes = grid_of(frame, with_x=with_x)
+    if scale.right:
+        other = frame.with_y(scale.right)
+        for value, text in labelled(scale.right, _labels_above(frame)):
+            y = float(other.ys(value))
+            shapes += [Rule(frame.right, y, frame.right + 4, y), Words(frame.right + 7, y, text)]
+        shapes.append(Rule(frame.right, frame.top, frame.right, frame.bottom))
+    return shapes + borders_of(frame)
+
+
+def _strokes(chart: Chart, lines: Sequence[Line], scale: _Scales, frame: Frame) -> list[Shape]:
     shapes: list[Shape] = []
     for line in lines:
         own = frame.with_y(scale.right) if scale.right and line.other_scale else frame
@@ -336,7 +380,7 @@ def _strokes(chart: Chart, lines: Sequence[Line], scale: _Scales, frame: _Frame)
     return shapes
 
 
-def _spans(chart: Chart, lines: Sequence[Line], frame: _Frame) -> list[Shape]:
+def _spans(chart: Chart, lines: Sequence[Line], frame: Frame) -> list[Shape]:
     names = {line.name for line in lines}
     shapes: list[Shape] = []
     for span in chart.spans:
@@ -344,6 +388,6 @@ def _spans(chart: Chart, lines: Sequence[Line], frame: _Frame) -> list[Shape]:
             continue
         x1, x2 = (float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop))
         shapes.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
-        if len(span.text) * _LETTER_PX < x2 - x1:
-            shapes.append(Words((x1 + x2) / 2, frame.bottom - _LINE_PX / 2, span.text, "middle"))
+        if len(span.text) * LETTER_PX < x2 - x1:
+            shapes.append(Words((x1 + x2) / 2, frame.bottom - LINE_PX / 2, span.text, "middle"))
     return shapes

@@ -12,7 +12,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self, TextIO
 
@@ -20,6 +20,7 @@ from tuisim.errors import printable
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
+    from rich.text import Text
 
 
 def echo(line: str = "") -> None:
@@ -67,10 +68,22 @@ def echo_error_lines(text: str) -> None:
             print(printable(line), file=sys.stderr, flush=True)
 
 
-def echo_chart(text: str) -> None:
-    """Write a chart with its colour codes to stdout; its texts must already be printable."""
+def echo_drawn(draw: Callable[[bool], Text], width: int) -> None:
+    """Write a chart to stdout; its texts must already be printable.
+
+    Args:
+        draw: Return the chart; the argument tells whether the terminal has colours.
+        width: In characters.
+    """
+    from rich.console import Console
+
+    console = Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False)
+    colors = console.color_system is not None and not console.no_color
+    # Not printed by the console, which exits the process when a pipe is closed.
+    with console.capture() as captured:
+        console.print(draw(colors), soft_wrap=True)
     with progress_hidden(sys.stdout):
-        sys.stdout.write(text)
+        sys.stdout.write(captured.get())
 
 
 class CsvOut:

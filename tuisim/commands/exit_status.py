@@ -7,7 +7,7 @@ from typing import Any, assert_never
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.core.geometry import Pose, pose_in_words
 from tuisim.errors import counted
-from tuisim.protocol import NO_ANSWER, End, Ended
+from tuisim.protocol import NO_ANSWER, End
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import counts_of
@@ -19,17 +19,17 @@ SIGNALLED = 128
 """Exit codes above this come from a signal; no further program is then run."""
 
 
-def exit_code_of(ended: Ended) -> int:
-    """Return the shell's exit code for the end of a run."""
-    match ended.end:
+def exit_code_of(end: End, exit_code: int) -> int:
+    """Return the shell's exit code for the end of a run; `exit_code` is the program's own."""
+    match end:
         case End.FINISHED:
-            return EXIT_RAISED if ended.exit_code else 0
+            return EXIT_RAISED if exit_code else 0
         case End.TIME_LIMIT | End.STALLED | End.OUTPUT_LIMIT | End.DISK_FULL:
             return EXIT_LIMIT
         case End.RAISED | End.STOPPED | End.DEADLOCK | End.KILLED | End.CRASHED:
             return EXIT_RAISED
         case _:
-            assert_never(ended.end)
+            assert_never(end)
 
 
 def of_unstored(code: int) -> int:

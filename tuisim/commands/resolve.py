@@ -162,15 +162,20 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tupl
     return stored, Prepared(opened, settings_of(chosen), stored.spec)
 
 
-def prepare_runs(words: Sequence[str], arguments: Arguments) -> list[Prepared | NotRun]:
+def prepare_runs(
+    words: Sequence[str], arguments: Arguments, usual_world: WorldFile | None = None
+) -> list[Prepared | NotRun]:
     """Prepare the programs that the user named to run one after another, all in the named world, if any.
 
     An error in one notebook of a folder does not prevent the others from running.
 
+    Args:
+        usual_world: The world if none is named.
+
     Raises:
         ConfigError: a program, magic line, world or option is wrong, or there is no program.
     """
-    world = _world(words, arguments)
+    world = _world(words, arguments) or usual_world
     programs = [word for word in words if not means_world(word)]
     if not programs and world and world.program is not None:
         programs = [world.program]

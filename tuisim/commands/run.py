@@ -319,7 +319,9 @@ def _run_one(
         handle.close()
     if follower.lost:
         echo_error(f"tuisim: {follower.lost} (run {handle.number} contains every line)")
-    ended_code = exit_status.EXIT_LIMIT if reporter.stopped else exit_status.exit_code_of(ended)
+    ended_code = exit_status.exit_code_of(ended.end, ended.exit_code)
+    if reporter.stopped:
+        ended_code = exit_status.EXIT_LIMIT
     code = interrupts.exit_code or follower.cut or ended_code
     if handle.unstored:
         code = exit_status.of_unstored(code)

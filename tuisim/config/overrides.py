@@ -18,6 +18,8 @@ from tuisim.errors import ProfileError, RobotError
 
 _NOT_VARIED = ("program", "autorun", "rays", "panels", "hidden_panels", "obstacle", "remote")
 """Keys of a world file that do not affect a run, or that have no single value."""
+_FIELDS = {"start": "{}", "noise": "{}_noise", "pen": "pen_{}"}
+"""The fields of `Settings` that the keys of a table set."""
 
 
 def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dict[str, Any]:
@@ -50,14 +52,13 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
     return found
 
 
-def fields_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> set[str]:
-    """Return the fields of `Settings` that some keys set by themselves; arguments as in `settings_of_keys`.
+def field_of_key(key: str) -> str:
+    """Return the field of `Settings` that a key sets by itself; empty if there is none.
 
     A key of a robot or profile changes a part of what the option for it chooses, so it is not the same as the option.
     """
-    found = settings_of_keys(values, chosen, path)
-    parts = {key.partition(".")[0] for key in values if "." in key}
-    return {field for field, value in found.items() if value is not None and field not in parts & {"robot", "profile"}}
+    table, dot, last = key.partition(".")
+    return _FIELDS[table].format(last) if dot and table in _FIELDS else "" if dot else key
 
 
 def _nested(values: Mapping[str, Any], at: Location) -> dict[str, Any]:

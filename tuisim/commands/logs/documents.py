@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 import shutil
-import sys
 from functools import partial
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.report import check_report, default_name, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import CHART_FORMATS, Size, format_of, save_chart
-from tuisim.commands.echo import echo, echo_chart, echo_error
+from tuisim.commands.echo import echo, echo_drawn, echo_error
 from tuisim.commands.logs.sources import asked, names_of, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError, LogError, listed
@@ -101,20 +100,13 @@ def _against(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | 
 
 def _show(model: Model, view: View, size: Size | None) -> None:
     """Print the chart, in colour if the terminal supports it."""
-    from rich.console import Console
-
     from tuisim.charts.text_chart import text_of
 
     terminal = shutil.get_terminal_size()
     width, height = size or (max(terminal.columns, _LEAST_COLUMNS), min(max(terminal.lines - 2, _ROWS[0]), _ROWS[1]))
     finer = CHART_FORMATS[".txt"].finer
     chart = chart_of(model, view, width * finer[0], height * finer[1])
-    console = Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False)
-    colors = console.color_system is not None and not console.no_color
-    # Not printed by the console, which exits the process when a pipe is closed.
-    with console.capture() as captured:
-        console.print(text_of(chart, width, height, colors=colors), soft_wrap=True)
-    echo_chart(captured.get())
+    echo_drawn(lambda colors: text_of(chart, width, height, colors=colors), width)
 
 
 def report(arguments: Arguments) -> int:
