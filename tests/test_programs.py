@@ -15,12 +15,14 @@ from tuisim.runs.store import load_run
 
 EXAMPLES: dict[str, dict[str, object]] = {
     "bumper.py": {"background": "Empty_Map", "lines": 2, "samples": 2},
+    "draw_house.py": {"background": "Empty_Map", "lines": 1},
     "draw_light.py": {"background": "Grey_bands", "y_mm": 500.0, "lines": 0},
     "follow_line.py": {"lines": 1, "samples": 0},
     "log_greys.py": {"background": "Grey_bands"},
     "name_colour.py": {"background": "Rainbow_bands", "x_mm": 300.0, "y_mm": 500.0, "lines": 2},
     "read_once.py": {"background": "Grey_bands", "x_mm": 325.0, "lines": 6},
     "square.py": {"background": "Empty_Map", "lines": 4},
+    "stop_at_wall.py": {"background": "Empty_Map", "lines": 1, "samples": 1},
     "until_black.py": {"background": "Grey_bands", "samples": 530},
 }
 """What is known of each run beside that it finishes."""

@@ -35,6 +35,7 @@ from tuisim.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.errors import ConfigError, ObstacleError, RobotError
+from tuisim.goals.files import load_goals
 
 Write = Callable[[str, str], str]
 
@@ -406,4 +407,5 @@ def test_the_files_of_the_readme_work_together(root: Path, tmp_path: Path) -> No
     assert load_obstacles(str(tmp_path / "obstacles.toml")) == (Obstacle(900, 500, 200, 100),)
     explorer = load_robot(str(tmp_path / "explorer.toml"))
     assert [sensor.name for sensor in explorer.sensors] == ["left", "middle", "back", "bumper"]
-    assert len(blocks) == 5
+    assert [goal.name for goal in load_goals(tmp_path / "bands_goals.toml").goals] == ["levels", "black", "finish"]
+    assert len(blocks) == 6

@@ -76,7 +76,7 @@ PLACES = {
         ALONG,
         "missed",
         1.14,
-        "left the area, at 1.14 s, x 701 mm",
+        "left the area at 1.14 s, at x 701 mm",
         3,
     ),
     "inside circle left": Case(

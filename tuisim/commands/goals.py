@@ -8,6 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
+from tuisim.config.build import settings_from
 from tuisim.config.command_line import AS_JSON, Group, argument, command
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, load_goals
@@ -16,6 +17,8 @@ from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
+_WHERE = ("background", "x_mm", "y_mm", "heading_deg")
+"""Settings that the places in a goals file depend on."""
 _MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
 
 
@@ -43,7 +46,7 @@ def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
             run = store.load_run(name)
             found = judge(file.goals, run)
             all_met = all_met and all(each.state is GoalState.MET for each in found)
-            for note in run.notes:
+            for note in (*run.notes, *_differences(file, run)):
                 echo_error(f"note: {note}")
             if as_json:
                 documents.append(_plain(run, found))
@@ -69,6 +72,19 @@ def _names(word: str, store: RunStore) -> Iterator[str]:
     if not found:
         raise ConfigError(f"no runs {word}", "see `tuisim runs`", key="RUN")
     yield from found
+
+
+def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
+    """Yield a note if a run did not start on the mat, or at the place, of a goals file."""
+    try:
+        found = settings_from(run.spec)
+    except ConfigError:
+        # The mat no longer exists.
+        return
+    given = {key: value for key, value in file.settings.items() if key in _WHERE and value is not None}
+    other = [f"{key} {found[key]}, not {value}" for key, value in given.items() if found[key] != value]
+    if other:
+        yield f"run {run.number} was not run in the world of {file.path.name}: {', '.join(other)}"
 
 
 def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location
+from tuisim.config.folders import programs_folder
 from tuisim.config.worlds import means_world, world_from_table
 from tuisim.errors import ConfigError, nearest
 from tuisim.goals.key_lines import line_of_key
@@ -56,10 +57,13 @@ class GoalsFile:
 def load_goals(path: Path | str) -> GoalsFile:
     """Read a goals file, and the world and the pictures that it names.
 
+    Args:
+        path: The file, or the name of an example: `log_greys` and `log_greys_goals.toml` are the same.
+
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
     """
-    path = Path(path).expanduser()
+    path = _found(Path(path).expanduser())
     if not means_world(path.name):
         raise ConfigError("is not a .toml file", "a goals file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
@@ -70,6 +74,15 @@ def load_goals(path: Path | str) -> GoalsFile:
             raise
         line = line_of_key(path.read_text("utf-8", "replace").replace("\r\n", "\n"), error.key)
         raise files.with_location(error, f"{path}, line {line}", error.key) from None
+
+
+def _found(path: Path) -> Path:
+    """Return the file of an example if there is no other file of its name."""
+    if path.parent != Path() or path.exists():
+        return path
+    names = (path.name, f"{path.name}.toml", f"{path.name}_goals.toml")
+    examples = (programs_folder() / name for name in names if name.endswith("_goals.toml"))
+    return next((example for example in examples if example.is_file()), path)
 
 
 def _goals_file(data: Any, path: Path) -> GoalsFile:

@@ -163,8 +163,8 @@ def _first(wrong: Array, text: str, at_start: str, evidence: Evidence, span: Spa
         return Found()
     tick = span.first_tick + int(wrong.argmax())
     x_mm, y_mm = evidence.place_mm(tick)
-    what = at_start if tick == 0 else text
-    return Found(Moment(tick), f"The robot {what}, at {evidence.time_words(tick)}, x {x_mm:.0f} mm, y {y_mm:.0f} mm.")
+    what = at_start if tick == 0 else f"{text} at {evidence.time_words(tick)}"
+    return Found(Moment(tick), f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.")
 
 
 def _points(part: Part, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
@@ -219,7 +219,7 @@ def find_touch(condition: TouchNothing, evidence: Evidence, span: Span) -> Found
     names = [*(_WALLS if walls else ()), *(f"the obstacle at x {o.x_mm:g}, y {o.y_mm:g}" for o in obstacles)]
     did = "came too near to" if condition.gap_mm > CONTACT_MM else "touched"
     x_mm, y_mm = evidence.place_mm(tick)
-    place = f"x {x_mm:.0f} mm, y {y_mm:.0f} mm"
+    place = f"at x {x_mm:.0f} mm, y {y_mm:.0f} mm"
     return Found(Moment(tick), f"The robot {did} {names[number]} at {evidence.time_words(tick)}, {place}.")
 
 

@@ -1,0 +1,143 @@
+"""The goals of the examples: met by the example programs, and not by wrong ones."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.conftest import ROOT, Command
+from tuisim.config.program_file import programs
+from tuisim.goals.files import load_goals
+
+PROGRAMS = ROOT / "programs"
+EXAMPLES = {path.name.removesuffix("_goals.toml"): path for path in sorted(PROGRAMS.glob("*_goals.toml"))}
+
+CASES: dict[str, tuple[str, tuple[object, ...]]] = {
+    **{name: (name, ()) for name in EXAMPLES},
+    **{f"{name}, ev3": (name, ("--profile", "ev3")) for name in EXAMPLES},
+    # Under nbev3devsim, as in the browser simulator, on_for_rotations ends early: no square closes.
+    **{
+        f"{name}, nbev3devsim": (name, ("--profile", "nbev3devsim"))
+        for name in ("log_greys", "stop_at_wall", "follow_line")
+    },
+    "log_greys, light noise": ("log_greys", ("-N", 2, "--seed", 3)),
+    "stop_at_wall, motor noise": ("stop_at_wall", ("-M", 50, "--seed", 3)),
+    "follow_line, noise": ("follow_line", ("-N", 20, "-M", 50, "--seed", 3)),
+    "square, motor noise": ("square", ("-M", 20, "--seed", 3)),
+    "draw_house, motor noise": ("draw_house", ("-M", 20, "--seed", 3)),
+}
+
+
+def checked(here: Command, *words: object) -> list[dict[str, Any]]:
+    """What `goals check` says about the goals of a run."""
+    (found,) = json.loads(here("goals", "check", *words, "--json").stdout)
+    goals: list[dict[str, Any]] = found["goals"]
+    return goals
+
+
+@pytest.mark.parametrize(("name", "words"), CASES.values(), ids=CASES)
+def test_example_meets_its_goals(name: str, words: tuple[object, ...], here: Command) -> None:
+    assert here("run", EXAMPLES[name], *words).returncode == 0
+    assert [(goal["name"], goal["reason"]) for goal in checked(here, name) if goal["state"] != "met"] == []
+
+
+def test_every_example_of_goals_is_complete() -> None:
+    assert len(EXAMPLES) >= 5
+    for name, path in EXAMPLES.items():
+        file = load_goals(path)
+        assert Path(file.program or "").name in {program.name for program in programs()}, name
+        assert file.title
+        assert all(goal.say.endswith(".") for goal in file.goals)
+        assert path.read_text(encoding="utf-8").isascii()
+
+
+WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
+    "log_greys, too rarely": (
+        "log_greys",
+        {"time.sleep(0.1)": "time.sleep(1)"},
+        {
+            "levels": "Colour took 3 of 8 levels; 82.7 did not come after 100, the nearest was",
+            "black": "away.",
+            "straight": "left the area at",
+        },
+    ),
+    "log_greys, goes on": (
+        "log_greys",
+        {"tank_drive.off()": "tank_drive.on_for_rotations(50, 50, 2)"},
+        {"black": "away."},
+    ),
+    "log_greys, turns": (
+        "log_greys",
+        {"on(SpeedPercent(50), SpeedPercent(50))": "on(SpeedPercent(50), SpeedPercent(45))"},
+        {"straight": "left the area at"},
+    ),
+    "stop_at_wall, blindly": (
+        "stop_at_wall",
+        {"tank_drive.on(": "tank_drive.on_for_rotations(", "(30))": "(30), 6)", "while": "if"},
+        {
+            "near": "At the end the robot was 126 mm away.",
+            "no_touch": "touched the obstacle at x 1500, y 200",
+            "sensor": "calls on_for_rotations",
+        },
+    ),
+    "stop_at_wall, too late": (
+        "stop_at_wall",
+        {"STOP_CM = 15": "STOP_CM = 3"},
+        {"near": "At the end", "no_touch": "“near” was not met."},
+    ),
+    "stop_at_wall, never stops": (
+        "stop_at_wall",
+        {"STOP_CM = 15": "STOP_CM = -1"},
+        {"near": "At the end", "no_touch": "touched the obstacle", "finish": "Not before 15 s"},
+    ),
+    "follow_line, straight on": (
+        "follow_line",
+        {"steering = GAIN * (left - right)": "steering = 0"},
+        {
+            "round": "",
+            "stick": "“round” was not met.",
+            "on_the_line": "",
+            "stop": "At the end",
+            "finish": "did not finish: time limit",
+        },
+    ),
+    "square, wrong corners": (
+        "square",
+        {"SPACING_MM = 180": "SPACING_MM = 172"},
+        {"corners": "came no nearer than", "closed": "At the end the robot was", "sides": "of the drawing is"},
+    ),
+    "square, three sides": (
+        "square",
+        {"range(4)": "range(3)"},
+        {"corners": "to place 4 of 4 (300, 800) after place 3", "closed": "At the end", "sides": "of the picture is"},
+    ),
+    "square, an error": (
+        "square",
+        {'    print("side"': '    print("side" + 1'},
+        {"corners": "after place 1", "closed": "At the end", "sides": "of the picture", "finish": "TypeError"},
+    ),
+    "draw_house, no roof": (
+        "draw_house",
+        {"roof_mm = 200 * 2**0.5": "roof_mm = 0.1"},
+        {"house": "of the picture is drawn", "roof": "to place 2 of 2", "said": "“roof” was not met."},
+    ),
+    "draw_house, says nothing": ("draw_house", {"print": "str"}, {"said": "The program printed nothing."}),
+}
+
+
+@pytest.mark.parametrize(("name", "changes", "missed"), WRONG.values(), ids=WRONG)
+def test_wrong_program_misses_goals(
+    name: str, changes: dict[str, str], missed: dict[str, str], here: Command, tmp_path: Path
+) -> None:
+    text = (PROGRAMS / f"{name}.py").read_text(encoding="utf-8")
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "mine.py").write_text(text, encoding="utf-8")
+    here("run", EXAMPLES[name], "mine.py", "--timeout", 60)
+    found = {goal["name"]: goal["reason"] for goal in checked(here, name) if goal["state"] == "missed"}
+    assert list(found) == list(missed), found
+    assert all(words in found[goal] for goal, words in missed.items()), found
