@@ -58,9 +58,9 @@ def test_results_do_not_depend_on_the_number_of_jobs() -> None:
     assert len({one.x_mm for one in alone}) == 12
 
 
-def test_a_task_gives_what_a_single_run_gives() -> None:
+def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
     task = _task(LOGS, 5, keep=Keep.ALL)
-    result = execute(task)
+    result = execute(task, tmp_path)
     handle = start_run(task.program, task.spec, task.options)
     over(handle)
     kept = RunStore().load_run(result.run_id)
@@ -71,36 +71,36 @@ def test_a_task_gives_what_a_single_run_gives() -> None:
 
 
 @pytest.mark.parametrize("end", ENDS)
-def test_each_end_is_a_result(end: str) -> None:
+def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
     text, code, error = ENDS[end]
     options = RunOptions(stall_limit_s=0.2 if end == "stalled" else 60.0)
-    result = execute(_task(text, prelude="none", options=options))
+    result = execute(_task(text, prelude="none", options=options), tmp_path)
     assert (result.end, result.exit_code) == (end, code)
     assert error in result.error
     assert result.run_id == ""
 
 
 @pytest.mark.parametrize(("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
-def test_failed_runs_are_kept(text: str, kept: bool) -> None:
+def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
     goals = (Goal(name="end", condition=Finish()),)
-    result = execute(_task(text, goals=goals, keep=Keep.FAILED))
+    result = execute(_task(text, goals=goals, keep=Keep.FAILED), tmp_path)
     assert bool(result.run_id) is kept
     assert (result.judgements[0].state is GoalState.MET) is not kept
 
 
-def test_a_mat_that_does_not_exist_is_a_result() -> None:
+def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:
     task = _task("x = 1")
     world = replace(task.spec.world, background="Nowhere")
-    result = execute(replace(task, spec=replace(task.spec, world=world)))
+    result = execute(replace(task, spec=replace(task.spec, world=world)), tmp_path)
     assert result.end == ""
     assert "Nowhere" in result.error
 
 
 @pytest.mark.slow
-def test_tasks_of_a_worker_that_was_killed_are_executed_again() -> None:
+def test_tasks_of_a_worker_that_was_killed_are_executed_again(tmp_path: Path) -> None:
     tasks = [_task(LOGS, index) for index in range(12)]
-    expected = list(map(execute, tasks))
-    running = pool._Pool(2)
+    expected = [execute(task, tmp_path) for task in tasks]
+    running = pool._Pool(2, tmp_path)
     try:
         results = running.results(iter(tasks))
         found = [next(results)]

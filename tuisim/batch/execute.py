@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from pathlib import Path
 
 from tuisim.batch.task import OUTPUT_CHARACTERS, Keep, Result, Task, VariableStatistics
 from tuisim.config.mat_cache import FieldFiles, prepare
@@ -23,13 +24,17 @@ from tuisim.runs.temporary import TemporaryRun
 MATS_KEPT = 20
 
 
-def execute(task: Task) -> Result:
+def execute(task: Task, folder: Path) -> Result:
     """Run a task and return its result. Blocks until the run is over; never raises an error of the run.
+
+    Args:
+        task: The task.
+        folder: Where its recording is until it has been evaluated; see `runs.temporary.batch_folder`.
 
     Raises:
         LogError: the recording cannot be read, or a run to be kept cannot be stored.
     """
-    with TemporaryRun() as temporary:
+    with TemporaryRun(folder) as temporary:
         try:
             handle = RunHandle(task.program, task.spec, _field_files(task.spec), task.options, temporary, of_many=True)
         except TuisimError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
 import types
@@ -12,11 +13,13 @@ from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
 from math import nan
 from multiprocessing.context import SpawnContext, SpawnProcess
+from pathlib import Path
 from typing import Any
 
 from tuisim.batch.execute import execute
 from tuisim.batch.task import Result, Task
 from tuisim.runs.process import warm_up
+from tuisim.runs.temporary import batch_folder
 
 CHUNK = 4
 """Tasks that a worker gets at once: to hand them over one by one costs as much as a short run."""
@@ -48,16 +51,19 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Iterator[Result]:
     Raises:
         LogError: a recording cannot be read, or a run to be kept cannot be stored.
     """
-    jobs = jobs or default_jobs()
-    if jobs == 1:
-        warm_up()
-        yield from map(execute, tasks)
-        return
-    pool = _Pool(jobs)
+    jobs, folder = jobs or default_jobs(), batch_folder()
     try:
-        yield from pool.results(iter(tasks))
+        if jobs == 1:
+            warm_up()
+            yield from (execute(task, folder) for task in tasks)
+            return
+        pool = _Pool(jobs, folder)
+        try:
+            yield from pool.results(iter(tasks))
+        finally:
+            pool.stop()
     finally:
-        pool.stop()
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 class _Pool:
@@ -65,10 +71,11 @@ class _Pool:
 
     Args:
         jobs: Their number.
+        folder: For the recordings.
     """
 
-    def __init__(self, jobs: int) -> None:
-        self._jobs = jobs
+    def __init__(self, jobs: int, folder: Path) -> None:
+        self._jobs, self._folder = jobs, folder
         self._pending: dict[Future[list[Result]], list[Task]] = {}
         self._tries: dict[int, int] = {}
         self._start()
@@ -94,7 +101,7 @@ class _Pool:
                 yield from self._start_again()
 
     def _submit(self, chunk: list[Task]) -> None:
-        self._pending[self._executor.submit(_execute_all, chunk)] = chunk
+        self._pending[self._executor.submit(_execute_all, chunk, self._folder)] = chunk
 
     def _start_again(self) -> Iterator[Result]:
         """Replace all workers, and submit what was not done; yield results for tasks that end every worker."""
@@ -136,8 +143,8 @@ def _prepare_worker() -> None:
     warm_up()
 
 
-def _execute_all(tasks: Sequence[Task]) -> list[Result]:
-    return [execute(task) for task in tasks]
+def _execute_all(tasks: Sequence[Task], folder: Path) -> list[Result]:
+    return [execute(task, folder) for task in tasks]
 
 
 class _Worker(SpawnProcess):

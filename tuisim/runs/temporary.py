@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import os
 import shutil
 import tempfile
+import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,16 +17,49 @@ from typing import Any
 
 from tuisim.core.spec import RunSpec
 from tuisim.protocol import Ended
-from tuisim.runs.run_folder import StoredRun, new_run_data, read_run, read_run_file, run_document, write_run_file
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, read_run_file, write_run_file
 from tuisim.runs.store import NewRun
 from tuisim.source import Program
 
+_MEMORY = Path("/dev/shm")
+"""A file system in memory, on Linux: to create and delete files on a disk takes longer than a short run."""
+_FREE_BYTES = 2 << 30
+"""It is used with at least this much space: programs may print a lot."""
+
+
+_PREFIX = "tuisim-batch-"
+_LEFT_OVER_S = 24 * 3600.0
+
+
+def batch_folder() -> Path:
+    """Create a folder for the temporary runs of a batch, and delete what killed processes have left a day ago."""
+    parent = _parent()
+    for folder in parent.glob(f"{_PREFIX}*"):
+        with suppress(OSError):
+            if time.time() - folder.stat().st_mtime > _LEFT_OVER_S:
+                shutil.rmtree(folder, ignore_errors=True)
+    return Path(tempfile.mkdtemp(prefix=_PREFIX, dir=parent))
+
+
+def _parent() -> Path:
+    default = Path(tempfile.gettempdir())
+    try:
+        space = os.statvfs(_MEMORY)
+    except OSError:
+        return default
+    has_room = space.f_bavail * space.f_frsize >= _FREE_BYTES
+    return _MEMORY if has_room and os.access(_MEMORY, os.W_OK) else default
+
 
 class TemporaryRun:
-    """Folder of one run that is deleted at the end of a `with` block. It stands in for the store of a `RunHandle`."""
+    """Folder of one run that is deleted at the end of a `with` block. It stands in for the store of a `RunHandle`.
 
-    def __init__(self) -> None:
-        self.folder = Path(tempfile.mkdtemp(prefix="tuisim-"))
+    Args:
+        parent: Where it is created; see `batch_folder`.
+    """
+
+    def __init__(self, parent: Path) -> None:
+        self.folder = Path(tempfile.mkdtemp(dir=parent))
 
     def __enter__(self) -> TemporaryRun:
         return self
@@ -44,7 +81,7 @@ class TemporaryRun:
         created = datetime.now(UTC).isoformat(timespec="milliseconds")
         run_id = self.folder.name
         data = new_run_data(run_id, 0, created, program, spec, field, options, live)
-        (self.folder / "run.json").write_bytes(run_document(data))
+        (self.folder / RUN_FILE).write_text(json.dumps(data), "utf-8")
         return NewRun(run_id, 0, self.folder)
 
     def finish(self, _run_id: str, _end: Ended) -> None:
