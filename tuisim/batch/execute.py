@@ -36,7 +36,15 @@ def execute(task: Task, folder: Path) -> Result:
     """
     with TemporaryRun(folder) as temporary:
         try:
-            handle = RunHandle(task.program, task.spec, _field_files(task.spec), task.options, temporary, of_many=True)
+            handle = RunHandle(
+                task.program,
+                task.spec,
+                _field_files(task.spec),
+                task.options,
+                temporary,
+                of_many=not task.isolate,
+                isolated=task.isolate,
+            )
         except TuisimError as error:
             return _not_started(task, error)
         try:

@@ -41,6 +41,8 @@ class Task:
     parameters: Mapping[str, Value] = field(default_factory=dict)
     """Values that distinguish it from the other tasks, by name."""
     keep: Keep = Keep.NONE
+    isolate: bool = False
+    """Whether it runs through bubblewrap, without network and without the user's files."""
     real_time_limit_s: float = 0.0
     """Real seconds after which it is stopped; 0 is no limit."""
 

@@ -130,10 +130,21 @@ def _template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashabl
     return program.prelude, field, replace(spec, seed=0, world=world)
 
 
+def _needs(program: Program, field: FieldFiles) -> list[Path]:
+    """Return the files and folders that a program reads besides its run folder and its working directory."""
+    own = [program.module_folder or os.path.dirname(program.path), *program.python_path]
+    return [
+        *(Path(os.path.abspath(folder)) for folder in own if folder),
+        field.pixels,
+        *(path for _, path in field.sums),
+    ]
+
+
 class RunHandle:
     """One run: its child process, pipes and recording. Create it with `start_run`.
 
-    With `of_many` its process is forked from a template that is kept for other runs of the same robot and world.
+    With `of_many` its process is forked from a template that is kept for other runs of the same robot and world. With
+    `isolated` it is started through bubblewrap instead.
     """
 
     def __init__(
@@ -144,6 +155,7 @@ class RunHandle:
         options: RunOptions,
         store: RunFolders,
         of_many: bool = False,
+        isolated: bool = False,
     ) -> None:
         self.program, self.spec, self.field = program, spec, field
         self._options, self._store = options, store
@@ -172,7 +184,10 @@ class RunHandle:
         """Why the run or its end is not stored; empty if it is."""
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
-                run.folder, program.working_directory, _template_key(program, spec, field) if of_many else None
+                run.folder,
+                program.working_directory,
+                _template_key(program, spec, field) if of_many else None,
+                _needs(program, field) if isolated else None,
             )
         except OSError as error:
             self._store.forget(run.id)
@@ -418,7 +433,7 @@ def _here() -> str:
         return ""
 
 
-def _python_path() -> tuple[str, ...]:
+def user_python_path() -> tuple[str, ...]:
     """Return the folders of the user's PYTHONPATH; an empty one is the current folder, as in Python."""
     folders = os.environ.get("PYTHONPATH")
     return tuple(os.path.abspath(folder) for folder in folders.split(os.pathsep)) if folders else ()
@@ -433,5 +448,5 @@ def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunSt
     """
     parse_breakpoints(options.breaks, spec.robot)
     if not program.working_directory:
-        program = replace(program, python_path=_python_path(), working_directory=_here())
+        program = replace(program, python_path=user_python_path(), working_directory=_here())
     return RunHandle(program, spec, field_files(spec), options, store or RunStore())

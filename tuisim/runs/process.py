@@ -21,6 +21,7 @@ import msgspec
 from tuisim.atomic import private
 from tuisim.errors import HostError
 from tuisim.protocol import EVENTS, Message
+from tuisim.runs.isolation import spawn_isolated
 from tuisim.runs.warm import ChildProcess, Template, WarmProcess
 from tuisim.source import source_lines
 
@@ -73,7 +74,10 @@ def cool_down() -> None:
 
 
 def start_child(
-    folder: Path, working_directory: str, template_key: Hashable = None
+    folder: Path,
+    working_directory: str,
+    template_key: Hashable = None,
+    isolated_with: Sequence[Path] | None = None,
 ) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run of a folder.
 
@@ -83,13 +87,15 @@ def start_child(
         folder: The run folder.
         working_directory: Initial working directory, if it still exists.
         template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
+        isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
+            started by itself, isolated from the others. None starts it without isolation.
 
     Returns:
         The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
         whose end it dies.
     """
     _Starts.count += 1
-    if _Starts.count > 1:
+    if _Starts.count > 1 and isolated_with is None:
         warm_up()
     command_read, command_fd = os.pipe()
     event_fd, event_write = os.pipe()
@@ -98,7 +104,14 @@ def start_child(
     try:
         with open(folder / "child.log", "wb", opener=private) as log:
             cwd = working_directory if os.path.isdir(working_directory) else None
-            process = _fork(folder, cwd, log.fileno(), inherited, template_key) or _spawn(folder, cwd, log, inherited)
+            process: ChildProcess
+            if isolated_with is None:
+                forked = _fork(folder, cwd, log.fileno(), inherited, template_key)
+                process = forked or _spawn(folder, cwd, log, inherited)
+            else:
+                command = [*_command(), str(folder), *map(str, inherited)]
+                writable = [folder, Path(cwd)] if cwd else [folder]
+                process = spawn_isolated(command, _environment(), log, inherited, writable, isolated_with)
     finally:
         for fd in inherited:
             os.close(fd)

@@ -1,0 +1,111 @@
+"""`tuisim mark --isolate`: through bubblewrap where it can start, else refused with the reason."""
+
+from __future__ import annotations
+
+import os
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+from tests.marking.right import HOPS
+from tuisim.errors import ConfigError
+from tuisim.runs.isolation import check_isolation
+
+GOALS = """\
+title = "Isolation"
+background = "Grey_bands"
+
+[[goal]]
+name = "finish"
+finish = true
+"""
+
+
+def _refusal() -> str:
+    """Return why this machine cannot isolate programs; empty if it can."""
+    try:
+        check_isolation()
+    except ConfigError as error:
+        return str(error)
+    return ""
+
+
+@pytest.fixture
+def port() -> Iterator[int]:
+    """A port of this machine that accepts connections."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield int(server.getsockname()[1])
+
+
+@pytest.fixture
+def marked(tmp_path: Path, here: Command, port: int) -> dict[str, list[str]]:
+    """The rows of isolated programs by name; empty where isolation is refused."""
+    (tmp_path / "secret.txt").write_text("secret")
+    programs = {
+        "drives": HOPS,
+        "own_files": "open('notes.txt', 'w').write('x')\nprint(open('notes.txt').read())\n",
+        "reads_beside": f"print(open({str(tmp_path / 'secret.txt')!r}).read())\n",
+        "reads_users": "print(open('/etc/passwd').read())\n",
+        "writes_system": "open('/usr/x', 'w')\n",
+        "connects": f"import socket\nsocket.create_connection(('127.0.0.1', {port}), 5)\n",
+        "sends": "import socket\nsocket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(b'x', ('192.0.2.1', 9))\n",
+        "kills_others": "import os\nos.kill(os.getppid() or 4711, 0)\n",
+        "stuck": "import re\nre.match('(a+)+$', 'a' * 50 + 'b')\n",
+    }
+    (tmp_path / "goals.toml").write_text(GOALS)
+    (tmp_path / "class").mkdir()
+    for name, text in programs.items():
+        (tmp_path / "class" / f"{name}.py").write_text(text)
+    words = ("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    done = here(*words, "--isolate")
+    if refusal := _refusal():
+        assert (done.returncode, done.stdout, done.stderr) == (2, "", f"tuisim: {refusal}\n")
+        return {}
+    assert done.returncode == 0, done.stderr
+    return {line.partition(".py ")[0]: line.split() for line in done.stdout.splitlines() if ".py " in line}
+
+
+@pytest.mark.slow
+def test_an_isolated_program_sees_its_own_folder_and_no_network(marked: dict[str, list[str]]) -> None:
+    if marked:
+        assert {name for name, row in marked.items() if row[1] == "1"} == {"drives", "own_files"}
+        reasons = {name: next(word for word in row if word.endswith("Error:")) for name, row in marked.items()
+                   if name not in ("drives", "own_files", "stuck")}  # fmt: skip
+        assert reasons == {
+            "reads_beside": "FileNotFoundError:",
+            "reads_users": "FileNotFoundError:",
+            "writes_system": "OSError:",
+            "connects": "ConnectionRefusedError:",
+            "sends": "OSError:",
+            "kills_others": "ProcessLookupError:",
+        }
+        # It is stopped like any other program, with its line.
+        assert "in line 2" in " ".join(marked["stuck"])
+
+
+def test_isolation_without_bubblewrap_is_refused(
+    tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "goals.toml").write_text(GOALS)
+    (tmp_path / "ada.py").write_text("")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    done = here("mark", "goals.toml", "ada.py", "--isolate")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "tuisim: --isolate: bwrap is not installed (install bubblewrap, or leave --isolate out)\n"
+
+
+def test_isolation_is_refused_with_the_reason_of_bubblewrap(
+    tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "goals.toml").write_text(GOALS)
+    (tmp_path / "ada.py").write_text("")
+    bwrap = tmp_path / "bwrap"
+    bwrap.write_text("#!/bin/sh\necho 'bwrap: No permissions to create a new namespace' >&2\nexit 1\n")
+    bwrap.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    done = here("mark", "goals.toml", "ada.py", "--isolate")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "cannot start here: bwrap: No permissions to create a new namespace" in done.stderr

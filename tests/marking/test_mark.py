@@ -1,0 +1,197 @@
+"""`tuisim mark`, the whole command: the class has its expected marks, and nothing of the machine is in the results."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from tests.conftest import ROOT, Command
+from tests.marking.student import GOAL_POINTS, Student
+from tests.marking.the_class import CLASS, write_class
+from tests.running import PATIENCE_S
+from tuisim.errors import printable
+
+GOALS = Path(__file__).with_name("goals.toml")
+SEEDS = "0,1"
+FEW = ("ada.py", "ben.py", "gustav.py", "raises.py", "empty.py", "zip.py", "viktor")
+PROCESSES_S = 600.0
+
+
+def _few(*names: str) -> tuple[Student, ...]:
+    return tuple(student for student in CLASS if student.name in names)
+
+
+def _command(*words: str) -> list[str]:
+    """Mark a class into files named the same wherever they are."""
+    return [
+        *(sys.executable, "-m", "tuisim", "mark", str(GOALS), "class", "--seeds", SEEDS, "--timeout", "30"),
+        *("--export", "marks.csv", "--export", "marks.parquet", "--export", "marks.html", "--feedback", "feedback"),
+        *words,
+    ]
+
+
+def _mark(folder: Path, home: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(home)}
+    return subprocess.run(
+        _command(*words),
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PROCESSES_S,
+        check=False,
+    )
+
+
+def _results(folder: Path) -> dict[str, bytes]:
+    """Return everything that marking has written, by path."""
+    files = [path for path in folder.rglob("*") if path.is_file() and path.relative_to(folder).parts[0] != "class"]
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+@pytest.fixture(scope="module")
+def marked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the class, marked once by one command."""
+    folder = tmp_path_factory.mktemp("marked")
+    write_class(folder / "class")
+    done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "2")
+    assert done.returncode == 0, done.stderr
+    (folder / "stdout.txt").write_text(done.stdout)
+    return folder
+
+
+@pytest.mark.slow
+def test_every_student_of_the_class_has_the_expected_marks(marked: Path) -> None:
+    frame = pd.read_parquet(marked / "marks.parquet").set_index("student")
+    wrong = []
+    for student in CLASS:
+        row = frame.loc[printable(student.name)]
+        points = tuple(row[f"goal_{goal}"] for goal in GOAL_POINTS)
+        expected = tuple(0.0 if goal in student.missed else float(most) for goal, most in GOAL_POINTS.items())
+        line = row["line"] if student.line else 0
+        robust = 0.0 if student.missed else 1.0
+        if (points, row["points"], row["robustness"], line) != (expected, student.points, robust, student.line):
+            wrong.append((student.name, points, row["reason"], int(row["line"]), student.why))
+    assert not wrong
+    assert len(frame) == len(CLASS)
+
+
+@pytest.mark.slow
+def test_students_files_are_as_before(marked: Path, tmp_path: Path) -> None:
+    fresh = write_class(tmp_path / "class")
+    files = {path.relative_to(fresh): path.read_bytes() for path in fresh.rglob("*") if path.is_file()}
+    left = {path.relative_to(marked / "class") for path in (marked / "class").rglob("*") if path.is_file()}
+    assert left == set(files)
+    assert all((marked / "class" / path).read_bytes() == content for path, content in files.items())
+
+
+@pytest.mark.slow
+def test_each_failed_run_has_a_report_and_each_student_feedback(marked: Path) -> None:
+    page = (marked / "marks.html").read_text()
+    links = [part.partition('"')[0] for part in page.split('href="')[1:]]
+    assert links and all((marked / link.replace("%20", " ")).is_file() for link in links if "%" not in link)
+    assert "marks-runs/gustav-seed-0.html" in links and not any("ada" in link for link in links)
+    assert len(list((marked / "feedback").iterdir())) == len(CLASS)
+
+
+@pytest.mark.slow
+def test_marking_again_elsewhere_gives_the_same_bytes(marked: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.mktemp("again")
+    write_class(folder / "class")
+    done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "1")
+    (folder / "stdout.txt").write_text(done.stdout)
+    first, second = _results(marked), _results(folder)
+    assert sorted(first) == sorted(second)
+    assert [name for name in first if first[name] != second[name]] == []
+
+
+@pytest.mark.slow
+def test_an_interrupted_marking_is_resumed(tmp_path: Path) -> None:
+    folder, home = tmp_path / "work", tmp_path / "home"
+    write_class(folder / "class", _few(*FEW, "endless.py"))
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(home)}
+    command = subprocess.Popen(_command("--jobs", "1"), cwd=folder, env=environment, stderr=subprocess.PIPE, text=True)
+    give_up = time.monotonic() + PATIENCE_S
+    journals: list[Path] = []
+    while not journals or journals[0].read_bytes().count(b"\n") < 2:
+        assert time.monotonic() < give_up
+        time.sleep(0.01)
+        journals = list((home / "marks").glob("*.jsonl")) if home.exists() else []
+    command.send_signal(signal.SIGINT)
+    said = command.communicate(timeout=PATIENCE_S)[1]
+    done = journals[0].read_bytes().count(b"\n")
+    assert (command.returncode, "with --resume goes on" in said) == (130, True)
+    assert not (folder / "marks.csv").exists()
+    # A run that is known is not run again, so that its line in the journal is the only one.
+    assert _mark(folder, home, "--jobs", "1", "--resume").returncode == 0
+    lines = [line for line in journals[0].read_bytes().split(b"\n") if line]
+    assert 2 <= done < len(lines) == len({line[:80] for line in lines})
+    resumed = _results(folder)
+    assert _mark(folder, home, "--jobs", "1").returncode == 0
+    assert _results(folder) == resumed
+
+
+def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
+    write_class(tmp_path / "class", _few("ada.py", "gustav.py", "raises.py", "zip.py"))
+    (tmp_path / "class" / "notes.doc").write_text("")
+    done = here("mark", GOALS, "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert (done.returncode, done.stdout.splitlines()) == (
+        0,
+        [
+            "student    points  robust  levels  place  heading  wall  done  reason",
+            "ada.py     10      100%    4       3      1        1     1",
+            "gustav.py  7       0%      4       0      1        1     1     "
+            "line 5: At the end the robot was 46 mm away.",
+            "raises.py  0       0%      0       0      0        0     0     "
+            "ZeroDivisionError: division by zero (line 5)",
+            "zip.py     0       0%      0       0      0        0     0     zip.py: is not Python text: invalid or "
+            "missing encoding declaration (save it as UTF-8)",
+            "",
+            "4 students, 1 seed: mean 4.25 of 10 points; 1 with all points",
+        ],
+    )
+    assert done.stderr == "note: not marked, because they are no Python programs: notes.doc\n"
+
+
+BAD = {
+    "no folder": ("goals.toml", "no folder of programs is named (tuisim mark GOALS FOLDER…)"),
+    "no such folder": ("goals.toml clas", "clas: there is no such file or folder"),
+    "folder without programs": ("goals.toml empty", "empty: has no programs"),
+    "goals without a goal": ("world.toml class", "world.toml, line 1: goal: there are no goals"),
+    "no such seeds": ("goals.toml class --seeds 3..x", "--seeds: "),
+    "one seed and many": ("goals.toml class --seed 3", "--seed: marking takes several seeds (give --seeds instead)"),
+    "no workers": ("goals.toml class --jobs 0", "--jobs: must be a whole number from 1 to 256, got '0'"),
+    "unknown format": ("goals.toml class --export marks.doc", "cannot write marks.doc: unknown format '.doc'"),
+    "page into no folder": ("goals.toml class --export no/marks.html", "there is no folder no"),
+    "a file twice": ("goals.toml class --export m.csv --export ./m.csv", "--export: a file is named twice"),
+    "feedback into a file": ("goals.toml class --feedback goals.toml", "--feedback: goals.toml is no folder"),
+    "unknown mat": ("goals.toml class -b Grey", "no such mat 'Grey'"),
+}
+
+
+@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+def test_bad_input_is_refused_before_anything_is_run(tmp_path: Path, here: Command, words: str, message: str) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "goals.toml").write_bytes(GOALS.read_bytes())
+    (tmp_path / "world.toml").write_text('background = "Loop"\n')
+    before = sorted(tmp_path.rglob("*"))
+    done = here("mark", *words.split())
+    assert (done.returncode, done.stdout, message in done.stderr) == (2, "", True), done.stderr
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_the_world_of_the_goals_replaces_that_of_a_magic_line(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class").mkdir()
+    cheat = "# %%sim_magic_preloaded -b Empty_Map -x 1750 -y 500\n"
+    (tmp_path / "class" / "cheat.py").write_text(cheat)
+    done = here("mark", GOALS, "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert done.stdout.splitlines()[1].split()[:2] == ["cheat.py", "0"]

@@ -1,0 +1,238 @@
+"""`tuisim mark`: the programs of a class against the goals of a task."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tuisim import __version__
+from tuisim.batch.parameters import parse_seeds
+from tuisim.batch.task import Keep
+from tuisim.charts.files import write_whole
+from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, table, tell
+from tuisim.commands.listings import names_of
+from tuisim.config.build import build_run_spec
+from tuisim.config.command_line import Arguments, Value, argument, choice, command, option, shared_options
+from tuisim.config.options import APP, PANEL, number, settings_of, whole
+from tuisim.errors import ConfigError, ExportError, counted, listed, printable
+from tuisim.goals.files import GoalsFile, load_goals
+from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
+from tuisim.marks.feedback import write_feedback
+from tuisim.marks.frame import export_marks
+from tuisim.marks.journal import Journal, journal_of
+from tuisim.marks.outcome import Outcome
+from tuisim.marks.page import page_of
+from tuisim.marks.reports import folder_of, write_reports
+from tuisim.marks.runs import STALL_LIMIT_S, Entry, Plan, outcomes_of
+from tuisim.marks.sheet import Column, Sheet, lines_of, sheet_of, summary_of
+from tuisim.marks.students import Found, Student, find_students
+from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.isolation import check_isolation
+
+PAGE_SUFFIXES = (".html", ".htm")
+DEFAULT_SEEDS = "0..19"
+DEFAULT_TIME_LIMIT_S = 120.0
+MAX_TIME_LIMIT_S = 1e6
+MAX_JOBS = 256
+EXIT_INTERRUPTED = 130
+LEAST_REASON = 20
+"""Characters of a reason that are shown in a narrow terminal."""
+
+_limit = number(0.001, MAX_TIME_LIMIT_S)
+_jobs = whole(1, MAX_JOBS)
+_RUNS, _RESULTS = "Runs", "Results"
+_OPTIONS = (
+    argument("goals", "GOALS"),
+    argument("folders", "FOLDER…", nargs=-1),
+    option("--seeds", default=DEFAULT_SEEDS, metavar="SEEDS", group=_RUNS,
+           help=f"Run each program with these seeds: 0..19, or 1,2,5 ({DEFAULT_SEEDS})."),
+    option("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", group=_RUNS,
+           type=Value(lambda text: _limit(text, "--timeout")),
+           help=f"Stop a program after this simulated time in seconds ({DEFAULT_TIME_LIMIT_S:g})."),
+    option("--input", multiple=True, metavar="TEXT", group=_RUNS,
+           help="Answer an input() of each program; may be repeated."),
+    option("--jobs", default=0, metavar="N", group=_RUNS, type=Value(lambda text: _jobs(text, "--jobs")),
+           help="Run this many programs side by side (one for each processor)."),
+    option("--isolate", is_flag=True, group=_RUNS,
+           help="Run each program through bubblewrap, without network and without your files."),
+    option("--resume", is_flag=True, group=_RUNS,
+           help="Go on where an earlier marking with these goals ended; run only what is new or has changed."),
+    choice("--keep", [keep.value for keep in Keep], default=Keep.FAILED.value, group=_RUNS,
+           help="Which runs to store (failed)."),
+    option("--export", multiple=True, metavar="FILE", type=Value(), group=_RESULTS,
+           help=f"Write the marks: .html is a page with a report of each stored run, else {ALLOWED}; may be repeated."),
+    option("--feedback", metavar="FOLDER", type=Value(), group=_RESULTS,
+           help="Write a text file for each student: what was met, what was missed, and why."),
+)  # fmt: skip
+
+
+@command(
+    *_OPTIONS,
+    *shared_options(hidden=(APP, PANEL), names=names_of),
+    help="""Mark the programs of a class.
+
+    GOALS is a file with the goals of the task and its world. A FOLDER contains a file NAME.py or a folder for each
+    student; a student's folder contains the program main.py, or a single one, or the one named in GOALS.
+
+    The world is that of GOALS; only where it names none, that of a program's magic line. A program that hangs, floods
+    or crashes affects its own marks only, but tuisim is not a sandbox: see --isolate.
+
+    Exit code: 0 all programs have marks, 2 bad input, 130 interrupted: --resume goes on.
+    """,
+)
+def mark(**given: Any) -> int:
+    """Mark the programs of a class, and return the exit code.
+
+    Raises:
+        ConfigError: goals, folders or options are wrong; nothing was run.
+        ExportError: a target cannot be written; checked before anything is run.
+        LogError: the journal or a recording cannot be read or written.
+    """
+    arguments = Arguments(**given)
+    task = load_goals(Path(arguments.goals))
+    seeds = parse_seeds(arguments.seeds, "--seeds")
+    _check(arguments, task)
+    found = find_students(
+        arguments.folders, Path(task.program).name if task.program else "", _excluded(arguments, task)
+    )
+    entries, students = _entries(found, task, arguments)
+    plan = Plan(
+        goals=tuple(task.goals),
+        seeds=seeds,
+        options=RunOptions(
+            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=_answers(arguments, task)
+        ),
+        keep=Keep(arguments.keep),
+        jobs=arguments.jobs,
+        isolate=arguments.isolate,
+        version=__version__,
+        arguments=settings_of(task.settings).arguments,
+        python_path=user_python_path(),
+    )
+    if plan.isolate:
+        check_isolation()
+    outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
+    with Progress("marking"):
+        try:
+            _collect(entries, plan, journal_of(task.path), outcomes, resumes=arguments.resume)
+        except KeyboardInterrupt:
+            done = sum(map(len, outcomes.values()))
+            echo_error(f"tuisim: interrupted; {counted(done, 'run')} kept: the same command with --resume goes on")
+            return EXIT_INTERRUPTED
+        sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
+        _write(sheet, students, found.ignored, arguments)
+    _print(sheet, found.ignored)
+    return 0
+
+
+def _check(arguments: Arguments, task: GoalsFile) -> None:
+    """Raise ConfigError or ExportError if something is wrong that would only be noticed after the runs."""
+    if not arguments.folders:
+        raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
+    if "seed" in arguments.settings:
+        raise ConfigError("marking takes several seeds", "give --seeds instead", key="--seed")
+    if arguments.input and task.answers:
+        raise ConfigError(f"{task.path} has the answers of its dialogues", "give only one of them", key="--input")
+    targets = [Path(target) for target in arguments.export]
+    for target in targets:
+        if target.suffix.lower() in PAGE_SUFFIXES:
+            check_place(target)
+        elif target.suffix.lower() in EXPORTERS:
+            check_target(target)
+        else:
+            allowed = f"a file ends in .html, {ALLOWED}"
+            raise ExportError(f"cannot write {target}: unknown format {target.suffix!r}", allowed)
+    places = [os.path.realpath(target) for target in targets]
+    if len(set(places)) < len(places):
+        raise ConfigError("a file is named twice", "give each export its own file", key="--export")
+    if arguments.feedback and os.path.exists(arguments.feedback) and not os.path.isdir(arguments.feedback):
+        raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
+
+
+def _columns(task: GoalsFile) -> list[Column]:
+    """Return the goals that a student is shown: not those that are only parts of others."""
+    shown = [goal for goal in task.goals if goal.points or goal.say]
+    return [Column(goal.name, goal.say or goal.name, goal.points, goal.hint) for goal in shown]
+
+
+def _answers(arguments: Arguments, task: GoalsFile) -> tuple[str, ...]:
+    return tuple(arguments.input) or task.answers
+
+
+def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
+    """Return what may lie among the students' files without being one: the goals, and results."""
+    found = [task.path]
+    for target in map(Path, arguments.export):
+        found += [target, target.with_name(target.name + ".json"), folder_of(target)]
+    if arguments.feedback:
+        found.append(Path(arguments.feedback))
+    return frozenset(path.resolve() for path in found)
+
+
+def _entries(found: Found, task: GoalsFile, arguments: Arguments) -> tuple[list[Entry], list[Student]]:
+    """Return the students whose programs can be run, and all students.
+
+    Raises:
+        ConfigError: the world of the goals, or an option, is wrong.
+    """
+    shared = build_run_spec(settings_of(task.settings, arguments.settings))
+    entries, students = [], []
+    for student in found.students:
+        spec = shared
+        if student.source and not task.settings:
+            try:
+                spec = build_run_spec(settings_of(student.source.options, arguments.settings))
+            except ConfigError as error:
+                student = replace(student, source=None, problem=printable(str(error)))
+        if student.source:
+            entries.append(Entry(student, spec))
+        students.append(student)
+    return entries, students
+
+
+def _collect(
+    entries: Sequence[Entry], plan: Plan, journal: Path, outcomes: dict[str, list[Outcome]], *, resumes: bool
+) -> None:
+    """Run what is to be run; add the outcomes by name of student as they become known."""
+    total = len(entries) * len(plan.seeds)
+    with Journal(journal, resumes=resumes) as known, closing(outcomes_of(entries, plan, known)) as found:
+        for done, (name, outcome) in enumerate(found, start=1):
+            outcomes[name].append(outcome)
+            if outcome.gave_up and len(outcomes[name]) == 1:
+                total -= len(plan.seeds) - 1
+            tell(f"run {done} of {total}", done, total)
+
+
+def _write(sheet: Sheet, students: Sequence[Student], ignored: Sequence[str], arguments: Arguments) -> None:
+    for target in map(Path, arguments.export):
+        if target.suffix.lower() in EXPORTERS:
+            tell(f"writing {target}")
+            export_marks(sheet, target)
+            continue
+        kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
+        links = {}
+        for name, seed, path in write_reports(sheet, target):
+            links[name, seed] = path
+            tell(f"report {len(links)} of {kept}", len(links), kept)
+        write_whole(target, page_of(sheet, links, ignored).encode())
+    if arguments.feedback:
+        write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
+
+
+def _print(sheet: Sheet, ignored: Sequence[str]) -> None:
+    heads, rows = lines_of(sheet)
+    if sys.stdout.isatty():
+        used = max(len(line) for line in table(heads[:-1], [row[:-1] for row in rows]).split("\n"))
+        width = max(LEAST_REASON, shutil.get_terminal_size().columns - used - 2)
+        heads, rows = lines_of(sheet, width)
+    echo_lines(table(heads, rows))
+    echo()
+    echo(summary_of(sheet))
+    if ignored:
+        echo_error(f"note: not marked, because they are no Python programs: {listed(ignored)}")

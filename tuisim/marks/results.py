@@ -1,0 +1,77 @@
+"""Outcomes from the results of tasks: without paths, addresses and control characters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from tuisim.batch.task import Result
+from tuisim.errors import printable
+from tuisim.goals.judge import GoalState, Judgement
+from tuisim.goals.spec import AllOf
+from tuisim.marks.outcome import GoalOutcome, Outcome
+from tuisim.protocol import End
+from tuisim.source import source_lines
+
+_ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
+MOST_CHARACTERS = 300
+"""Longest reason; the rest is cut off."""
+
+
+def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
+    """Return the outcome of a task.
+
+    Args:
+        result: The result of the task.
+        seed: Its seed.
+        folder: The folder in which the program ran; its path does not appear in the outcome.
+    """
+    shown = [f"{place}/" for place in dict.fromkeys((str(folder), str(folder.resolve())))]
+
+    def portable(text: str) -> str:
+        for place in shown:
+            text = text.replace(place, "")
+        return _ADDRESS.sub("0x…", text)
+
+    failure = "" if result.end == End.FINISHED and not result.exit_code else _failure(result)
+    judgements = {one.goal.name: one for one in result.judgements}
+    goals = []
+    for name, one in judgements.items():
+        if one.state is GoalState.MET:
+            goals.append(GoalOutcome(name, True))
+        else:
+            cause = _cause(one, judgements)
+            goals.append(GoalOutcome(name, False, _one_line(portable(cause.reason)), cause.line))
+    return Outcome(
+        seed,
+        result.end,
+        _one_line(portable(failure)),
+        result.error_line,
+        "\n".join(map(printable, source_lines(portable(result.error)))),
+        result.time_s,
+        tuple(goals),
+        result.run_id,
+    )
+
+
+def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
+    """Return the judgement that says why a goal was missed: of goals that must all be met, the first that was not."""
+    if isinstance(judgement.goal.condition, AllOf):
+        for name in judgement.goal.condition.goals:
+            if judgements[name].state is not GoalState.MET:
+                return _cause(judgements[name], judgements)
+    return judgement
+
+
+def _failure(result: Result) -> str:
+    """Return why a program did not finish."""
+    lines = source_lines(result.error.rstrip("\n"))
+    if result.end == End.OUTPUT_LIMIT:
+        return result.summary or "printed too much"
+    return result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
+
+
+def _one_line(text: str) -> str:
+    text = printable(text.strip())
+    return text if len(text) <= MOST_CHARACTERS else text[:MOST_CHARACTERS] + "…"
