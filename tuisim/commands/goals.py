@@ -11,7 +11,7 @@ from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
 from tuisim.config.build import settings_from
 from tuisim.config.command_line import AS_JSON, Group, argument, command
 from tuisim.errors import ConfigError, counted
-from tuisim.goals.files import GoalsFile, load_goals
+from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import GoalState, Judgement, judge, points
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -23,7 +23,7 @@ _MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
 
 
 @command(
-    argument("goals_path", "GOALS"),
+    argument("goals_path", "GOALS", example_names),
     argument("words", "RUN…", lambda: ("last",), nargs=-1),
     AS_JSON,
     help="""Check whether stored runs meet the goals in a file.
@@ -75,13 +75,15 @@ def _names(word: str, store: RunStore) -> Iterator[str]:
 
 
 def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
-    """Yield a note if a run did not start on the mat, or at the place, of a goals file."""
+    """Yield notes if a run is not one of the program alone, from the start that a goals file names."""
+    if run.actions:
+        yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
         found = settings_from(run.spec)
     except ConfigError:
         # The mat no longer exists.
         return
-    given = {key: value for key, value in file.settings.items() if key in _WHERE and value is not None}
+    given = {key: file.settings[key] for key in _WHERE if file.settings.get(key) is not None}
     other = [f"{key} {found[key]}, not {value}" for key, value in given.items() if found[key] != value]
     if other:
         yield f"run {run.number} was not run in the world of {file.path.name}: {', '.join(other)}"
@@ -129,9 +131,10 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
 def _details(judgement: Judgement) -> Iterator[str]:
     line = f", line {judgement.line}" if judgement.line else ""
     for change in judgement.changes:
-        yield f"{change.state} at {change.time_s:.2f} s, x {change.x_mm:.0f} mm, y {change.y_mm:.0f} mm{line}"
+        where = f"{change.state} at {change.time_s:.2f} s, x {change.x_mm:.0f} mm, y {change.y_mm:.0f} mm"
+        yield f"{where}{'' if judgement.reason else line}"
     if judgement.reason:
-        yield judgement.reason
+        yield f"{judgement.reason}{f' (line {judgement.line})' if judgement.line else ''}"
     if judgement.state is GoalState.MISSED and judgement.goal.hint:
         yield f"Hint: {judgement.goal.hint}"
 

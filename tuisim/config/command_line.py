@@ -108,6 +108,8 @@ def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
         names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
         near = [names[name] for name in get_close_matches(error.option_name.lstrip("-"), names, 2)]
         return ConfigError(f"no such option: {error.option_name}", did_you_mean(near) or see)
+    if isinstance(error, click.MissingParameter) and isinstance(error.param, click.Argument):
+        return ConfigError(f"{error.param.make_metavar(ctx)} is missing", see)
     text = error.message.rstrip(".")
     if isinstance(error, click.BadParameter) and error.param:
         return ConfigError(text, see, key=error.param.opts[0])

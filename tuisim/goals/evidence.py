@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from tuisim.config.mat_cache import open_field
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     import numpy as np
 
     Array = np.ndarray[Any, Any]
+
+MAX_ROWS = 200_000
+"""Later rows of output are not judged: a program that floods could fill the memory."""
 
 JudgedRun: TypeAlias = StoredRun | RunHandle
 """A run to judge: a stored one, or one that may still be running."""
@@ -87,9 +91,9 @@ class Evidence:
 
     @cached_property
     def rows(self) -> list[OutputRow]:
-        """The rows that the program printed or read, in order."""
+        """The rows that the program printed or read, in order, up to `MAX_ROWS`."""
         kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT)
-        return [row for row in self._run.output.rows() if row.stream in kept]
+        return list(islice((row for row in self._run.output.rows() if row.stream in kept), MAX_ROWS))
 
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:

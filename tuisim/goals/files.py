@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,6 +31,8 @@ from tuisim.goals.spec import (
 )
 
 MAX_NAME = 60
+_EXAMPLE = "_goals.toml"
+"""The end of the file names of examples."""
 _TEXTS = ("name", "say", "hint")
 _LIMITS = ("before", "after", "until")
 
@@ -58,7 +61,7 @@ def load_goals(path: Path | str) -> GoalsFile:
     """Read a goals file, and the world and the pictures that it names.
 
     Args:
-        path: The file, or the name of an example: `log_greys` and `log_greys_goals.toml` are the same.
+        path: The file, or one of `example_names`.
 
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
@@ -76,13 +79,21 @@ def load_goals(path: Path | str) -> GoalsFile:
         raise files.with_location(error, f"{path}, line {line}", error.key) from None
 
 
+def example_names() -> list[str]:
+    """Return the names of the examples: `log_greys` stands for `log_greys_goals.toml`.
+
+    Raises:
+        ConfigError: there is no folder of programs.
+    """
+    return sorted(path.name.removesuffix(_EXAMPLE) for path in programs_folder().glob(f"*{_EXAMPLE}"))
+
+
 def _found(path: Path) -> Path:
     """Return the file of an example if there is no other file of its name."""
-    if path.parent != Path() or path.exists():
+    if path.parent != Path() or os.path.exists(path):
         return path
-    names = (path.name, f"{path.name}.toml", f"{path.name}_goals.toml")
-    examples = (programs_folder() / name for name in names if name.endswith("_goals.toml"))
-    return next((example for example in examples if example.is_file()), path)
+    name = path.name.removesuffix(_EXAMPLE)
+    return programs_folder() / f"{name}{_EXAMPLE}" if name in example_names() else path
 
 
 def _goals_file(data: Any, path: Path) -> GoalsFile:

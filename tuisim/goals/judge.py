@@ -119,8 +119,12 @@ def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> 
         LogError: the recording is damaged, or the mat no longer exists.
         ConfigError: a goal refers to one that is not among them.
     """
-    judged = _Judge(goals, Evidence(run, field))
-    return tuple(judged.judgement(goal) for goal in goals)
+    import numpy as np
+
+    # Records of a damaged file may hold any numbers.
+    with np.errstate(all="ignore"):
+        judged = _Judge(goals, Evidence(run, field))
+        return tuple(judged.judgement(goal) for goal in goals)
 
 
 def points(judgements: Iterable[Judgement]) -> float:

@@ -45,10 +45,9 @@ def _no_line(condition: Print, pattern: str, rows: list[tuple[int, OutputRow]], 
         return "The program printed nothing."
     if some and condition.in_order and any(re.search(pattern, row.text) for _, row in rows):
         return f"A line that matches {_shown(pattern)} was printed, but not after the lines before it."
-    printed = f"the last of the {len(rows)} is {_shown(rows[-1][1].text)}" if len(rows) > 1 else "the only one is "
-    return (
-        f"No printed line matches {_shown(pattern)}; {printed if len(rows) > 1 else printed + _shown(rows[0][1].text)}."
-    )
+    last = _shown(rows[-1][1].text)
+    printed = "the only one is" if len(rows) == 1 else f"the last of the {len(rows):,} is"
+    return f"No printed line matches {_shown(pattern)}; {printed} {last}."
 
 
 def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:

@@ -1,0 +1,208 @@
+"""`tuisim goals check`: what it prints, its exit codes, and runs that are damaged, interrupted or changed by hand."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+from tests.goals.recorded import Run, ahead, says, wait, world
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import settings_of
+from tuisim.config.worlds import load_world, save_world
+from tuisim.goals.files import example_names, load_goals
+from tuisim.goals.judge import judge
+from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE
+from tuisim.runs.store import RunStore
+
+GOALS = """\
+title = "A task"
+
+[[goal]]
+name = "there"
+say = "Drive to x = 700."
+points = 2
+hint = "Drive on."
+reach = { x_mm = 700 }
+
+[[goal]]
+name = "said"
+print = "done"
+"""
+
+
+@pytest.fixture
+def task(tmp_path: Path, home: Path) -> Path:
+    path = tmp_path / "task.toml"
+    path.write_text(GOALS)
+    return path
+
+
+def record(*, mm: float = 200, text: str = "done") -> Run:
+    run = Run(RunStore(), world(), "")
+    run.do((ahead(mm, 3), says(text, 4), wait(0.5, 5)))
+    return run
+
+
+def test_all_met(task: Path, here: Command) -> None:
+    record().end()
+    done = here("goals", "check", task)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.split("\n") == [
+        "run 1, task.py · A task: 2 of 2 goals, 3 of 3 points",
+        "  ✓ there (2): Drive to x = 700.",
+        "      met at 1.03 s, x 681 mm, y 500 mm, line 3",
+        "  ✓ said (1)",
+        "      met at 1.14 s, x 701 mm, y 500 mm, line 4",
+        "",
+    ]
+
+
+def test_one_missed(task: Path, here: Command) -> None:
+    record(mm=100).end()
+    done = here("goals", "check", task)
+    assert done.returncode == 1
+    assert done.stdout.split("\n")[:5] == [
+        "run 1, task.py · A task: 1 of 2 goals, 1 of 3 points",
+        "  ✗ there (2): Drive to x = 700.",
+        "      missed at 1.07 s, x 600 mm, y 500 mm",
+        "      The robot came no nearer than this: 100 mm away, at 0.57 s. (line 3)",
+        "      Hint: Drive on.",
+    ]
+
+
+def test_open_while_it_runs(task: Path, here: Command) -> None:
+    record(mm=100)
+    done = here("goals", "check", task)
+    assert done.returncode == 1
+    assert done.stdout.split("\n")[1:3] == [
+        "  · there (2): Drive to x = 700.",
+        "      The robot came no nearer than this: 100 mm away, at 0.57 s. (line 3)",
+    ]
+
+
+def test_json(task: Path, here: Command) -> None:
+    record(mm=100).end()
+    (found,) = json.loads(here("goals", "check", task, "--json").stdout)
+    assert (found["run"], found["points"], found["of"]) == (1, 1, 3)
+    assert [(goal["name"], goal["state"], goal["line"], goal["hint"]) for goal in found["goals"]] == [
+        ("there", "missed", 3, "Drive on."),
+        ("said", "met", 4, ""),
+    ]
+    assert found["goals"][1]["changes"][0] | {"x_mm": 0} == {
+        "tick": 57,
+        "time_s": 0.57,
+        "state": "met",
+        "x_mm": 0,
+        "y_mm": 500,
+    }
+
+
+RUNS = {
+    "none": ((), 0, [3]),
+    "last": (("last",), 0, [3]),
+    "number": (("2",), 1, [2]),
+    "several": (("3", "2"), 1, [3, 2]),
+    "range": (("1..3",), 1, [1, 2, 3]),
+    "range beyond": (("2..99",), 1, [2, 3]),
+}
+
+
+@pytest.mark.parametrize(("words", "code", "numbers"), RUNS.values(), ids=RUNS)
+def test_runs_by_name(words: tuple[str, ...], code: int, numbers: list[int], task: Path, here: Command) -> None:
+    for mm in (200, 100, 200):
+        record(mm=mm).end()
+    done = here("goals", "check", task, *words, "--json")
+    assert (done.returncode, [run["run"] for run in json.loads(done.stdout)]) == (code, numbers)
+
+
+BAD = {
+    "no goals file": ((), "tuisim: GOALS is missing (see `tuisim goals check --help`)"),
+    "no such run": (("{task}", "9"), "no run '9'"),
+    "empty range": (("{task}", "7..9"), "RUN: no runs 7..9 (see `tuisim runs`)"),
+    "range backwards": (("{task}", "3..1"), "RUN: no runs 3..1"),
+    "no such file": (("none.toml",), "none.toml: there is no such file"),
+    "long name": (("x" * 300 + ".toml",), "cannot be read: File name too long"),
+    "no such option": (("{task}", "--jsn"), "no such option: --jsn (did you mean --json?)"),
+}
+
+
+@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+def test_bad_input(words: tuple[str, ...], message: str, task: Path, here: Command) -> None:
+    record().end()
+    done = here("goals", "check", *(word.format(task=task) for word in words))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr
+
+
+def test_run_of_another_world_and_by_hand_is_noted(task: Path, here: Command) -> None:
+    task.write_text(f"background = 'Loop'\n{GOALS}[start]\nx_mm = 200\n".replace("[start]", "[start]", 1))
+    run = record()
+    run.recorder.act("set_noise", light=1, motor=0)
+    run.end()
+    done = here("goals", "check", task)
+    assert done.stderr.split("\n") == [
+        "note: run 1 was changed while it ran: 1 action of the user",
+        "note: run 1 was not run in the world of task.toml: background Empty_Map, not Loop, x_mm 500.0, not 200.0",
+        "",
+    ]
+
+
+def test_truncated_and_damaged_telemetry(task: Path, here: Command) -> None:
+    stored = record().end()
+    path = stored.folder / TELEMETRY_FILE
+    data = bytearray(path.read_bytes())
+    data[HEADER_BYTES + 64 * 5 : HEADER_BYTES + 64 * 9] = bytes(range(256))
+    path.write_bytes(data[: HEADER_BYTES + 64 * 50])
+    done = here("goals", "check", task)
+    assert done.returncode == 1
+    assert "✗ there" in done.stdout
+    assert "✓ said" in done.stdout
+    assert done.stderr.startswith("note: telemetry.bin was truncated")
+
+
+@pytest.mark.parametrize("lines", [0, 40], ids=["nothing printed", "printed"])
+def test_run_without_telemetry(lines: int, task: Path, here: Command) -> None:
+    run = record()
+    for _ in range(lines):
+        run.recorder.print("more", 6)
+    stored = run.end()
+    (stored.folder / TELEMETRY_FILE).unlink()
+    done = here("goals", "check", task)
+    assert done.returncode == 1
+    assert "The robot was not simulated at that time." in done.stdout
+
+
+def test_program_that_does_not_compile(task: Path, here: Command) -> None:
+    Path("broken.py").write_text("while True\n")
+    here("run", "broken.py")
+    task.write_text(f"{GOALS}[[goal]]\nname = 'finish'\nfinish = true\n[[goal]]\nname = 'use'\nuse = 'print'\n")
+    done = here("goals", "check", task)
+    assert done.returncode == 1
+    assert "The program did not finish: raised: SyntaxError" in done.stdout
+    assert "The program is not Python: expected ':'. (line 1)" in done.stdout
+
+
+def test_rows_of_a_flood_are_limited(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tuisim.goals.evidence.MAX_ROWS", 5)
+    run = Run(RunStore(), world(), "")
+    run.do([says("x")] * 9 + [says("done")])
+    assert [each.state for each in judge(load_goals(task).goals, run.end())] == ["missed", "missed"]
+
+
+def test_examples_are_found_by_name(here: Command, home: Path) -> None:
+    record().end()
+    for name in example_names():
+        assert here("goals", "check", name).returncode == 1
+        assert here("goals", "check", f"{name}_goals.toml").returncode == 1
+
+
+def test_saving_a_world_keeps_its_goals(task: Path) -> None:
+    (task.parent / "base.toml").write_text("seed = 3\nbackground = 'Loop'\n")
+    task.write_text(f"world = 'base.toml'\n{GOALS}")
+    spec = build_run_spec(settings_of(load_world(task).settings))
+    save_world(spec, task)
+    assert build_run_spec(settings_of(load_world(task).settings)) == spec
+    assert [goal.name for goal in load_goals(task).goals] == ["there", "said"]
