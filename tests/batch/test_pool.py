@@ -19,7 +19,7 @@ from tuisim.batch.task import Keep, Result, Task
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.goals.judge import GoalState
-from tuisim.goals.spec import Finish, Goal
+from tuisim.goals.spec import Finish, Goal, Reach
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -86,6 +86,26 @@ def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
     result = execute(_task(text, goals=goals, keep=Keep.FAILED), tmp_path)
     assert bool(result.run_id) is kept
     assert (result.judgements[0].state is GoalState.MET) is not kept
+
+
+OWN_FILES = """
+import os, shutil
+links = ['/proc/self/fd/' + name for name in os.listdir('/proc/self/fd')]
+files = [os.readlink(link) for link in links if os.path.exists(link)]
+own = [file for file in files if 'tmp_path' in file and file.endswith('.bin')]
+"""
+HARM = {
+    "writes into its recording": ("open(own[0], 'r+b').write(bytes(range(1, 60)))", "finished"),
+    "writes and crashes": ("open(own[0], 'r+b').write(bytes(range(1, 60)))\nos.kill(os.getpid(), 9)", "crashed"),
+    "deletes its recording": ("shutil.rmtree(os.path.dirname(own[0]))", ""),
+}
+
+
+@pytest.mark.parametrize(("harm", "end"), HARM.values(), ids=HARM)
+def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm: str, end: str) -> None:
+    text = OWN_FILES.replace("tmp_path", tmp_path.name) + harm
+    result = execute(_task(text, goals=(Goal("far", Reach(x_mm=1000, y_mm=100)),)), tmp_path)
+    assert (result.end, [one.state for one in result.judgements]) == (end, [GoalState.MISSED] if end else [])
 
 
 def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:

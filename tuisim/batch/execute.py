@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from tuisim.batch.task import OUTPUT_CHARACTERS, Keep, Result, Task, VariableSta
 from tuisim.config.mat_cache import FieldFiles, prepare
 from tuisim.config.mats import background
 from tuisim.core.spec import RunSpec
-from tuisim.errors import TuisimError
+from tuisim.errors import LogError, TuisimError
 from tuisim.goals.judge import GoalState, Judgement, judge
 from tuisim.protocol import End, Ended
 from tuisim.runs.handle import RunHandle
@@ -32,7 +33,7 @@ def execute(task: Task, folder: Path) -> Result:
         folder: Where its recording is until it has been evaluated; see `runs.temporary.batch_folder`.
 
     Raises:
-        LogError: the recording cannot be read, or a run to be kept cannot be stored.
+        LogError: a run to be kept cannot be stored.
     """
     with TemporaryRun(folder) as temporary:
         try:
@@ -50,11 +51,14 @@ def execute(task: Task, folder: Path) -> Result:
         try:
             ended = _to_the_end(handle, task.real_time_limit_s)
             run = handle.stored()
+            judgements = judge(task.goals, run) if task.goals else ()
+            result = _result(task, run, ended, judgements)
+        except LogError:
+            # A program can damage its own recording; that must not end the batch.
+            return _not_started(task, LogError("the program has damaged the recording of its run"))
         finally:
             handle.close()
-        judgements = judge(task.goals, run) if task.goals else ()
-        run_id = _keep(temporary, ended) if _is_kept(task, ended, judgements) else ""
-        return _result(task, run, ended, judgements, run_id)
+        return replace(result, run_id=_keep(temporary, ended)) if _is_kept(task, ended, judgements) else result
 
 
 def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
@@ -93,7 +97,7 @@ def _not_started(task: Task, error: TuisimError) -> Result:
     return Result(task.index, task.parameters, "", 2, str(error), str(error), 0, 0, 0.0, math.nan, math.nan, math.nan)
 
 
-def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...], run_id: str) -> Result:
+def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...]) -> Result:
     last = run.telemetry.last()
     pose = last.pose if last else run.spec.world.start
     rows = run.output.all_rows()
@@ -113,7 +117,6 @@ def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgemen
         variables=statistics_of(rows),
         judgements=judgements,
         output=_beginning(rows),
-        run_id=run_id,
     )
 
 

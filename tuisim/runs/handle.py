@@ -265,8 +265,7 @@ class RunHandle:
             return self._announced if exited else None
         if not exited:
             return None
-        last = self.telemetry.last()
-        tick = last.tick if last else 0
+        tick = max(0, self._ticks() - 1)
         time_ns = due_ns(tick, self.spec.profile.tick_hz)
         line = stuck_line(self.folder, self.program.path or self.program.name)
         if self._stop_at is not None:
@@ -277,6 +276,13 @@ class RunHandle:
             return Ended(End.STALLED, tick, time_ns, 1, summary, error_line=line)
         status = self._process.wait()
         return Ended(End.CRASHED, tick, time_ns, 1, what_ended(status, self.folder, line), error_line=line)
+
+    def _ticks(self) -> int:
+        """Return the number of recorded ticks; 0 also if the program has damaged its recording."""
+        try:
+            return self.telemetry.count
+        except LogError:
+            return 0
 
     def _finish(self, final: Ended) -> None:
         self.ended = final
@@ -406,7 +412,7 @@ class RunHandle:
                 self._asked_at = now
                 self._signal(signal.SIGUSR1)
         elif self._options.stall_limit_s and not self.paused:
-            tick = self.telemetry.count
+            tick = self._ticks()
             if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
                 self._progress = (tick, now)
             elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
