@@ -40,28 +40,28 @@ ENDS = {
 }
 
 
-def _task(text: str, index: int = 0, prelude: str = "preloaded", **changes: object) -> Task:
+def task(text: str, index: int = 0, prelude: str = "preloaded", **changes: object) -> Task:
     spec = replace(build_run_spec(Settings(light_noise=20, motor_noise=50)), seed=index)
     program = Program("p.py", text, prelude=prelude, working_directory=os.getcwd())
     return replace(Task(index, program, spec), **changes)  # type: ignore[arg-type]
 
 
-def _by_index(results: list[Result]) -> list[Result]:
+def by_index(results: list[Result]) -> list[Result]:
     return sorted(results, key=lambda one: one.index)
 
 
 @pytest.mark.slow
 def test_results_do_not_depend_on_the_number_of_jobs() -> None:
-    tasks = [_task(LOGS, index) for index in range(12)]
-    alone, together = (_by_index(list(run_many(tasks, jobs))) for jobs in (1, 3))
+    tasks = [task(LOGS, index) for index in range(12)]
+    alone, together = (by_index(list(run_many(tasks, jobs))) for jobs in (1, 3))
     assert alone == together
     assert len({one.x_mm for one in alone}) == 12
 
 
 def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
-    task = _task(LOGS, 5, keep=Keep.ALL)
-    result = execute(task, tmp_path)
-    handle = start_run(task.program, task.spec, task.options)
+    one = task(LOGS, 5, keep=Keep.ALL)
+    result = execute(one, tmp_path)
+    handle = start_run(one.program, one.spec, one.options)
     over(handle)
     kept = RunStore().load_run(result.run_id)
     for view in ("telemetry.bin", "output.bin"):
@@ -74,7 +74,7 @@ def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
 def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
     text, code, error = ENDS[end]
     options = RunOptions(stall_limit_s=0.2 if end == "stalled" else 60.0)
-    result = execute(_task(text, prelude="none", options=options), tmp_path)
+    result = execute(task(text, prelude="none", options=options), tmp_path)
     assert (result.end, result.exit_code) == (end, code)
     assert error in result.error
     assert result.run_id == ""
@@ -83,7 +83,7 @@ def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
 def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
     goals = (Goal(name="end", condition=Finish()),)
-    result = execute(_task(text, goals=goals, keep=Keep.FAILED), tmp_path)
+    result = execute(task(text, goals=goals, keep=Keep.FAILED), tmp_path)
     assert bool(result.run_id) is kept
     assert (result.judgements[0].state is GoalState.MET) is not kept
 
@@ -109,17 +109,17 @@ def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm
 
 
 def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:
-    task = _task("x = 1")
-    world = replace(task.spec.world, background="Nowhere")
-    result = execute(replace(task, spec=replace(task.spec, world=world)), tmp_path)
+    one = task("x = 1")
+    world = replace(one.spec.world, background="Nowhere")
+    result = execute(replace(one, spec=replace(one.spec, world=world)), tmp_path)
     assert result.end == ""
     assert "Nowhere" in result.error
 
 
 @pytest.mark.slow
 def test_tasks_of_a_worker_that_was_killed_are_executed_again(tmp_path: Path) -> None:
-    tasks = [_task(LOGS, index) for index in range(12)]
-    expected = [execute(task, tmp_path) for task in tasks]
+    tasks = [task(LOGS, index) for index in range(12)]
+    expected = [execute(one, tmp_path) for one in tasks]
     running = pool._Pool(2, tmp_path)
     try:
         results = running.results(iter(tasks))
@@ -128,15 +128,15 @@ def test_tasks_of_a_worker_that_was_killed_are_executed_again(tmp_path: Path) ->
         found += results
     finally:
         running.stop()
-    assert _by_index(found) == expected
+    assert by_index(found) == expected
 
 
 @pytest.mark.slow
 def test_a_script_needs_no_guard(tmp_path: Path, root: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(
-        "from tests.batch.test_pool import _task\nfrom tuisim.batch.pool import run_many\n"
-        "print(sorted(one.end for one in run_many([_task('x = 1', index) for index in range(3)], 2)))\n"
+        "from tests.batch.test_pool import task\nfrom tuisim.batch.pool import run_many\n"
+        "print(sorted(one.end for one in run_many([task('x = 1', index) for index in range(3)], 2)))\n"
     )
     done = subprocess.run(
         [sys.executable, str(script)], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(root)}
