@@ -104,7 +104,7 @@ HARM = {
 @pytest.mark.parametrize(("harm", "end"), HARM.values(), ids=HARM)
 def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm: str, end: str) -> None:
     text = OWN_FILES.replace("tmp_path", tmp_path.name) + harm
-    result = execute(_task(text, goals=(Goal("far", Reach(x_mm=1000, y_mm=100)),)), tmp_path)
+    result = execute(task(text, goals=(Goal("far", Reach(x_mm=1000, y_mm=100)),)), tmp_path)
     assert (result.end, [one.state for one in result.judgements]) == (end, [GoalState.MISSED] if end else [])
 
 
