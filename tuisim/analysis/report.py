@@ -7,6 +7,7 @@ import io
 import math
 import shlex
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -80,6 +81,8 @@ def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = pla
         title: The title of a page that is the same for identical runs: it names no run and no date.
     """
     opened, remark = _with_rows(opened)
+    if title:
+        opened = replace(opened, log=replace(opened.log, title=title))
     model = Model(opened)
     for trace in model.traces:
         trace.on = trace.name in names if names else trace.on
@@ -88,7 +91,7 @@ def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = pla
     runs = opened.runs
     known = [row for row in run_facts(runs) if not title or row[0] not in _OF_ONE_RUN]
     body = [
-        f"<header>\n<h1>{clean(title or log.title)}</h1>",
+        f"<header>\n<h1>{clean(log.title)}</h1>",
         paragraph(remark, soft=True) if remark else "",
         "</header>",
         section("Facts", facts(known if runs else log_facts(log)), *map(_error, runs)),
@@ -99,7 +102,7 @@ def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = pla
         section("Notes", _notes(model), *(paragraph(f"Reading: {note}", soft=True) for note in log.notes)),
         *_programs(runs),
     ]
-    return page(f"{title or log.title}: report", [part for part in body if part])
+    return page(f"{log.title}: report", [part for part in body if part])
 
 
 def _with_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
@@ -109,6 +112,8 @@ def _with_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
     if not opened.runs:
         raise LogError("no rows", "a report needs a log or a run", file=opened.log.title)
     *_, found = opening(LogRequest(runs=(opened.runs[0].id,), telemetry=True))
+    # As given: they may be described in another way than they are stored.
+    found = replace(found, runs=opened.runs[:1])
     return found, "The program printed no samples: chart, bands and statistics use the telemetry."
 
 

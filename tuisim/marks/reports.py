@@ -6,6 +6,7 @@ import hashlib
 import os
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from tuisim.analysis.report import report_of
@@ -13,6 +14,7 @@ from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
 from tuisim.errors import ExportError, LogError
 from tuisim.marks.feedback import file_stems
+from tuisim.marks.results import portable
 from tuisim.marks.sheet import Sheet
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -47,6 +49,7 @@ def write_reports(sheet: Sheet, page: Path) -> Iterator[tuple[str, int, str]]:
             if recorded not in written:
                 name = f"{stem}-seed-{outcome.seed}.html"
                 *_, opened = opening(LogRequest(runs=(run.id,)))
+                opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
                 _write(folder / name, report_of(opened, title=f"{row.name}, seed {outcome.seed}"))
                 written[recorded] = f"{folder.name}/{name}"
             yield row.name, outcome.seed, written[recorded]
@@ -69,9 +72,20 @@ def _stored(store: RunStore, run_id: str) -> StoredRun | None:
         return None
 
 
+def _portable(run: StoredRun) -> StoredRun:
+    """Return a run whose end is described without what differs from machine to machine."""
+    if run.end is None:
+        return run
+    folder = run.program.working_directory
+    end = replace(run.end, error=portable(run.end.error, folder), summary=portable(run.end.summary, folder))
+    return replace(run, end=end)
+
+
 def _digest(run: StoredRun) -> str:
     """Return a hash of what a run recorded, hexadecimal."""
     found = hashlib.sha256(run.telemetry.array().tobytes())
-    for stream, text in run.output.raw_rows():
+    folder = run.program.working_directory.encode("utf-8", "surrogateescape")
+    for stream, row in run.output.raw_rows():
+        text = row.replace(folder, b"")
         found.update(b"%d %d " % (stream, len(text)) + text)
     return found.hexdigest()

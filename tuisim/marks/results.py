@@ -27,13 +27,6 @@ def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
         seed: Its seed.
         folder: The folder in which the program ran; its path does not appear in the outcome.
     """
-    shown = [f"{place}/" for place in dict.fromkeys((str(folder), str(folder.resolve())))]
-
-    def portable(text: str) -> str:
-        for place in shown:
-            text = text.replace(place, "")
-        return _ADDRESS.sub("0x…", text)
-
     failure = "" if result.end == End.FINISHED and not result.exit_code else _failure(result)
     judgements = {one.goal.name: one for one in result.judgements}
     goals = []
@@ -42,17 +35,22 @@ def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
             goals.append(GoalOutcome(name, True))
         else:
             cause = _cause(one, judgements)
-            goals.append(GoalOutcome(name, False, _one_line(portable(cause.reason)), cause.line))
+            goals.append(GoalOutcome(name, False, _one_line(portable(cause.reason, folder)), cause.line))
     return Outcome(
         seed,
         result.end,
-        _one_line(portable(failure)),
+        _one_line(portable(failure, folder)),
         result.error_line,
-        "\n".join(map(printable, source_lines(portable(result.error)))),
+        "\n".join(map(printable, source_lines(portable(result.error, folder)))),
         result.time_s,
         tuple(goals),
         result.run_id,
     )
+
+
+def portable(text: str, folder: Path | str) -> str:
+    """Return a text without the path of the folder in which the program ran, and without addresses in memory."""
+    return _ADDRESS.sub("0x…", text.replace(f"{folder}/", ""))
 
 
 def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
