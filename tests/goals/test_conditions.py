@@ -44,7 +44,12 @@ PLACES = {
     "reach": Case("reach = { x_mm = 800, y_mm = 500, within_mm = 10 }", ALONG, "met", 1.65, line=3),
     "reach only x": Case("reach = { x_mm = 800, within_mm = 10 }", ALONG, "met", 1.65, line=3),
     "reach too far": Case(
-        "reach = { x_mm = 800, y_mm = 550 }", ALONG, "missed", 2.77, "no nearer than this: 50 mm away, at 1.7", 3
+        "reach = { x_mm = 800, y_mm = 550 }",
+        ALONG,
+        "missed",
+        2.77,
+        "At its nearest, at 1.71 s, the robot was 50 mm away.",
+        3,
     ),
     "reach heading": Case("reach = { heading_deg = -90 }", (turn(-90, line=2),), "met", 0.95, line=2),
     "reach heading after turns": Case("reach = { heading_deg = 0 }\nafter = 1", (turn(450),), "met", 3.95),
@@ -235,6 +240,9 @@ OUTPUT = {
         0.0,
         "asked once; no question got answer 2, '6'",
         2,
+    ),
+    "dialogue with an answer that ends alike": Case(
+        "dialogue = [{ answer = '5' }]", (is_told("15", 2),), "missed", 0.0, "no question got answer 1, '5'"
     ),
     "dialogue without a question": Case(
         "dialogue = [{ answer = '5' }]", PRINTED, "missed", 2.0, "did not ask for input"

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.goals.recorded import Run, Step, ahead, drive, goals_of, says, wait, world
+from tests.running import Run as RunProgram
 from tuisim.goals.judge import FINDERS, Judgement, judge, points
 from tuisim.goals.spec import CONDITIONS, Kind
 from tuisim.protocol import End
@@ -80,7 +81,7 @@ CASES = {
         "",
     ),
     "together": ("touch_nothing = true\nreach = { x_mm = 800 }\nfinish = true", "met", 2.78, ""),
-    "together with a missed one": ("reach = { x_mm = 950 }\nfinish = true", "missed", 2.78, "came no nearer"),
+    "together with a missed one": ("reach = { x_mm = 950 }\nfinish = true", "missed", 2.78, "At its nearest"),
     "used": ("use = 'time.sleep'", "met", 0.0, ""),
     "not used": ("use = ['time.sleep', 'tank_drive.on']", "missed", 0.0, "The program does not call tank_drive.on."),
     "avoided": ("avoid = 'tank_drive.on'", "met", 0.0, ""),
@@ -172,3 +173,24 @@ def test_no_other_end_is_a_finish(end: End, home: Path, tmp_path: Path) -> None:
     (found,) = judge(goals_of(tmp_path, "[[goal]]\nname = 'it'\nfinish = true\n"), run.end(end, "what happened"))
     assert found.state == "missed"
     assert "what happened" in found.reason
+
+
+def test_a_run_is_judged_as_it_was_when_it_ran(run: RunProgram, tmp_path: Path) -> None:
+    text = "print('n', input('n? '))\ntank_drive.on_for_rotations(50, 50, 1)\nprint(input('m? 1'))\n"
+    done = run(text, answers=("x", "5"))
+    goals = goals_of(
+        tmp_path,
+        """
+        [[goal]]
+        name = "all"
+        touch_nothing = true
+        finish = true
+        print = "^5$"
+        use = "MoveTank.on_for_rotations"
+        follow = { sensors = "left", brighter_than = 20, share = 0.1 }
+        dialogue = [{ answer = "x", reply = "n x" }, { answer = "5", prompt = "1$", reply = "5" }]
+        """,
+    )
+    live, stored = judge(goals, done.run), judge(goals, done.run.stored())
+    assert stored[0].state == "met", stored
+    assert live == stored

@@ -79,9 +79,12 @@ class Evidence:
         if isinstance(run, RunHandle):
             self.end: Ended | None = run.ended
             self.ended = run.ended is not None
+            # Those that are known: what the user typed is only in the rows.
+            self.answers = run.answers
         else:
             self.end = run.end
             self.ended = run.end is not None or run.state is not Unended.RUNNING
+            self.answers = tuple(run.options.get("answers", ()))
         self.records: Array = run.telemetry.array()
 
     @cached_property

@@ -75,7 +75,7 @@ def load_goals(path: Path | str) -> GoalsFile:
     except ConfigError as error:
         if error.file != str(path) or not error.key:
             raise
-        line = line_of_key(path.read_text("utf-8", "replace").replace("\r\n", "\n"), error.key)
+        line = line_of_key(path.read_text("utf-8-sig", "replace"), error.key)
         raise files.with_location(error, f"{path}, line {line}", error.key) from None
 
 

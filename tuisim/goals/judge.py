@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -129,7 +130,7 @@ def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> 
 
 def points(judgements: Iterable[Judgement]) -> float:
     """Return the sum of the points of the goals that are met."""
-    return sum((each.goal.points for each in judgements if each.state is GoalState.MET), 0.0)
+    return math.fsum(each.goal.points for each in judgements if each.state is GoalState.MET)
 
 
 class _Judge:

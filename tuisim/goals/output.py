@@ -95,16 +95,18 @@ def _no_level(condition: Log, count: int, rest: list[tuple[int, Sample]], eviden
 def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:
     """Find when the last of the turns was complete."""
     rows = evidence.rows[: span.end_row]
-    asked = [at for at, row in enumerate(rows) if row.stream == Stream.INPUT and at >= span.first_row]
+    questions = [at for at, row in enumerate(rows) if row.stream == Stream.INPUT]
+    known = dict(zip(questions, evidence.answers, strict=False))
+    asked = [at for at in questions if at >= span.first_row]
     at, moment, line = 0, Moment(0, -1), 0
     for number, turn in enumerate(condition.turns, start=1):
         reply: int | None = None
         reason = ""
         while at < len(asked) and reply is None:
             end = asked[at + 1] if at + 1 < len(asked) else len(rows)
-            reply, wrong = _turn(turn, rows, asked[at], end)
-            if wrong:
-                reason, line = wrong, rows[asked[at]].line
+            if (prompt := _prompt(rows[asked[at]].text, turn.answer, known.get(asked[at]))) is not None:
+                reply, reason = _turn(turn, prompt, rows, range(asked[at], end))
+                line = rows[asked[at]].line
             at += 1
         if reply is None:
             return Found(None, reason or _not_asked(number, turn, len(asked)), line)
@@ -112,17 +114,32 @@ def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:
     return Found(moment, line=line)
 
 
-def _turn(turn: Turn, rows: list[OutputRow], asked: int, end: int) -> tuple[int | None, str]:
-    """Return the row that completes a turn or None, and what is wrong with a turn that got its answer."""
-    text = rows[asked].text
-    if not text.endswith(turn.answer):
-        return None, ""
-    prompt = text[: len(text) - len(turn.answer)]
+def _prompt(text: str, answer: str, given: str | None) -> str | None:
+    """Return the prompt in a row of input, which the answer follows; None if another answer was given.
+
+    Args:
+        given: The answer, if it is known.
+    """
+    if not text.endswith(answer) or (given is not None and given != answer):
+        return None
+    prompt = text.removesuffix(answer)
+    # `15` is not a prompt 1 and an answer 5.
+    if given is None and answer[:1].isdigit() and prompt[-1:].isdigit():
+        return None
+    return prompt
+
+
+def _turn(turn: Turn, prompt: str, rows: list[OutputRow], asked: range) -> tuple[int | None, str]:
+    """Return the row that completes a turn or None, and what is wrong with a turn that got its answer.
+
+    Args:
+        asked: The rows of the turn, from the question to the next one.
+    """
     if turn.prompt and not re.search(turn.prompt, prompt):
         return None, f"The question for {_shown(turn.answer)} was {_shown(prompt)}, not one like {_shown(turn.prompt)}."
     if not turn.reply:
-        return asked, ""
-    printed = [at for at in range(asked + 1, end) if rows[at].stream == Stream.STDOUT]
+        return asked.start, ""
+    printed = [at for at in asked if rows[at].stream == Stream.STDOUT]
     found = next((at for at in printed if re.search(turn.reply, rows[at].text)), None)
     if found is not None:
         return found, ""
@@ -131,7 +148,7 @@ def _turn(turn: Turn, rows: list[OutputRow], asked: int, end: int) -> tuple[int 
 
 
 def _not_asked(number: int, turn: Turn, asked: int) -> str:
-    times = "once" if asked == 1 else f"{asked} times"
+    times = {1: "once", 2: "twice"}.get(asked, f"{asked} times")
     if not asked:
         return "The program did not ask for input."
     return f"The program asked {times}; no question got answer {number}, {_shown(turn.answer)}."

@@ -40,7 +40,7 @@ def find_reach(condition: Reach, evidence: Evidence, span: Span) -> Found:
     if not there.any():
         nearest = int(np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg)))
         words = _off_words(condition, away_mm[nearest], turned_deg[nearest])
-        text = f"The robot came no nearer than this: {words}, at {evidence.time_words(first + nearest)}."
+        text = f"At its nearest, at {evidence.time_words(first + nearest)}, the robot was {words}."
         return Found(None, text, evidence.line(Moment(first + nearest)))
     times_s = evidence.times_s[span.ticks]
     came = _came_at(there)

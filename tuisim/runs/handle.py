@@ -195,6 +195,11 @@ class RunHandle:
             raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
         self._mark = mark(self._process.pid)
 
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """Scripted answers to `input()`."""
+        return self._options.answers
+
     # Events
 
     def fileno(self) -> int:
