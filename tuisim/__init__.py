@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
-    from tuisim.api import simulate
+    from tuisim.api import experiment, simulate
     from tuisim.logs.reader import read_log
     from tuisim.runs.store import load_run
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "load_run", "read_log", "simulate"]
+__all__ = ["__version__", "experiment", "load_run", "read_log", "simulate"]
 
 _HOMES = {
+    "experiment": "tuisim.api",
     "load_run": "tuisim.runs.store",
     "read_log": "tuisim.logs.reader",
     "simulate": "tuisim.api",

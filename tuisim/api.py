@@ -1,8 +1,8 @@
-"""The Python API: `simulate` runs a program and returns its results."""
+"""The Python API: `simulate` runs a program once, `experiment` with many seeds and settings."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,9 @@ from tuisim.runs.store import RunStore
 if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
+
+    from tuisim.batch.parameters import Choice
+    from tuisim.batch.task import Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +122,11 @@ def _source(program: str | Path) -> ProgramSource:
     return read_program(path)
 
 
+def _check_timeout(timeout_s: float) -> None:
+    if not timeout_s > 0:
+        raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
+
+
 def simulate(
     program: str | Path,
     *,
@@ -142,8 +150,7 @@ def simulate(
         ConfigError: the program, its magic line or a choice is wrong; nothing was run.
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
-    if not timeout_s > 0:
-        raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
+    _check_timeout(timeout_s)
     source = _source(program)
     settings = settings_of(source.options, choices_of(choices))
     prelude = settings.preload or source.program.prelude
@@ -156,3 +163,86 @@ def simulate(
     finally:
         handle.close()
     return SimulatedRun(handle.stored())
+
+
+def experiment(
+    program: str | Path | Sequence[str | Path],
+    *,
+    seeds: str | Iterable[int] = (),
+    parameters: Mapping[str, str | Value | Iterable[Value]] | None = None,
+    expressions: Mapping[str, str] | None = None,
+    goals: str | Path | None = None,
+    jobs: int = 0,
+    arguments: Sequence[str] = (),
+    answers: tuple[str, ...] = (),
+    timeout_s: float = 600.0,
+    keep: str = "none",
+    **choices: Any,
+) -> pd.DataFrame:
+    """Run a program with all combinations of seeds and parameters, block until they end, and return the results.
+
+    An exception in a program is not raised here: see the columns `end` and `summary`.
+
+    Args:
+        program: As for `simulate`; or several.
+        seeds: The seeds, such as `range(200)` or `"0..199"`; empty for the one in `choices`.
+        parameters: Values by key of a world or robot file: `{"noise.motor": [0, 20, 50]}`; a text is read as after
+            `--set`, such as `"54:58:0.5"`.
+        expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
+        goals: A goals file; its world is used where `choices` say nothing else.
+        jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
+        arguments, answers, timeout_s: As for `simulate`.
+        keep: Which runs to store: `all`, `failed` or `none`.
+        choices: Options of all runs, as for `simulate`.
+
+    Returns:
+        One row for each run, in the order of the parameters, the seed varying fastest; columns as in `tuisim batch`.
+
+    Raises:
+        ConfigError: a program, a parameter, an expression, a goal or a choice is wrong; nothing was run.
+        KeyboardInterrupt: ctrl-C; the runs have been stopped.
+    """
+    from tuisim.batch.parameters import SEED, checked_seeds, parse_seeds
+    from tuisim.batch.plan import Plan, Subject
+    from tuisim.batch.sweep import run_plan
+    from tuisim.batch.table import Row, check_expressions, frame_of
+    from tuisim.batch.task import Keep
+    from tuisim.goals.files import load_goals
+
+    _check_timeout(timeout_s)
+    if keep not in [*Keep]:
+        raise ConfigError(f"no such value {keep!r}", f"one of {', '.join(Keep)}", key="keep")
+    given = choices_of(choices)
+    task = load_goals(goals) if goals is not None else None
+    subjects = []
+    for one in [program] if isinstance(program, str | Path) else program:
+        source = _source(one)
+        settings = settings_of(source.options, task.settings if task else {}, given)
+        prelude = settings.preload or source.program.prelude
+        started = replace(source.program, prelude=prelude, arguments=tuple(arguments))
+        subjects.append(Subject(started, settings, frozenset(given)))
+    if not subjects:
+        raise ConfigError("no program is named", key="program")
+    varied = {name: _choice(name, values) for name, values in (parameters or {}).items()}
+    chosen = parse_seeds(seeds, "seeds") if isinstance(seeds, str) else checked_seeds(list(seeds), "seeds")
+    if chosen:
+        varied[SEED] = chosen
+    options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers) or (task.answers if task else ()))
+    judged = task.goals if task else ()
+    plan = Plan(tuple(subjects), varied, Path("parameters"), judged, Keep(keep), lambda _: options)
+    check_expressions(expressions or {}, plan.names, (goal.name for goal in judged))
+    rows: dict[int, Row] = {}
+    run_plan(plan, rows, jobs=jobs)
+    return frame_of(rows.values(), expressions)
+
+
+def _choice(name: str, values: str | Value | Iterable[Value]) -> Choice:
+    """Return what a parameter takes: a text is read as on the command line, numbers of NumPy become plain."""
+    from tuisim.batch.parameters import parse_values
+
+    if isinstance(values, str):
+        return parse_values(values, name)
+    listed = [values] if isinstance(values, bool | int | float) else list(values)
+    if not listed:
+        raise ConfigError("has no values", key=name)
+    return tuple(value.item() if hasattr(value, "item") else value for value in listed)

@@ -14,11 +14,9 @@ from decimal import Decimal
 from enum import StrEnum
 from random import Random
 
+from tuisim.batch.task import Value
 from tuisim.config.options import MAX_SEED
 from tuisim.errors import ConfigError, nearest
-
-Value = str | bool | int | float
-"""A value of a parameter."""
 
 MAX_VALUES = 1_000_000
 """Most values of one parameter, and most runs of a batch."""

@@ -163,7 +163,7 @@ def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tupl
 
 
 def prepare_runs(
-    words: Sequence[str], arguments: Arguments, usual_world: WorldFile | None = None
+    words: Sequence[str], arguments: Arguments, usual_world: WorldFile | None = None, command: str = "run"
 ) -> list[Prepared | NotRun]:
     """Prepare the programs that the user named to run one after another, all in the named world, if any.
 
@@ -171,6 +171,7 @@ def prepare_runs(
 
     Args:
         usual_world: The world if none is named.
+        command: The command that is asked for, for errors.
 
     Raises:
         ConfigError: a program, magic line, world or option is wrong, or there is no program.
@@ -181,7 +182,7 @@ def prepare_runs(
         programs = [world.program]
     if not programs:
         where = f"{world.path} names no program" if world else "no program is named"
-        raise ConfigError(where, "tuisim run PROGRAM…")
+        raise ConfigError(where, f"tuisim {command} PROGRAM…")
     prepared: list[Prepared | NotRun] = []
     for word in programs:
         if os.path.isdir(word):

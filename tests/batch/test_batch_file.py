@@ -1,0 +1,97 @@
+"""Batch files: their keys, what they resolve to, and errors about them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tuisim.batch.batch_file import load_batch, means_batch
+from tuisim.batch.parameters import Draw, Sample
+from tuisim.errors import ConfigError
+
+WHOLE = """
+background = "Loop"
+
+[batch]
+program = ["mine.py", "log_greys", "lab.ipynb#2"]
+seeds = "0..3"
+jobs = 2
+out = "rows.csv"
+goals = "goals.toml"
+keep = "failed"
+set.noise.motor = [0, 20]
+set."robot.wheel_diameter_mm" = "54:55:0.5"
+set.background = "Loop,Lollipop"
+set.start.x_mm = "random(100, 300, 20)"
+
+[batch.expressions]
+far_mm = "hypot(x_mm, y_mm)"
+"""
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Any:
+    def written(text: str) -> Path:
+        (tmp_path / "mine.py").write_text("pass")
+        path = tmp_path / "spec.toml"
+        path.write_text(text)
+        return path
+
+    return written
+
+
+def test_every_key_is_read(write: Any, tmp_path: Path) -> None:
+    found = load_batch(write(WHOLE))
+    assert found.programs == (str(tmp_path / "mine.py"), "log_greys", "lab.ipynb#2")
+    assert found.choices == {
+        "noise.motor": (0, 20),
+        "robot.wheel_diameter_mm": (54.0, 54.5, 55.0),
+        "background": ("Loop", "Lollipop"),
+        "start.x_mm": Sample(Draw.RANDOM, 100, 300, 20),
+        "seed": (0, 1, 2, 3),
+    }
+    assert (found.jobs, found.keep, found.out, found.goals) == (
+        2, "failed", str(tmp_path / "rows.csv"), str(tmp_path / "goals.toml"),
+    )  # fmt: skip
+    assert found.expressions == {"far_mm": "hypot(x_mm, y_mm)"}
+    assert found.world is not None and found.world.settings["background"] == "Loop"
+
+
+def test_a_world_file_may_be_named(write: Any, tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text('background = "Square"')
+    found = load_batch(write('[batch]\nworld = "lab.toml"\nseeds = [1, 5]'))
+    assert found.world is not None and found.world.settings["background"] == "Square"
+    assert found.choices == {"seed": (1, 5)}
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [("[batch]", True), ('background = "Loop"', False), ("[[goal]]", False), ("not toml", False)],
+)
+def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -> None:
+    assert means_batch(str(write(text))) is expected
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        pytest.param("[batch]\nprogramm = 'a.py'", "batch.programm: no such key .did you mean program", id="misspelt"),
+        pytest.param("[batch]\njobs = 0", "batch.jobs: must be a whole number from 1", id="jobs"),
+        pytest.param("[batch]\nseeds = [1, 1]", "batch.seeds: the seed 1 occurs twice", id="seeds"),
+        pytest.param("[batch]\nseeds = '3..1'", "batch.seeds: 3..1 has no values", id="seed text"),
+        pytest.param("[batch]\nseeds = 1\nset.seed = 2", "batch.seeds: is given together with set.seed", id="twice"),
+        pytest.param("[batch]\nset.noise.motor = []", "batch.set.noise.motor: has no values", id="no values"),
+        pytest.param("[batch]\nset.a = [[1]]", r"batch.set.a\[1\]: must be a text, a number", id="nested list"),
+        pytest.param("[batch]\nset.a = '1:2:0'", "batch.set.a: 1:2:0 has no values", id="range"),
+        pytest.param("[batch]\nkeep = 'some'", "batch.keep: no such value 'some'", id="keep"),
+        pytest.param("[batch]\nexpressions.a = 1", "batch.expressions.a: must be text", id="expression"),
+        pytest.param("[batch]\nworld = 'none.toml'", "none.toml: there is no such file", id="no world"),
+        pytest.param("walls = true\n[batch]\nworld = 'a.toml'", "batch.world: is given together with", id="two"),
+        pytest.param("wall = true\n[batch]", "spec.toml: wall: no such key .did you mean walls", id="key of a world"),
+    ],
+)  # fmt: skip
+def test_wrong_files_are_explained(write: Any, text: str, words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        load_batch(write(text))

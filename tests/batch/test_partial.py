@@ -1,0 +1,54 @@
+"""The file of the rows that are done: what an interrupted batch goes on with."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from tuisim.batch.partial import PartialTable, partial_of
+from tuisim.errors import ConfigError, ExportError
+
+ROWS = {0: {"run": 1, "x_mm": 0.1 + 0.2, "end": "finished"}, 2: {"run": 3, "x_mm": math.nan, "end": "räised\n"}}
+
+
+def table(folder: Path, sha256: str = "a") -> PartialTable:
+    return PartialTable(partial_of(folder / "out.csv"), {"sha256": sha256, "runs": 3})
+
+
+def test_rows_come_back_bit_for_bit(tmp_path: Path) -> None:
+    file = table(tmp_path).open({0: ROWS[0]})
+    file.add(ROWS[2])
+    file.close()
+    assert repr(table(tmp_path).rows()) == repr(ROWS)
+
+
+def test_without_a_file_nothing_is_done(tmp_path: Path) -> None:
+    assert table(tmp_path).rows() == {}
+
+
+def test_the_torn_line_of_a_killed_process_is_left_out(tmp_path: Path) -> None:
+    table(tmp_path).open(ROWS).close()
+    path = partial_of(tmp_path / "out.csv")
+    path.write_bytes(path.read_bytes()[:-5])
+    rows = table(tmp_path).rows()
+    assert list(rows) == [0]
+    table(tmp_path).open(rows).close()
+    assert list(table(tmp_path).rows()) == [0]
+
+
+def test_the_rows_of_another_batch_are_refused(tmp_path: Path) -> None:
+    table(tmp_path).open(ROWS).close()
+    with pytest.raises(ConfigError, match=r"out.csv.part: is of another batch"):
+        table(tmp_path, "b").rows()
+
+
+def test_a_file_that_is_not_needed_any_more_is_removed(tmp_path: Path) -> None:
+    table(tmp_path).open(ROWS).remove()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_is_missing_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(ExportError, match="cannot write"):
+        table(tmp_path / "none").open({})

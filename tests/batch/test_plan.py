@@ -1,0 +1,97 @@
+"""Plans: the tasks of all combinations of programs and parameters, and what identifies a batch."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tuisim.batch.parameters import Draw, Sample
+from tuisim.batch.plan import Plan, Subject
+from tuisim.config.options import Settings
+from tuisim.errors import ConfigError
+from tuisim.runs.handle import RunOptions
+from tuisim.source import Program
+
+HERE = Path("--set")
+
+
+def subject(name: str = "a.py", given: tuple[str, ...] = (), **settings: Any) -> Subject:
+    return Subject(Program(name, "pass"), Settings(**settings), frozenset(given))
+
+
+def plan(choices: dict[str, Any], *subjects: Subject, **how: Any) -> Plan:
+    return Plan(subjects or (subject(),), choices, HERE, **how)
+
+
+def test_every_combination_is_a_task_and_the_seed_varies_fastest() -> None:
+    tasks = list(plan({"noise.motor": (0, 20), "seed": (5, 6)}, subject("a.py"), subject("b.py")).tasks())
+    found = [(task.index, task.program.name, task.spec.world.noise.motor, task.spec.seed) for task in tasks]
+    assert found == [
+        (0, "a.py", 0, 5), (1, "a.py", 0, 6), (2, "a.py", 20, 5), (3, "a.py", 20, 6),
+        (4, "b.py", 0, 5), (5, "b.py", 0, 6), (6, "b.py", 20, 5), (7, "b.py", 20, 6),
+    ]  # fmt: skip
+    assert tasks[2].parameters == {"noise.motor": 20, "seed": 5}
+
+
+def test_without_parameters_there_is_one_task_with_the_chosen_seed() -> None:
+    (task,) = plan({}, subject(seed=4)).tasks()
+    assert (task.spec.seed, dict(task.parameters)) == (4, {})
+
+
+def test_tasks_that_are_done_are_left_out() -> None:
+    assert [task.index for task in plan({"seed": (1, 2, 3, 4)}).tasks({0, 2})] == [1, 3]
+
+
+def test_arguments_of_the_program_are_a_parameter() -> None:
+    found = [task.program.arguments for task in plan({"arguments": ("5 fast", 6)}).tasks()]
+    assert found == [("5", "fast"), ("6",)]
+
+
+@pytest.mark.parametrize(
+    "name, whole",
+    [pytest.param("noise.motor", True, id="whole"), pytest.param("robot.wheel_diameter_mm", False, id="real")],
+)
+def test_samples_are_whole_where_the_key_takes_whole_numbers(name: str, whole: bool) -> None:
+    values = [task.parameters[name] for task in plan({name: Sample(Draw.RANDOM, 50, 60, 4)}).tasks()]
+    assert {type(value) for value in values} == {int if whole else float}
+
+
+def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
+    mats = {"background": ("Lollipop", "Loop")}
+    own = [task.spec.world.start for task in plan(mats).tasks()]
+    chosen = [task.spec.world.start for task in plan(mats, subject(given=("x_mm",), x_mm=321.0)).tasks()]
+    assert own[0] != own[1]
+    assert [(pose.x_mm, pose.y_mm) for pose in chosen] == [(321.0, pose.y_mm) for pose in own]
+
+
+@pytest.mark.parametrize(
+    "choices, given, words",
+    [
+        pytest.param({"noise.motr": (1,)}, (), "--set: noise.motr: no such key .did you mean motor", id="misspelt"),
+        pytest.param({"noise.motor": (0, 501)}, (), "noise.motor: must be a whole number from 0", id="too large"),
+        pytest.param({"seed": (-1,)}, (), "seed: .*whole number from 0", id="seed"),
+        pytest.param({"noise.motor": (1,)}, ("motor_noise",), "noise.motor varies what an option sets", id="option"),
+        pytest.param({"seed": (1,)}, ("seed",), "seed varies what an option sets", id="option for the seed"),
+        pytest.param({"noise.motor": Sample(Draw.RANDOM, 600, 700, 2)}, (), "noise.motor: must be", id="sample"),
+    ],
+)  # fmt: skip
+def test_wrong_parameters_are_found_before_anything_is_run(choices: Any, given: tuple[str, ...], words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        plan(choices, subject(given=given))
+
+
+@pytest.mark.parametrize(
+    "other, same",
+    [
+        pytest.param(plan({"seed": (1, 2)}), True, id="equal"),
+        pytest.param(plan({"seed": (1, 3)}), False, id="other seeds"),
+        pytest.param(plan({"noise.motor": (0,), "seed": (1, 2)}), False, id="another parameter"),
+        pytest.param(plan({"seed": (1, 2)}, subject(light_noise=3)), False, id="other settings"),
+        pytest.param(plan({"seed": (1, 2)}, Subject(Program("a.py", "print()"), Settings())), False, id="other text"),
+        pytest.param(plan({"seed": (1, 2)}, options_of=lambda _: RunOptions(time_limit_s=5)), False, id="other limit"),
+    ],
+)
+def test_a_batch_is_identified_by_all_that_its_rows_depend_on(other: Plan, same: bool) -> None:
+    assert (plan({"seed": (1, 2)}).identity() == other.identity()) is same

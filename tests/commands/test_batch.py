@@ -1,0 +1,247 @@
+"""`tuisim batch`: its table, its pictures, what interrupts it and goes on, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import tuisim
+from tests.batch.stand_in import result_of, run_backwards
+from tuisim.batch import sweep
+from tuisim.batch.task import Result, Task
+from tuisim.cli import run_command
+from tuisim.runs.store import RunStore
+
+PROGRAM = "tank_drive.on_for_seconds(40, 40, 0.3)\nprint('Gyro: ' + str(gyro.angle))\n"
+SPEC = """
+[batch]
+program = "mine.py"
+seeds = "0..2"
+out = "rows.csv"
+set.noise.motor = [0, 20]
+expressions.far_mm = "hypot(x_mm, y_mm)"
+"""
+Batch = Callable[..., int]
+
+
+@pytest.fixture
+def batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Batch:
+    """Run the command in an own folder, with results that are computed and come in reverse order."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sweep, "run_many", run_backwards)
+    Path("mine.py").write_text(PROGRAM)
+    return lambda *words: run_command(["batch", *words])
+
+
+def interrupt_after(count: int) -> Callable[..., Iterator[Result]]:
+    def run(tasks: Iterable[Task], jobs: int = 0) -> Iterator[Result]:
+        for number, task in enumerate(tasks):
+            if number == count:
+                os.kill(os.getpid(), signal.SIGINT)
+            yield result_of(task)
+
+    return run
+
+
+def test_rows_are_in_the_order_of_the_parameters(batch: Batch) -> None:
+    assert batch("mine.py", "--set", "noise.motor=0,20", "--seeds", "1,2", "--out", "rows.csv") == 0
+    frame = pd.read_csv("rows.csv")
+    assert frame[["run", "noise.motor", "seed", "x_mm"]].to_numpy().tolist() == [
+        [1, 0, 1, 100], [2, 0, 2, 100], [3, 20, 1, 120], [4, 20, 2, 140],
+    ]  # fmt: skip
+
+
+def test_the_summary_names_ends_and_quantiles(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert batch("mine.py", "--seeds", "11..13", "--expr", "far_mm=x_mm + 1") == 1
+    ends, heads, first = capsys.readouterr().out.split("\n")[:3]
+    assert ends == "3 runs: 2 finished, 1 raised"
+    assert heads.split() == ["COLUMN", "MEAN", "STD", "MIN", "Q5", "Q25", "Q50", "Q75", "Q95", "MAX"]
+    assert first.split() == ["far_mm", "101", "0", *["101"] * 7]
+
+
+def test_rows_are_printed_as_json(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert batch("mine.py", "--seeds", "13,14", "--json") == 1
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [(row["run"], row["end"], row["Colour_last"]) for row in rows] == [
+        (1, "raised", None),
+        (2, "finished", 14.1),
+    ]
+
+
+def test_a_batch_file_holds_everything(batch: Batch) -> None:
+    Path("spec.toml").write_text(SPEC)
+    assert batch("spec.toml") == 0
+    frame = pd.read_csv("rows.csv")
+    assert (len(frame), "far_mm" in frame.columns) == (6, True)
+
+
+@pytest.mark.parametrize(
+    "words, rows",
+    [
+        pytest.param(("--seeds", "7"), [[0, 7], [20, 7]], id="seeds"),
+        pytest.param(("--set", "noise.motor=5"), [[5, 0], [5, 1], [5, 2]], id="a parameter"),
+        pytest.param(("--seed", "4"), [[0, 4], [20, 4]], id="the option for the seed"),
+    ],
+)
+def test_options_override_the_batch_file(batch: Batch, words: tuple[str, ...], rows: list[list[int]]) -> None:
+    Path("spec.toml").write_text(SPEC)
+    assert batch("spec.toml", *words) == 0
+    assert pd.read_csv("rows.csv")[["noise.motor", "seed"]].to_numpy().tolist() == rows
+
+
+def test_the_option_for_a_parameter_of_the_batch_file_replaces_it(batch: Batch) -> None:
+    Path("spec.toml").write_text(SPEC)
+    assert batch("spec.toml", "-M", "30") == 0
+    frame = pd.read_csv("rows.csv")
+    assert ("noise.motor" in frame.columns, frame["x_mm"].tolist()) == (False, [100, 130, 160])
+
+
+def test_several_programs_are_compared(batch: Batch) -> None:
+    Path("other.py").write_text(PROGRAM)
+    assert batch("mine.py", "other.py", "--seeds", "0..1", "--out", "rows.csv") == 0
+    assert pd.read_csv("rows.csv")["program"].tolist() == ["mine.py"] * 2 + ["other.py"] * 2
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        pytest.param(("--set", "noise.motr=1"), "--set: noise.motr: no such key (did you mean motor?)", id="key"),
+        pytest.param(("--set", "noise.motor=1", "-M", "5"), "noise.motor varies what an option sets", id="option"),
+        pytest.param(("--seeds", "1..3", "--seed", "5"), "seed varies what an option sets", id="seed option"),
+        pytest.param(("--seeds", "1..3", "--set", "seed=5"), "--seeds: is given together with", id="two seeds"),
+        pytest.param(("--set", "pen.down=on", "--set", "pen.down=off"), "pen.down is given twice", id="twice"),
+        pytest.param(("--expr", "x"), "--expr: must be NAME=EXPR", id="expression"),
+        pytest.param(("--expr", "a=x_m"), "--expr a: there will be no column 'x_m'", id="column"),
+        pytest.param(("--resume",), "--resume: needs the table", id="resume nothing"),
+        pytest.param(("--out", "rows.txt"), "unknown format '.txt'", id="format"),
+        pytest.param(("--picture", "a.gif"), "unknown format '.gif' (a picture ends in .svg, .png)", id="picture"),
+        pytest.param(("--picture-of", "x_m"), "there will be no column 'x_m'", id="column of a picture"),
+        pytest.param(("--picture-of", "a against"), "cannot draw 'a against'", id="half a picture"),
+        pytest.param(("--picture", "a.svg", "--picture", "b.svg"), "2 files for 1 picture", id="files"),
+        pytest.param(("--picture-of", "poses", "--picture-of", "x_mm", "--picture", "a.svg", "--picture",
+                      "./a.svg"), "two pictures have the same file", id="same file"),
+        pytest.param(("--goals", "none.toml"), "none.toml: there is no such file", id="goals"),
+        pytest.param(("--jobs", "0"), "--jobs: must be a whole number from 1", id="jobs"),
+        pytest.param(("--speed", "1"), "no such option: --speed", id="speed"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_said_before_anything_is_run(
+    batch: Batch,
+    words: tuple[str, ...],
+    message: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sweep, "run_many", None)
+    assert batch("mine.py", *words) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_batch_needs_a_program(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert batch("--seeds", "1") == 2
+    assert "no program is named (tuisim batch PROGRAM…)" in capsys.readouterr().err
+
+
+def test_an_interrupted_batch_keeps_what_is_done(
+    batch: Batch, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
+    assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv") == 130
+    assert pd.read_csv("rows.csv")["seed"].tolist() == [0, 1]
+    assert "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume goes on" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
+    batch: Batch, suffix: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    words = ("mine.py", "--seeds", "0..4", "--set", "noise.motor=0,9", "--out")
+    assert batch(*words, f"whole.{suffix}") == 0
+    with monkeypatch.context() as patch:
+        patch.setattr(sweep, "run_many", interrupt_after(3))
+        assert batch(*words, f"rows.{suffix}") == 130
+    run: list[int] = []
+
+    def rest(tasks: Iterable[Task], jobs: int = 0) -> Iterator[Result]:
+        for task in tasks:
+            run.append(task.index)
+            yield result_of(task)
+
+    monkeypatch.setattr(sweep, "run_many", rest)
+    assert batch(*words, f"rows.{suffix}", "--resume") == 0
+    assert run == [3, 4, 5, 6, 7, 8, 9]
+    assert Path(f"rows.{suffix}").read_bytes() == Path(f"whole.{suffix}").read_bytes()
+    assert list(Path().glob("*.part")) == []
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        pytest.param((), "rows.csv.part: holds the rows of an interrupted batch (--resume goes on", id="again"),
+        pytest.param(("--resume", "-M", "5"), "rows.csv.part: is of another batch", id="another batch"),
+    ],
+)
+def test_the_rows_of_an_interrupted_batch_are_not_lost(
+    batch: Batch, words: tuple[str, ...], message: str, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
+    batch("mine.py", "--seeds", "0..4", "--out", "rows.csv")
+    part = Path("rows.csv.part").read_bytes()
+    assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv", *words) == 2
+    assert message in capsys.readouterr().err
+    assert Path("rows.csv.part").read_bytes() == part
+
+
+def test_pictures_are_written_to_their_files(batch: Batch) -> None:
+    words = ("--picture-of", "poses", "--picture", "poses.svg", "--picture-of", "x_mm against noise.motor and seed")
+    assert batch("mine.py", "--seeds", "1..9", "--set", "noise.motor=0,20", *words, "--picture", "map.png") == 0
+    assert "noise.motor 20: x 200.0 ± 51.6, y 198.3 ± 0.9 mm (9 runs)" in Path("poses.svg").read_text()
+    assert Path("map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_picture_without_a_file_is_drawn_as_text(
+    batch: Batch, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    words = ("--picture-of", "x_mm", "--picture-of", "x_mm against seed", "--picture-of", "poses")
+    assert batch("mine.py", "--seeds", "1..9", "-M", "20", *words) == 0
+    out = capsys.readouterr().out
+    assert [
+        title for title in ("x_mm: mine.py", "x_mm against seed: mine.py", "End poses: mine.py") if title not in out
+    ] == []
+    assert max(map(len, out.split("\n"))) <= 80
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
+def test_a_row_equals_the_run_of_its_own(
+    profile: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, home: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("mine.py").write_text(PROGRAM)
+    how = ("--profile", profile, "-M", "50")
+    assert run_command(["batch", "mine.py", *how, "--seeds", "0..2", "--out", "rows.parquet", "--jobs", "2"]) == 0
+    frame = pd.read_parquet("rows.parquet")
+    for at, seed in enumerate(range(3)):
+        assert run_command(["run", "mine.py", *how, "--seed", str(seed)]) == 0
+        last = RunStore().load_run("last").telemetry.last()
+        assert last is not None
+        assert frame.loc[at, ["x_mm", "y_mm", "heading_deg"]].tolist() == [last.x_mm, last.y_mm, last.heading_deg]
+
+
+@pytest.mark.slow
+def test_an_experiment_gives_the_rows_of_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("mine.py").write_text(PROGRAM)
+    assert (
+        run_command(["batch", "mine.py", "--seeds", "0..3", "--set", "noise.motor=0,50", "--out", "rows.parquet"]) == 0
+    )
+    frame = tuisim.experiment("mine.py", seeds=range(4), parameters={"noise.motor": [0, 50]}, jobs=2)
+    assert frame.equals(pd.read_parquet("rows.parquet"))

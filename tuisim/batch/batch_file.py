@@ -1,0 +1,161 @@
+"""Batch files: a TOML file with a table `[batch]`, and perhaps the keys of a world file beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any
+
+from msgspec import UNSET, Meta, Struct, UnsetType
+
+from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, parse_values
+from tuisim.batch.task import Keep, Value
+from tuisim.config import files
+from tuisim.config.files import Location
+from tuisim.config.worlds import WORLD_SUFFIX, WorldFile, load_world, world_from_table
+from tuisim.errors import ConfigError
+
+TABLE = "batch"
+MAX_JOBS = 1000
+MAX_PROGRAMS = 10_000
+
+
+class _Batch(Struct):
+    """The keys of the table; `Any` where further functions check them."""
+
+    program: str | list[str] | UnsetType = UNSET
+    world: str | UnsetType = UNSET
+    seeds: Any = UNSET
+    set: Any = UNSET
+    jobs: Annotated[int, Meta(ge=1, le=MAX_JOBS)] | UnsetType = UNSET
+    out: str | UnsetType = UNSET
+    expressions: Any = UNSET
+    goals: str | UnsetType = UNSET
+    keep: Keep | UnsetType = UNSET
+
+
+@dataclass(frozen=True, slots=True)
+class BatchFile:
+    """The contents of a batch file. Paths are relative to its folder, but resolved here."""
+
+    path: Path
+    programs: tuple[str, ...] = ()
+    """Paths, or names of examples."""
+    world: WorldFile | None = None
+    choices: Mapping[str, Choice] = field(default_factory=dict)
+    """What each parameter takes; the seeds come last."""
+    jobs: int | None = None
+    out: str | None = None
+    goals: str | None = None
+    keep: Keep | None = None
+    expressions: Mapping[str, str] = field(default_factory=dict)
+
+
+def means_batch(word: str) -> bool:
+    """Return whether a word of the command line names a batch file; a file that cannot be read is none.
+
+    A world file has no table `[batch]`.
+    """
+    path = Path(word).expanduser()
+    if path.suffix.lower() != WORLD_SUFFIX:
+        return False
+    try:
+        data = files.read_file(path, ConfigError)
+    except ConfigError:
+        return False
+    return TABLE in data
+
+
+def load_batch(path: Path, mats: str | None = None) -> BatchFile:
+    """Read a batch file.
+
+    Args:
+        mats: As for `config.worlds.load_world`.
+
+    Raises:
+        ConfigError: the file, or its world, cannot be read or is wrong.
+    """
+    path = path.expanduser()
+    data = dict(files.table(files.read_file(path, ConfigError), Location(str(path))))
+    at = Location(str(path)).at(TABLE)
+    table = files.convert(data.pop(TABLE), _Batch, at)
+    folder = path.parent
+    world = None
+    if table.world is not UNSET:
+        if data:
+            raise at.at("world").wrong(f"is given together with {', '.join(data)}", "a world file, or its keys")
+        with files.errors_at(at.file, at.at("world").key):
+            world = load_world(folder / table.world, mats)
+    elif data:
+        world = world_from_table(data, path, mats)
+    programs = [] if table.program is UNSET else [table.program] if isinstance(table.program, str) else table.program
+    if len(programs) > MAX_PROGRAMS:
+        raise at.at("program").wrong(f"has {len(programs)} programs", f"at most {MAX_PROGRAMS}")
+    return BatchFile(
+        path,
+        tuple(_beside(folder, word) for word in programs),
+        world,
+        _choices(table, at),
+        jobs=None if table.jobs is UNSET else table.jobs,
+        out=None if table.out is UNSET else str(folder / table.out),
+        goals=None if table.goals is UNSET else str(folder / table.goals),
+        keep=None if table.keep is UNSET else table.keep,
+        expressions={} if table.expressions is UNSET else _expressions(table.expressions, at.at("expressions")),
+    )
+
+
+def _beside(folder: Path, word: str) -> str:
+    """Return the path of a program beside the file; a name without such a file may be that of an example."""
+    path, _, cell = word.partition("#")
+    found = folder / Path(path).expanduser()
+    return f"{found}{'#' * bool(cell)}{cell}" if found.exists() or Path(path).parent != Path() else word
+
+
+def _expressions(data: object, at: Location) -> dict[str, str]:
+    return {name: files.convert(text, str, at.at(name)) for name, text in files.table(data, at).items()}
+
+
+def _choices(table: _Batch, at: Location) -> dict[str, Choice]:
+    found: dict[str, Choice] = {}
+    if table.set is not UNSET:
+        place = at.at("set")
+        for name, values in _flat(files.table(table.set, place)).items():
+            found[name] = _choice(values, place.at(name))
+    if table.seeds is not UNSET:
+        place = at.at("seeds")
+        if SEED in found:
+            raise place.wrong(f"is given together with set.{SEED}", "give only one of them")
+        listed = table.seeds if isinstance(table.seeds, list) else [table.seeds]
+        try:
+            found[SEED] = parse_seeds(table.seeds, "") if isinstance(table.seeds, str) else checked_seeds(listed, "")
+        except ConfigError as error:
+            raise place.wrong(error.message, error.hint) from None
+    return found
+
+
+def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return nested tables with dots in the keys."""
+    found: dict[str, Any] = {}
+    for key, value in table.items():
+        found |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return found
+
+
+def _choice(values: object, at: Location) -> Choice:
+    """Return the values of a list as they are; a text is read as on the command line."""
+    try:
+        if isinstance(values, str):
+            return parse_values(values, "")
+    except ConfigError as error:
+        raise at.wrong(error.message, error.hint) from None
+    listed = values if isinstance(values, list) else [values]
+    if not listed:
+        raise at.wrong("has no values")
+    return tuple(_scalar(value, at.at(f"[{number}]")) for number, value in enumerate(listed, start=1))
+
+
+def _scalar(value: object, at: Location) -> Value:
+    if not isinstance(value, str | bool | int | float):
+        raise at.wrong(f"must be a text, a number, true or false, got {files.shown(value)}")
+    return value

@@ -1,0 +1,105 @@
+"""The file that collects the rows of a batch while it runs, so that an interrupted one can go on."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, BinaryIO, Self
+
+from tuisim.atomic import replacing
+from tuisim.batch.table import RUN, Row
+from tuisim.errors import ConfigError, ExportError
+
+SUFFIX = ".part"
+
+
+def partial_of(target: Path) -> Path:
+    """Return the file of the rows that are done, beside the table that is to be written."""
+    return target.with_name(target.name + SUFFIX)
+
+
+class PartialTable:
+    """The rows of a batch that are done, as JSON lines after a line that identifies the batch.
+
+    Args:
+        path: The file.
+        identity: What identifies the batch.
+    """
+
+    def __init__(self, path: Path, identity: Mapping[str, Any]) -> None:
+        self._path, self._identity = path, dict(identity)
+        self._file: BinaryIO | None = None
+
+    def rows(self) -> dict[int, Row]:
+        """Return the rows of an earlier batch by the index of their task; empty if there is no file.
+
+        Raises:
+            ConfigError: the file is of another batch, or cannot be read.
+        """
+        try:
+            head, *lines = self._path.read_bytes().split(b"\n")
+        except FileNotFoundError:
+            return {}
+        except OSError as error:
+            raise ConfigError(f"cannot be read: {error.strerror}", file=str(self._path)) from None
+        if _decoded(head) != self._identity:
+            hint = "the same programs, parameters, goals and limits go on; remove the file to begin again"
+            raise ConfigError("is of another batch", hint, file=str(self._path))
+        # The last line of a killed process may be incomplete.
+        found = [row for line in lines if isinstance(row := _decoded(line), dict) and RUN in row]
+        return {int(row[RUN]) - 1: row for row in found}
+
+    def open(self, rows: Mapping[int, Row]) -> Self:
+        """Begin a file with rows that are done; close it with `close` or `remove`.
+
+        Raises:
+            ExportError: it cannot be written.
+        """
+        try:
+            with replacing(self._path, durable=False) as handle:
+                handle.writelines(_encoded(one) for one in (self._identity, *rows.values()))
+            self._file = self._path.open("ab")
+        except OSError as error:
+            raise ExportError(f"cannot write {self._path}: {error.strerror or error}") from error
+        return self
+
+    def add(self, row: Row) -> None:
+        """Append a row.
+
+        Raises:
+            ExportError: it cannot be written.
+        """
+        assert self._file is not None
+        try:
+            self._file.write(_encoded(row))
+            self._file.flush()
+        except OSError as error:
+            raise ExportError(f"cannot write {self._path}: {error.strerror or error}") from error
+
+    def close(self) -> None:
+        """Close the file, and leave it for `--resume`."""
+        if self._file is not None:
+            # What could not be written has been reported.
+            with suppress(OSError):
+                self._file.close()
+            self._file = None
+
+    def remove(self) -> None:
+        """Close and remove the file."""
+        self.close()
+        with suppress(FileNotFoundError):
+            os.unlink(self._path)
+
+
+def _encoded(row: Mapping[str, Any]) -> bytes:
+    return json.dumps(row, ensure_ascii=True).encode() + b"\n"
+
+
+def _decoded(line: bytes) -> object:
+    try:
+        return json.loads(line)
+    except ValueError:
+        return None

@@ -1,0 +1,161 @@
+"""The plan of a batch: its programs, their settings, and the tasks of all combinations."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.batch.parameters import SEED, Choice, Grid, checked_seeds, grid_of
+from tuisim.batch.task import Keep, Task, Value
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.overrides import field_of_key, settings_of_keys
+from tuisim.core.spec import RunSpec, to_plain
+from tuisim.errors import ConfigError
+from tuisim.goals.spec import Goal
+from tuisim.runs.handle import RunOptions
+from tuisim.source import Program
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """One program of a batch, and the settings that the parameters change."""
+
+    program: Program
+    settings: Settings
+    given: frozenset[str] = frozenset()
+    """The fields of settings that were chosen for all runs, and that no parameter may change."""
+    name: str = ""
+    """What the table calls it; empty for the program's own name."""
+
+    @property
+    def label(self) -> str:
+        """What the table calls it."""
+        return self.name or self.program.name
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """All runs of a batch: every program with every combination of parameters, in this order.
+
+    Raises:
+        ConfigError: a parameter is unknown, or one of its values is wrong; nothing was run.
+    """
+
+    subjects: tuple[Subject, ...]
+    choices: Mapping[str, Choice]
+    """What each parameter takes; the last one varies fastest."""
+    path: Path = Path("--set")
+    """The file to blame for wrong parameters; paths in them are relative to its folder."""
+    goals: tuple[Goal, ...] = ()
+    keep: Keep = Keep.NONE
+    options_of: Callable[[RunSpec], RunOptions] = lambda _: RunOptions()
+    """Returns how a run is executed."""
+    grid: Grid = field(init=False)
+    _specs: dict[tuple[object, ...], RunSpec] = field(init=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        first = self.subjects[0]
+
+        def is_whole(name: str, inside: float) -> bool:
+            try:
+                settings_of_keys({name: inside}, first.settings, self.path)
+            except ConfigError:
+                settings_of_keys({name: math.ceil(inside)}, first.settings, self.path)
+                return True
+            return False
+
+        object.__setattr__(self, "grid", grid_of(self.choices, is_whole))
+        if isinstance(seeds := self.choices.get(SEED), tuple):
+            checked_seeds(seeds, SEED)
+        for subject in self.subjects:
+            self._check(subject)
+
+    def _check(self, subject: Subject) -> None:
+        """Build the specification of every combination of a program except for the seeds."""
+        own = [axis for axis in self.grid.axes if axis.names != (SEED,)]
+        for name in self.choices:
+            if (field_name := field_of_key(name)) in subject.given:
+                message = f"{name} varies what an option sets: the {field_name.replace('_', ' ')}"
+                raise ConfigError(message, "give one of them", key=str(self.path))
+        for values in Grid(tuple(own)):
+            self.spec_of(subject, values)
+
+    def __len__(self) -> int:
+        return len(self.subjects) * len(self.grid)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return self.grid.names
+
+    def subject_at(self, index: int) -> Subject:
+        """Return the program of a run; `index` counts from 0."""
+        return self.subjects[index // len(self.grid)]
+
+    def seed_at(self, index: int) -> int:
+        """Return the seed of a run."""
+        seed = self.grid.at(index % len(self.grid)).get(SEED, self.subject_at(index).settings.seed)
+        assert isinstance(seed, int)
+        return seed
+
+    def spec_of(self, subject: Subject, values: Mapping[str, Value]) -> RunSpec:
+        """Return the specification of a run; those that differ in the seed only are built once.
+
+        Raises:
+            ConfigError: a value is wrong.
+        """
+        own = {name: value for name, value in values.items() if name != SEED}
+        key = (id(subject), *own.items(), *map(type, own.values()))
+        if key not in self._specs:
+            self._specs[key] = build_run_spec(self._settings(subject, own))
+        spec, seed = self._specs[key], values.get(SEED)
+        return replace(spec, seed=seed) if isinstance(seed, int) else spec
+
+    def _settings(self, subject: Subject, values: Mapping[str, Value]) -> Settings:
+        changes = settings_of_keys(values, subject.settings, self.path)
+        # A mat comes with its own start pose, unless it was chosen for all runs.
+        kept = {key: value for key, value in changes.items() if value is not None or key not in subject.given}
+        return replace(subject.settings, **kept)
+
+    def tasks(self, done: Collection[int] = ()) -> Iterator[Task]:
+        """Yield the tasks whose index is not among those that are done."""
+        for index in range(len(self)):
+            if index not in done:
+                yield self.task(index)
+
+    def task(self, index: int) -> Task:
+        """Return one task; `index` counts from 0."""
+        subject, values = self.subject_at(index), self.grid.at(index % len(self.grid))
+        spec = self.spec_of(subject, values)
+        program = subject.program
+        if "arguments" in values:
+            program = replace(program, arguments=self._settings(subject, values).arguments)
+        return Task(
+            index, program, spec, self.options_of(spec), goals=self.goals, parameters=values, keep=self.keep
+        )  # fmt: skip
+
+    def identity(self) -> dict[str, Any]:
+        """Return what identifies the batch, ready for JSON: equal for batches with equal rows.
+
+        Goals belong to it, expressions do not: they are computed from the rows.
+        """
+        programs = [
+            {"name": one.label, "sha256": one.program.sha256, "prelude": one.program.prelude,
+             "arguments": list(one.program.arguments)}
+            for one in self.subjects
+        ]  # fmt: skip
+        whole = hashlib.sha256()
+        own = Grid(tuple(axis for axis in self.grid.axes if axis.names != (SEED,)))
+        for subject in self.subjects:
+            for values in own:
+                spec = self.spec_of(subject, values)
+                plain = [to_plain(spec), self.options_of(spec).to_plain()]
+                whole.update(json.dumps(plain, sort_keys=True).encode())
+        whole.update(repr((programs, self.grid.axes, self.goals, str(self.keep))).encode())
+        return {"programs": programs, "parameters": list(self.names), "runs": len(self), "sha256": whole.hexdigest()}

@@ -1,0 +1,219 @@
+"""The table of a batch: one row for each run, expressions over its columns, and its summary."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from tuisim.batch.parameters import SEED
+from tuisim.batch.task import Result, Value, VariableStatistics
+from tuisim.errors import ConfigError, LogError, nearest
+from tuisim.goals.judge import GoalState, points
+from tuisim.logs.expressions import evaluate, names_in
+from tuisim.logs.signals import Summary, summary_of
+from tuisim.logs.units import unit_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Row = dict[str, Any]
+"""The values of one run by column: texts, numbers and truth values."""
+
+RUN, PROGRAM, POINTS, RUN_ID = "run", "program", "points", "id"
+POSE = ("x_mm", "y_mm", "heading_deg")
+ENDS = ("end", "exit_code", "summary", "error_line", "time_s", *POSE)
+"""Columns of every run after its parameters, as in `Result`."""
+
+STATISTICS = tuple(VariableStatistics.__dataclass_fields__)
+"""The columns of a sample variable are `NAME_last`, `NAME_count` and so on."""
+
+GOAL = "goal."
+"""The columns of goals are `goal.NAME`: whether the run has met it."""
+
+MOST_GROUPS = 12
+"""A summary of more groups has one line for each column."""
+
+_DOTTED = re.compile(r"`[^`]*`|\b[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+\b")
+
+
+def row_of(result: Result, program: str, seed: int) -> Row:
+    """Return the row of a run.
+
+    Args:
+        program: The program's name; empty if all runs have the same one.
+        seed: The seed of the run, whether it is a parameter or not.
+    """
+    row: Row = {RUN: result.index + 1}
+    if program:
+        row[PROGRAM] = program
+    row |= {name: value for name, value in result.parameters.items() if name != SEED}
+    row[SEED] = seed
+    row |= {name: getattr(result, name) for name in ENDS}
+    if result.judgements:
+        row |= {f"{GOAL}{one.goal.name}": one.state is GoalState.MET for one in result.judgements}
+        row[POINTS] = points(result.judgements)
+    if result.run_id:
+        row[RUN_ID] = result.run_id
+    for name, statistics in result.variables.items():
+        row |= {f"{name}_{one}": value for one, value in asdict(statistics).items()}
+    return row
+
+
+def frame_of(rows: Iterable[Row], expressions: Mapping[str, str] | None = None) -> pd.DataFrame:
+    """Return the table of some runs, in the order of the grid.
+
+    A variable that a run has not printed is NaN. The columns of variables come last.
+
+    Args:
+        rows: In any order.
+        expressions: By the name of their column; a later one may use an earlier one.
+
+    Raises:
+        LogError: an expression is invalid, or names a column that there is not.
+    """
+    import pandas as pd
+
+    ordered = sorted(rows, key=lambda row: int(row[RUN]))
+    names: dict[str, None] = {}
+    for row in ordered:
+        names |= dict.fromkeys(row)
+    is_usual = {name: not name.endswith(tuple(f"_{one}" for one in STATISTICS)) for name in names}
+    columns = {name: _column([row.get(name) for row in ordered]) for name in names if is_usual[name]}
+    rest = {name: _column([row.get(name) for row in ordered]) for name in names if not is_usual[name]}
+    computed: dict[str, Any] = {}
+    for name, text in (expressions or {}).items():
+        computed[name] = evaluated(text, {**columns, **computed, **rest}, len(ordered))
+    return pd.DataFrame({**columns, **computed, **rest})
+
+
+def _column(values: Sequence[Any]) -> Any:
+    """Return a column with the narrowest type that holds all values: truth, whole number, number or text."""
+    import numpy as np
+    import pandas as pd
+
+    kinds = {type(value) for value in values}
+    if kinds == {bool}:
+        return np.array(values, np.bool_)
+    if kinds == {int}:
+        return np.array(values, np.int64 if all(-(2**63) <= value < 2**63 for value in values) else np.float64)
+    if kinds <= {bool, int, float, type(None)}:
+        return np.array([np.nan if value is None else value for value in values], np.float64)
+    return pd.Series(["" if value is None else str(value) for value in values], dtype="str")
+
+
+def evaluated(text: str, columns: Mapping[str, Any], length: int) -> Any:
+    """Return the value of an expression in each row; names with dots need no backticks.
+
+    A statistic of a variable that no run has printed is NaN, as is a goal if no run could be judged.
+
+    Raises:
+        LogError: the expression is invalid, or names another column that there is not.
+    """
+    import numpy as np
+
+    numbers = {name: np.asarray(column, np.float64) for name, column in columns.items() if _is_numeric(column)}
+    written = quoted(text, numbers)
+    for name in names_in(written):
+        if name not in numbers and (is_statistic(name) or name.startswith(GOAL) or name == POINTS):
+            numbers[name] = np.full(length, np.nan)
+    return evaluate(written, numbers)
+
+
+def _is_numeric(column: Any) -> bool:
+    return getattr(column, "dtype", None) is not None and column.dtype.kind in "bif"
+
+
+def is_statistic(name: str) -> bool:
+    """Return whether a name may be a column of a sample variable."""
+    return name.endswith(tuple(f"_{one}" for one in STATISTICS))
+
+
+def quoted(text: str, columns: Iterable[str]) -> str:
+    """Return an expression with backticks around the names of columns that contain dots."""
+    dotted = {name for name in columns if "." in name}
+    return _DOTTED.sub(lambda found: f"`{found[0]}`" if found[0] in dotted else found[0], text)
+
+
+def usual_columns(parameters: Iterable[str], goals: Iterable[str]) -> list[str]:
+    """Return the columns of a table that are known before the first run: all but those of sample variables."""
+    goal_columns = [f"{GOAL}{name}" for name in goals]
+    names = (RUN, PROGRAM, *parameters, SEED, *ENDS, *goal_columns, *([POINTS] if goal_columns else []))
+    return list(dict.fromkeys(names))
+
+
+def check_expressions(expressions: Mapping[str, str], parameters: Iterable[str], goals: Iterable[str]) -> None:
+    """Check expressions before anything is run.
+
+    Args:
+        expressions: By the name of their column.
+        parameters: The names of the parameters.
+        goals: The names of the goals.
+
+    Raises:
+        ConfigError: an expression cannot be read, names a column that there will not be, or is called like one.
+    """
+    known = usual_columns(parameters, goals)
+    for name, text in expressions.items():
+        key = f"--expr {name}"
+        if name in known or is_statistic(name) or not name.isidentifier():
+            hint = "a name of letters, digits and _ that no column has and that ends in none of their suffixes"
+            raise ConfigError("is no name for a new column", hint, key=key)
+        try:
+            used = names_in(quoted(text, known))
+            # With no rows, this finds whatever is not allowed.
+            evaluated(text, {one: _column([]) for one in {*known, *used}}, 0)
+        except LogError as error:
+            raise ConfigError(error.message, error.hint, key=key) from None
+        for column in used:
+            if column not in known and not is_statistic(column):
+                hint = f"{nearest(column, known)}; the last value of a printed variable is NAME_last"
+                raise ConfigError(f"there will be no column {column!r}", hint, key=key)
+        known.append(name)
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnSummary:
+    """One line of a summary."""
+
+    group: Mapping[str, Value]
+    """The values of the parameters; empty for all runs."""
+    column: str
+    statistics: Summary
+
+
+def summaries(frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[str]) -> list[ColumnSummary]:
+    """Return statistics and quantiles of some columns, for each combination of parameters unless these are many.
+
+    Args:
+        frame: The table.
+        parameters: The parameters, with or without the seed, which forms no groups.
+        columns: The names of numeric columns.
+    """
+    by = [name for name in parameters if name != SEED and frame[name].nunique() > 1]
+    groups: list[tuple[dict[str, Value], pd.DataFrame]] = [({}, frame)]
+    if by and len(frame[by].drop_duplicates()) <= MOST_GROUPS:
+        groups = [(dict(zip(by, values, strict=True)), part) for values, part in frame.groupby(by, sort=False)]
+    return [
+        ColumnSummary(group, column, summary_of(part[column].to_numpy("float64")))
+        for column in columns
+        for group, part in groups
+    ]
+
+
+def result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]:
+    """Return the columns of a table that a summary is about: expressions, points, pose, time and last values."""
+    first = [*expressions, POINTS, *POSE, "time_s"]
+    lasts = [name for name in frame.columns if name.endswith("_last")]
+    return [name for name in (*first, *lasts) if name in frame.columns]
+
+
+def metadata_of(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is stored with a table: its columns, their units, and what identifies the batch."""
+    units = {name: unit.words for name in frame.columns if (unit := unit_of(_without_statistic(name))).words}
+    return {"format": 1, "table": "batch", "columns": list(frame.columns), "units": units, "batch": dict(batch)}
+
+
+def _without_statistic(name: str) -> str:
+    return name.rpartition("_")[0] if is_statistic(name) else name

@@ -1,0 +1,238 @@
+"""`tuisim batch`: programs over many seeds and settings, and a table of the results."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import signal
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+from tuisim import __version__
+from tuisim.batch.partial import PartialTable, partial_of
+from tuisim.batch.pictures import text_of, write_picture
+from tuisim.batch.sweep import run_plan
+from tuisim.batch.table import GOAL, RUN_ID, ColumnSummary, Row, frame_of, metadata_of, result_columns, summaries
+from tuisim.commands import exit_status
+from tuisim.commands.batch_request import OPTIONS, Request, read_request
+from tuisim.commands.echo import Progress, echo, echo_drawn, echo_error, echo_json, echo_lines, table, tell
+from tuisim.commands.listings import names_of
+from tuisim.config.command_line import Arguments, command, shared_options
+from tuisim.config.options import APP, PANEL
+from tuisim.errors import ConfigError, counted
+from tuisim.logs.export import export_frame
+from tuisim.logs.signals import QUANTILES
+from tuisim.protocol import End
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_SHARED = [one for one in shared_options(hidden=(APP, PANEL), names=names_of) if one.name != "speed"]
+"""A batch runs as fast as possible."""
+MOST_LINES = 100
+"""A summary has at most this many lines."""
+_LEAST_COLUMNS, _ROWS = 40, (12, 40)
+"""Size of a picture in the terminal: minimum width, and limits of its height."""
+
+
+@command(
+    *OPTIONS,
+    *_SHARED,
+    passes_arguments=True,
+    help="""Run programs with many seeds and settings; print or write one row per run.
+
+    SPEC.toml is a file with a table [batch], whose keys are named like the options; options override it. Rows are in
+    the order of the parameters and do not depend on the number of jobs.
+
+    Exit code: the highest of all runs, as for `tuisim run`; 2 bad input, 130 interrupted.
+    """,
+    epilog="""\b
+    Examples:
+      tuisim batch drive.py --seeds 0..199 --set noise.motor=0,20,50
+      tuisim batch drive.py --seeds 0..199 -M 20 --picture-of poses
+      tuisim batch drive.py --set robot.wheel_diameter_mm=54:58:0.5 --out d.csv
+    """,
+)
+def batch(**given: Any) -> int:
+    """Run the batch and return its exit code.
+
+    Raises:
+        ConfigError: a program, a parameter, a goal, an expression or an option is wrong; nothing was run.
+        ExportError: the table cannot be written; checked before anything is run.
+        KeyboardInterrupt: ctrl-C; what is done has been written.
+    """
+    arguments = Arguments(**given)
+    return _Batch(read_request(arguments), as_json=arguments.as_json).run()
+
+
+class _Interrupted(KeyboardInterrupt):
+    """Ctrl-C or SIGTERM."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.exit_code = exit_status.SIGNALLED + number
+
+
+@contextmanager
+def _signals_raise() -> Iterator[None]:
+    """Raise `_Interrupted` in the block for SIGINT and SIGTERM."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise _Interrupted(number)
+
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@dataclass(slots=True)
+class _Batch:
+    """The run of a batch."""
+
+    request: Request
+    as_json: bool
+    rows: dict[int, Row] = field(default_factory=dict, init=False)
+    """What is done, by the index of the task."""
+
+    def run(self) -> int:
+        """Run what is not done, write the table, print the results and return the exit code."""
+        partly = self._begin()
+        plan, code = self.request.plan, 0
+        with Progress(counted(len(plan), "run"), len(plan)):
+            try:
+                with _signals_raise():
+                    run_plan(plan, self.rows, jobs=self.request.jobs, partial=partly, on_row=self._rate())
+            except _Interrupted as interrupted:
+                code = interrupted.exit_code
+            finally:
+                if partly is not None:
+                    partly.close()
+            frame = frame_of(self.rows.values(), self.request.expressions if self.rows else {})
+            if self.request.out is not None and self.rows:
+                tell(f"writing {self.request.out}")
+                export_frame(frame, self.request.out, metadata_of(frame, plan.identity()))
+        if partly is not None and not code:
+            partly.remove()
+        self._print(frame)
+        if self.rows:
+            self._draw(frame)
+        if code:
+            self._tell_interrupted()
+        return max([code, *map(_exit_code, self.rows.values())])
+
+    def _begin(self) -> PartialTable | None:
+        """Read the rows of an interrupted batch that goes on; return the open file for all rows, if any is written."""
+        if self.request.out is None:
+            return None
+        path = partial_of(self.request.out)
+        partly = PartialTable(path, {"version": __version__, **self.request.plan.identity()})
+        if self.request.resume:
+            self.rows = partly.rows()
+        elif path.exists():
+            hint = "--resume goes on with it; remove the file to begin again"
+            raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
+        return partly.open(self.rows)
+
+    def _rate(self) -> Any:
+        """Return a function that shows how many runs are done, how many there are a second, and how long it takes."""
+        total, before, begun = len(self.request.plan), len(self.rows), time.monotonic()
+
+        def tell_row(_: Row) -> None:
+            done = len(self.rows)
+            per_s = (done - before) / max(time.monotonic() - begun, 1e-9)
+            left = f"{per_s:.3g} per second, {_duration((total - done) / per_s)} left"
+            tell(f"{done:,} of {counted(total, 'run')}, {left}", done, total)
+
+        return tell_row
+
+    def _print(self, frame: pd.DataFrame) -> None:
+        if self.as_json:
+            for row in frame.to_dict("records"):
+                echo_json({name: _plain(value) for name, value in row.items()})
+        elif self.rows:
+            self._print_summary(frame)
+
+    def _print_summary(self, frame: pd.DataFrame) -> None:
+        plan = self.request.plan
+        ends = Counter(str(row["end"]).replace("_", " ") or "not started" for row in self.rows.values())
+        echo(f"{counted(len(frame), 'run')}: {', '.join(f'{count:,} {end}' for end, count in ends.most_common())}")
+        for name in [name for name in frame.columns if name.startswith(GOAL)]:
+            met = int(frame[name].fillna(0).sum())
+            echo(f"{name.removeprefix(GOAL)}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)")
+        lines = summaries(frame, plan.names, result_columns(frame, self.request.expressions))
+        echo_lines(_summary_table(lines[:MOST_LINES], shutil.get_terminal_size().columns))
+        if len(lines) > MOST_LINES:
+            echo(f"and {len(lines) - MOST_LINES:,} more lines; --out FILE writes everything")
+        if RUN_ID in frame.columns:
+            echo(f"Column {RUN_ID} of the table names the stored runs; `tuisim runs` lists them.")
+
+    def _draw(self, frame: pd.DataFrame) -> None:
+        """Draw the pictures: to their files, else as text unless rows are printed."""
+        terminal = shutil.get_terminal_size()
+        width, height = max(terminal.columns, _LEAST_COLUMNS), min(max(terminal.lines - 1, _ROWS[0]), _ROWS[1])
+        for picture, path in self.request.pictures:
+            if path is not None:
+                tell(f"drawing {path}")
+                write_picture(picture, frame, self.request.plan, path)
+            elif not self.as_json:
+                echo()
+                echo_drawn(partial(text_of, picture, frame, self.request.plan, width, height), width)
+
+    def _tell_interrupted(self) -> None:
+        out = self.request.out
+        kept = f"; {out} has these rows, and --resume goes on" if out and self.rows else ""
+        echo_error(f"tuisim: interrupted after {len(self.rows):,} of {counted(len(self.request.plan), 'run')}{kept}")
+
+
+def _summary_table(lines: Sequence[ColumnSummary], width: int) -> str:
+    """Return a summary as text; without the outer quantiles if it is wider than the terminal."""
+    found = ""
+    for quantiles in (QUANTILES, QUANTILES[1:-1], ()):
+        heads = ["COLUMN", *(lines[0].group if lines else ()), "MEAN", "STD", "MIN",
+                 *(f"Q{100 * part:g}" for part in quantiles), "MAX"]  # fmt: skip
+        cells = []
+        for line in lines:
+            of = line.statistics
+            chosen = [of.quantiles[QUANTILES.index(part)] for part in quantiles]
+            # Rounding errors of equal numbers are no spread.
+            std = of.std if of.std > 1e-12 * max(abs(of.max), abs(of.min)) else 0.0
+            cells.append([line.column, *line.group.values(), *map(_Figure, (of.mean, std, of.min, *chosen, of.max))])
+        found = table(heads, cells)
+        if max(map(len, found.split("\n"))) <= width:
+            break
+    return found
+
+
+def _exit_code(row: Row) -> int:
+    if not row["end"]:
+        return exit_status.EXIT_BAD_OUTPUT
+    return exit_status.exit_code_of(End(row["end"]), row["exit_code"])
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+class _Figure(float):
+    """A number with few digits, for tables."""
+
+    def __str__(self) -> str:
+        return "" if math.isnan(self) else f"{float(self):.4g}"
+
+
+def _duration(seconds: float) -> str:
+    """Return a time in words: `12 s`, `3 min 5 s`, `2 h 10 min`."""
+    whole = math.ceil(seconds)
+    minutes, rest = divmod(whole, 60)
+    if minutes >= 60:
+        return f"{minutes // 60} h {minutes % 60} min"
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"

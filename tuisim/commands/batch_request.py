@@ -1,0 +1,194 @@
+"""The request of a batch: its command line and batch file, checked as a whole before anything is run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+from pathlib import Path
+
+from tuisim.batch.batch_file import MAX_JOBS, BatchFile, load_batch, means_batch
+from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
+from tuisim.batch.pictures import POSES, USAGE, Picture, check_picture, check_picture_file, parse_picture
+from tuisim.batch.plan import Plan, Subject
+from tuisim.batch.table import check_expressions, usual_columns
+from tuisim.batch.task import Keep
+from tuisim.commands.listings import names_of
+from tuisim.commands.notebooks import NotRun
+from tuisim.commands.resolve import check_arguments, prepare_runs
+from tuisim.commands.run import DEFAULT_TIME_LIMIT_S, MAX_TIME_LIMIT_S, parse_press, press_actions
+from tuisim.config.command_line import Arguments, Value, argument, choice, option
+from tuisim.config.options import number, whole
+from tuisim.config.overrides import field_of_key
+from tuisim.config.worlds import WorldFile, means_world
+from tuisim.core.spec import RunSpec
+from tuisim.errors import ConfigError, counted
+from tuisim.goals.files import GoalsFile, load_goals
+from tuisim.logs.export import LISTED, check_target
+from tuisim.runs.handle import RunOptions
+
+_limit = number(0.001, MAX_TIME_LIMIT_S)
+_jobs = whole(1, MAX_JOBS)
+_GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
+OPTIONS = (
+    argument("programs", "PROGRAM…|SPEC.toml", lambda: names_of("programs"), nargs=-1),
+    option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
+    option("--jobs", metavar="N", type=Value(lambda text: _jobs(text, "--jobs")),
+           help="Number of worker processes (one for each processor)."),
+    option("--seeds", metavar="SEEDS", group=_GRID, help="One run for each seed: 0..199, or 1,5,9."),
+    option("--set", "sets", multiple=True, metavar="NAME=VALUES", group=_GRID,
+           help="Vary a key of a world or robot file: noise.motor=0,20,50, robot.wheel_diameter_mm=54:58:0.5, "
+           "start.x_mm=random(100, 300, 20), latin(…); may be repeated, for all combinations."),
+    option("--out", metavar="FILE", type=Value(), group=_RESULTS, help=f"Write the table: {LISTED}."),
+    option("--expr", "expressions", multiple=True, metavar="NAME=EXPR", group=_RESULTS,
+           help="Add a column, such as 'error_mm=hypot(x_mm - 750, y_mm - 850)'; may be repeated."),
+    option("--goals", metavar="FILE", type=Value(), group=_RESULTS, help="Judge the goals in a file, one column each."),
+    choice("--keep", [*Keep], group=_RESULTS, help="Which runs to store: all, failed or none (none)."),
+    option("--picture", "picture_files", multiple=True, metavar="FILE", type=Value(), group=_RESULTS,
+           help="Write a picture (.svg or .png) instead of drawing it as text; the first file for the first "
+           "--picture-of, and so on."),
+    option("--picture-of", "pictures", multiple=True, metavar="WHAT", type=Value(parse_picture), group=_RESULTS,
+           help=f"Draw {USAGE}; may be repeated."),
+    option("--resume", is_flag=True, group=_RESULTS, help="Go on with an interrupted batch that wrote the same --out."),
+    option("--json", "as_json", is_flag=True, group=_RESULTS, help="Print one JSON object per run, not the summary."),
+    option("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", group=_LIMITS,
+           type=Value(lambda text: _limit(text, "--timeout")),
+           help=f"Stop a run after this simulated time in seconds ({DEFAULT_TIME_LIMIT_S:g})."),
+    option("--input", multiple=True, metavar="TEXT", group=_LIMITS, help="Answer an input(); may be repeated."),
+    option("--press", multiple=True, metavar="BUTTON@S", type=Value(parse_press), group=_LIMITS,
+           help="Press a button of the brick, as in `tuisim run`; may be repeated."),
+)  # fmt: skip
+"""The options of `tuisim batch` besides the shared ones."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A batch as the user has asked for it."""
+
+    plan: Plan
+    expressions: Mapping[str, str]
+    """By the name of their column."""
+    out: Path | None
+    jobs: int
+    """0 for one worker for each processor."""
+    resume: bool
+    pictures: tuple[tuple[Picture, Path | None], ...] = ()
+    """Each with its file; None for text."""
+
+
+def read_request(arguments: Arguments) -> Request:
+    """Return the batch of a command line.
+
+    Raises:
+        ConfigError: a program, a parameter, a goal, an expression or an option is wrong.
+        ExportError: the table cannot be written.
+    """
+    file = _batch_file(arguments)
+    named = arguments.goals or file.goals
+    goals = load_goals(named) if named else None
+    subjects = _subjects(arguments, file, goals)
+    typed = _typed_choices(arguments)
+    kept = {name: choice for name, choice in file.choices.items() if name not in typed}
+    kept = {name: choice for name, choice in kept.items() if field_of_key(name) not in arguments.settings}
+    choices = {**kept, **typed}
+    if SEED in choices:
+        # Runs that differ in the seed only are neighbours.
+        choices[SEED] = choices.pop(SEED)
+    plan = Plan(
+        subjects,
+        choices,
+        file.path if kept.keys() - {SEED} else Path("--set"),
+        goals=goals.goals if goals else (),
+        keep=Keep(arguments.keep or file.keep or Keep.NONE),
+        options_of=lambda spec: _run_options(spec, arguments, goals),
+    )
+    expressions = {**file.expressions, **dict(map(_expression, arguments.expressions))}
+    goal_names = [goal.name for goal in plan.goals]
+    check_expressions(expressions, plan.names, goal_names)
+    pictures = _pictures(arguments, [*expressions, *usual_columns(plan.names, goal_names)])
+    out = arguments.out or file.out
+    if arguments.resume and out is None:
+        raise ConfigError("needs the table to go on with", "--out FILE", key="--resume")
+    target = check_target(out) if out is not None else None
+    return Request(plan, expressions, target, arguments.jobs or file.jobs or 0, arguments.resume, pictures)
+
+
+def _batch_file(arguments: Arguments) -> BatchFile:
+    """Return the batch file among the programs, and leave it out of them; an empty one if there is none."""
+    named = [word for word in arguments.programs if means_batch(word)]
+    if len(named) > 1:
+        raise ConfigError(f"two batches: {named[0]} and {named[1]}", "name one")
+    if not named:
+        return BatchFile(Path())
+    arguments.programs = tuple(word for word in arguments.programs if word not in named)
+    file = load_batch(Path(named[0]), arguments.settings.get("mats"))
+    if not any(not means_world(word) for word in arguments.programs):
+        arguments.programs = (*arguments.programs, *file.programs)
+    return file
+
+
+def _subjects(arguments: Arguments, file: BatchFile, goals: GoalsFile | None) -> tuple[Subject, ...]:
+    """Return the programs; without a world of its own, a batch takes place in that of its goals."""
+    check_arguments(arguments.programs, arguments)
+    world = file.world
+    if world is None and goals is not None:
+        world = WorldFile(goals.path, goals.settings, goals.program)
+    elif world is not None and goals is not None and world.program is None:
+        world = replace(world, program=goals.program)
+    # A notebook stands for all of its cells.
+    arguments.all = True
+    found = []
+    for one in prepare_runs(arguments.programs, arguments, world, "batch"):
+        if isinstance(one, NotRun):
+            raise ConfigError(one.error.message, one.error.hint, file="" if one.error.file else one.label)
+        assert one.program is not None
+        found.append(Subject(one.program, one.settings, frozenset(arguments.settings), one.label))
+    return tuple(found)
+
+
+def _typed_choices(arguments: Arguments) -> dict[str, Choice]:
+    found: dict[str, Choice] = {}
+    for text in arguments.sets:
+        name, values = parse_set(text)
+        if name in found:
+            raise ConfigError(f"{name} is given twice", "name all of its values at once", key="--set")
+        found[name] = values
+    if arguments.seeds is not None:
+        if SEED in found:
+            raise ConfigError("is given together with --set seed", "give one of them", key="--seeds")
+        found[SEED] = parse_seeds(arguments.seeds)
+    return found
+
+
+def _pictures(arguments: Arguments, columns: Sequence[str]) -> tuple[tuple[Picture, Path | None], ...]:
+    """Return the pictures with their files, after checking both; a file alone gets the end poses."""
+    files = [Path(name) for name in arguments.picture_files]
+    wanted = list(arguments.pictures)
+    if files and not wanted:
+        wanted = [parse_picture(POSES)]
+    if len(files) > len(wanted):
+        message = f"{len(files)} files for {counted(len(wanted), 'picture')}"
+        raise ConfigError(message, "add a --picture-of for each", key="--picture")
+    for file in files:
+        check_picture_file(file)
+    if len({os.path.realpath(file) for file in files}) < len(files):
+        raise ConfigError("two pictures have the same file", "give each its own", key="--picture")
+    for picture in wanted:
+        check_picture(picture, columns)
+    return tuple(zip_longest(wanted, files))
+
+
+def _expression(text: str) -> tuple[str, str]:
+    name, equals, expression = text.partition("=")
+    if not equals or not name.strip() or not expression.strip():
+        raise ConfigError(f"must be NAME=EXPR, got {text!r}", "such as 'far_mm=hypot(x_mm, y_mm)'", key="--expr")
+    return name.strip(), expression.strip()
+
+
+def _run_options(spec: RunSpec, arguments: Arguments, goals: GoalsFile | None) -> RunOptions:
+    return RunOptions(
+        time_limit_s=arguments.timeout,
+        answers=arguments.input or (goals.answers if goals else ()),
+        actions=press_actions(arguments.press, spec.profile.tick_hz),
+    )
