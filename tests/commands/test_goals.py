@@ -68,7 +68,7 @@ def test_one_missed(task: Path, here: Command) -> None:
         "run 1, task.py · A task: 1 of 2 goals, 1 of 3 points",
         "  ✗ there (2): Drive to x = 700.",
         "      missed at 1.07 s, x 600 mm, y 500 mm",
-        "      At its nearest, at 0.57 s, the robot was 100 mm away. (line 3)",
+        "      At its nearest, at 0.57 s, the robot was 100 mm away (line 3).",
         "      Hint: Drive on.",
     ]
 
@@ -79,7 +79,7 @@ def test_open_while_it_runs(task: Path, here: Command) -> None:
     assert done.returncode == 1
     assert done.stdout.split("\n")[1:3] == [
         "  · there (2): Drive to x = 700.",
-        "      At its nearest, at 0.57 s, the robot was 100 mm away. (line 3)",
+        "      At its nearest, at 0.57 s, the robot was 100 mm away (line 3).",
     ]
 
 
@@ -181,8 +181,8 @@ def test_program_that_does_not_compile(task: Path, here: Command) -> None:
     task.write_text(f"{GOALS}[[goal]]\nname = 'finish'\nfinish = true\n[[goal]]\nname = 'use'\nuse = 'print'\n")
     done = here("goals", "check", task)
     assert done.returncode == 1
-    assert "The program did not finish: raised: SyntaxError" in done.stdout
-    assert "The program is not Python: expected ':'. (line 1)" in done.stdout
+    assert "The program did not finish: SyntaxError" in done.stdout
+    assert "The program is not Python: expected ':' (line 1)." in done.stdout
 
 
 def test_rows_of_a_flood_are_limited(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:

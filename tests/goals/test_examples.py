@@ -101,7 +101,7 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
             "stick": "“round” was not met.",
             "on_the_line": "",
             "stop": "At the end",
-            "finish": "did not finish: time limit",
+            "finish": "did not finish: stopped at the limit of 60 s",
         },
     ),
     "square, wrong corners": (

@@ -134,7 +134,8 @@ def _details(judgement: Judgement) -> Iterator[str]:
         where = f"{change.state} at {change.time_s:.2f} s, x {change.x_mm:.0f} mm, y {change.y_mm:.0f} mm"
         yield f"{where}{'' if judgement.reason else line}"
     if judgement.reason:
-        yield f"{judgement.reason}{f' (line {judgement.line})' if judgement.line else ''}"
+        reason = judgement.reason
+        yield f"{reason.removesuffix('.')} (line {judgement.line})." if judgement.line else reason
     if judgement.state is GoalState.MISSED and judgement.goal.hint:
         yield f"Hint: {judgement.goal.hint}"
 

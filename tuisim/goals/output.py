@@ -164,5 +164,5 @@ def find_finish(condition: Finish, evidence: Evidence, span: Span) -> Found:
     if end.end is End.FINISHED and not end.exit_code:
         return Found(evidence.last)
     what = f"exit code {end.exit_code}" if end.end is End.FINISHED else end.end.replace("_", " ")
-    summary = f": {end.summary}" if end.summary and end.summary != what else ""
-    return Found(None, f"The program did not finish: {what}{summary}.".replace("..", "."), end.error_line)
+    summary = end.summary.removesuffix(f" (line {end.error_line})").rstrip(".")
+    return Found(None, f"The program did not finish: {summary or what}.", end.error_line)
