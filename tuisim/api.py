@@ -207,6 +207,7 @@ def experiment(
     from tuisim.batch.sweep import run_plan
     from tuisim.batch.table import Row, check_expressions, frame_of
     from tuisim.batch.task import Keep
+    from tuisim.batch.workers import Workers
     from tuisim.goals.files import load_goals
 
     _check_timeout(timeout_s)
@@ -232,7 +233,7 @@ def experiment(
     plan = Plan(tuple(subjects), varied, Path("parameters"), judged, Keep(keep), lambda _: options)
     check_expressions(expressions or {}, plan.names, (goal.name for goal in judged))
     rows: dict[int, Row] = {}
-    run_plan(plan, rows, jobs=jobs)
+    run_plan(plan, rows, workers=Workers(jobs))
     return frame_of(rows.values(), expressions)
 
 

@@ -13,7 +13,7 @@ import pytest
 
 import tuisim
 from tests.batch.stand_in import result_of, run_backwards
-from tuisim.batch import sweep
+from tuisim.batch import workers
 from tuisim.batch.task import Result, Task
 from tuisim.cli import run_command
 from tuisim.runs.store import RunStore
@@ -34,7 +34,7 @@ Batch = Callable[..., int]
 def batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Batch:
     """Run the command in an own folder, with results that are computed and come in reverse order."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sweep, "run_many", run_backwards)
+    monkeypatch.setattr(workers, "run_many", run_backwards)
     Path("mine.py").write_text(PROGRAM)
     return lambda *words: run_command(["batch", *words])
 
@@ -128,6 +128,8 @@ def test_several_programs_are_compared(batch: Batch) -> None:
                       "./a.svg"), "two pictures have the same file", id="same file"),
         pytest.param(("--goals", "none.toml"), "none.toml: there is no such file", id="goals"),
         pytest.param(("--jobs", "0"), "--jobs: must be a whole number from 1", id="jobs"),
+        pytest.param(("--jobs", "2", "--workers", "2"), "--workers: is given together with --jobs", id="workers"),
+        pytest.param(("--scheduler", "tcp://a:1", "--workers", "2"), "--workers: is given together with", id="cluster"),
         pytest.param(("--speed", "1"), "no such option: --speed", id="speed"),
     ],
 )  # fmt: skip
@@ -138,7 +140,7 @@ def test_what_is_wrong_is_said_before_anything_is_run(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(sweep, "run_many", None)
+    monkeypatch.setattr(workers, "run_many", None)
     assert batch("mine.py", *words) == 2
     assert message in capsys.readouterr().err
 
@@ -151,7 +153,7 @@ def test_a_batch_needs_a_program(batch: Batch, capsys: pytest.CaptureFixture[str
 def test_an_interrupted_batch_keeps_what_is_done(
     batch: Batch, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
+    monkeypatch.setattr(workers, "run_many", interrupt_after(2))
     assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv") == 130
     assert pd.read_csv("rows.csv")["seed"].tolist() == [0, 1]
     assert "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume goes on" in capsys.readouterr().err
@@ -164,7 +166,7 @@ def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
     words = ("mine.py", "--seeds", "0..4", "--set", "noise.motor=0,9", "--out")
     assert batch(*words, f"whole.{suffix}") == 0
     with monkeypatch.context() as patch:
-        patch.setattr(sweep, "run_many", interrupt_after(3))
+        patch.setattr(workers, "run_many", interrupt_after(3))
         assert batch(*words, f"rows.{suffix}") == 130
     run: list[int] = []
 
@@ -173,7 +175,7 @@ def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
             run.append(task.index)
             yield result_of(task)
 
-    monkeypatch.setattr(sweep, "run_many", rest)
+    monkeypatch.setattr(workers, "run_many", rest)
     assert batch(*words, f"rows.{suffix}", "--resume") == 0
     assert run == [3, 4, 5, 6, 7, 8, 9]
     assert Path(f"rows.{suffix}").read_bytes() == Path(f"whole.{suffix}").read_bytes()
@@ -191,7 +193,7 @@ def test_the_rows_of_an_interrupted_batch_are_not_lost(
     batch: Batch, words: tuple[str, ...], message: str, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
+    monkeypatch.setattr(workers, "run_many", interrupt_after(2))
     batch("mine.py", "--seeds", "0..4", "--out", "rows.csv")
     part = Path("rows.csv.part").read_bytes()
     assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv", *words) == 2

@@ -71,7 +71,9 @@ def _dask() -> Any:
     try:
         import distributed
     except ImportError as error:
-        raise ConfigError("needs Dask", "pip install 'tuisim[cluster]'", key="--scheduler") from error
+        raise ConfigError(
+            "needs Dask", "pip install -e '.[cluster]' in the clone of tuisim", key="--scheduler"
+        ) from error
     return distributed
 
 

@@ -6,15 +6,15 @@ from collections.abc import Callable, Generator, MutableMapping
 
 from tuisim.batch.partial import PartialTable
 from tuisim.batch.plan import Plan
-from tuisim.batch.pool import run_many
 from tuisim.batch.table import Row, row_of
+from tuisim.batch.workers import LOCAL, Workers
 
 
 def run_plan(
     plan: Plan,
     rows: MutableMapping[int, Row],
     *,
-    jobs: int = 0,
+    workers: Workers = LOCAL,
     partial: PartialTable | None = None,
     on_row: Callable[[Row], None] = lambda _: None,
 ) -> None:
@@ -24,17 +24,18 @@ def run_plan(
 
     Args:
         rows: Rows by the index of their task; those that are there are done, the others are added as they finish.
-        jobs: Number of worker processes; 0 is one for each processor.
+        workers: The processes that execute the tasks.
         partial: An open file that gets each row as well.
         on_row: Called with each new row.
 
     Raises:
+        ConfigError, HostError: there is no such cluster, or it is lost.
         ExportError: the partial file cannot be written.
         LogError: a recording cannot be read, or a run to be kept cannot be stored.
     """
     several = len(plan.subjects) > 1
     # What is done by now is taken out of the tasks before the first new row comes.
-    results = run_many(plan.tasks(frozenset(rows)), jobs)
+    results = workers.run(plan.tasks(frozenset(rows)))
     try:
         for result in results:
             label = plan.subject_at(result.index).label if several else ""

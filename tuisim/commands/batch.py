@@ -110,7 +110,7 @@ class _Batch:
         with Progress(counted(len(plan), "run"), len(plan)):
             try:
                 with _signals_raise():
-                    run_plan(plan, self.rows, jobs=self.request.jobs, partial=partly, on_row=self._rate())
+                    run_plan(plan, self.rows, workers=self.request.workers, partial=partly, on_row=self._rate())
             except _Interrupted as interrupted:
                 code = interrupted.exit_code
             finally:

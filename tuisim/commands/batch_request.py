@@ -14,6 +14,7 @@ from tuisim.batch.pictures import POSES, USAGE, Picture, check_picture, check_pi
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.table import check_expressions, usual_columns
 from tuisim.batch.task import Keep
+from tuisim.batch.workers import Workers
 from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
@@ -36,6 +37,9 @@ OPTIONS = (
     option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
     option("--jobs", metavar="N", type=Value(lambda text: _jobs(text, "--jobs")),
            help="Number of worker processes (one for each processor)."),
+    option("--scheduler", metavar="ADDRESS", help="Use the Dask cluster of a scheduler, such as tcp://host:8786."),
+    option("--workers", metavar="N", type=Value(lambda text: _jobs(text, "--workers")),
+           help="Use a Dask cluster of this many workers on this machine."),
     option("--seeds", metavar="SEEDS", group=_GRID, help="One run for each seed: 0..199, or 1,5,9."),
     option("--set", "sets", multiple=True, metavar="NAME=VALUES", group=_GRID,
            help="Vary a key of a world or robot file: noise.motor=0,20,50, robot.wheel_diameter_mm=54:58:0.5, "
@@ -70,8 +74,7 @@ class Request:
     expressions: Mapping[str, str]
     """By the name of their column."""
     out: Path | None
-    jobs: int
-    """0 for one worker for each processor."""
+    workers: Workers
     resume: bool
     pictures: tuple[tuple[Picture, Path | None], ...] = ()
     """Each with its file; None for text."""
@@ -111,7 +114,16 @@ def read_request(arguments: Arguments) -> Request:
     if arguments.resume and out is None:
         raise ConfigError("needs the table to go on with", "--out FILE", key="--resume")
     target = check_target(out) if out is not None else None
-    return Request(plan, expressions, target, arguments.jobs or file.jobs or 0, arguments.resume, pictures)
+    return Request(plan, expressions, target, _workers(arguments, file), arguments.resume, pictures)
+
+
+def _workers(arguments: Arguments, file: BatchFile) -> Workers:
+    given = {"--jobs": arguments.jobs, "--scheduler": arguments.scheduler, "--workers": arguments.workers}
+    named = [name for name, value in given.items() if value]
+    if len(named) > 1:
+        raise ConfigError(f"is given together with {named[0]}", "give one of them", key=named[1])
+    jobs = arguments.jobs or (0 if named else file.jobs) or 0
+    return Workers(jobs, arguments.scheduler or "", arguments.workers or 0)
 
 
 def _batch_file(arguments: Arguments) -> BatchFile:
