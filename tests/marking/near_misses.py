@@ -115,7 +115,7 @@ NEAR_MISSES = (
     single("nils", HOPS.replace("50, 50", "15, 15"), "at speed 15, 77 mm/s: 1600 mm take more than 20 s", ("done",)),
     single("olga", HOPS + "import time\ntime.sleep(15)\n", "arrives in time, but ends after more than 20 s", ("done",)),
     single("pavel", _STOPS_AT_BLACK, "logs all four levels and stops on the last band, x 1430", ARRIVAL),
-    single("rita", _NEVER_STOPS, "never stops: passes the place and the wall until the limit", ARRIVAL),
+    single("rita", _NEVER_STOPS, "never stops: passes the place and the wall until the limit", ARRIVAL, line=4),
     single("stefan", _CRASHES_LAST, "does all, then divides by zero in line 7", ("done",), line=7),
     single("uwe", _COUNTS_WHITE, "off by one: stops behind the third band", EVERY),
     Student(

@@ -144,6 +144,11 @@ def test_feedback_of_a_program_that_could_not_be_run_says_so() -> None:
     assert "did not run to its end: there is no Python file" in " ".join(text.split())
 
 
+def test_feedback_names_an_error_without_control_characters() -> None:
+    text = feedback_of(SHEET, SHEET.rows[3], TEXT)
+    assert "did not run to its end: \ufffd[2J" in text and not re.search(r"[\x00-\x08\x0b-\x1f\x7f]", text)
+
+
 def test_each_student_has_a_feedback_file_of_a_plain_name(tmp_path: Path) -> None:
     write_feedback(tmp_path / "feedback", SHEET, [TEXT] * len(STUDENTS))
     names = sorted(path.name for path in (tmp_path / "feedback").iterdir())

@@ -140,7 +140,7 @@ def test_a_million_lines_are_all_kept(run: Run) -> None:
 
 def test_too_much_output_ends_the_run(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     done = run("x = 'y' * 10_000_000\nwhile True: print(x)")
-    assert done.ended.end == "output_limit"
+    assert (done.ended.end, done.ended.error_line) == ("output_limit", 2)
     assert "256 MiB" in done.ended.summary
 
 

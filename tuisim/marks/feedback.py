@@ -8,7 +8,7 @@ from pathlib import Path
 from textwrap import fill
 
 from tuisim.atomic import replacing
-from tuisim.errors import ExportError
+from tuisim.errors import ExportError, printable
 from tuisim.marks.sheet import Cell, Column, Row, Sheet, in_words
 from tuisim.source import source_lines
 
@@ -45,19 +45,20 @@ def feedback_of(sheet: Sheet, row: Row, source: str = "") -> str:
     head = f"{row.name}: {in_words(row.points)} of {in_words(sheet.most_points)} points"
     parts = [head, "=" * min(len(head), WIDTH), "", sheet.title, ""] if sheet.title else [head, "", ""]
     parts += _how_often(row)
-    if row.error or (row.reason and not row.runs):
-        parts += [_wrapped(f"Your program did not run to its end: {row.reason}"), ""]
+    if row.failure:
+        parts += [_wrapped(f"Your program did not run to its end: {row.failure}"), ""]
         parts += [f"    {line}" for line in source_lines(row.error)[-MOST_ERROR_LINES:]]
         parts += [""] if row.error else []
-    lines = source_lines(source)
+    quoted = source_lines(source)
     for column, cell in zip(sheet.columns, row.cells, strict=True):
-        parts += [*_goal(column, cell, row.runs, lines), ""]
-    return "\n".join(parts).rstrip("\n") + "\n"
+        parts += [*_goal(column, cell, row.runs, quoted), ""]
+    lines = "\n".join(parts).rstrip("\n").split("\n")
+    return "".join(f"{printable(line)}\n" for line in lines)
 
 
 def _how_often(row: Row) -> list[str]:
     if row.stopped_early:
-        return [_wrapped(f"Your program was stopped: {row.reason}. It was run once."), ""]
+        return ["Your program was run once: it would not end in other runs either.", ""]
     if row.runs < 2:
         return []
     full = round(row.robustness * row.runs)

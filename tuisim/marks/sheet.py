@@ -62,6 +62,8 @@ class Row:
     """The text of that line."""
     seed: int = 0
     """The seed of that run."""
+    failure: str = ""
+    """Why the program of that run did not finish, or could not be run; empty if it finished."""
     error: str = ""
     """The traceback of that run; empty if it has none."""
     runs: int = 0
@@ -105,7 +107,7 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
     """Return the row of a student."""
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
-        return Row(student.name, student.main, 0.0, 0.0, cells, student.problem)
+        return Row(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
     ordered = tuple(sorted(outcomes, key=lambda one: one.seed))
     if not ordered:
         return Row(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, "not run") for _ in columns), "not run")
@@ -125,6 +127,7 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
         line=line,
         source_line=printable(lines[line - 1].strip()) if 0 < line <= len(lines) else "",
         seed=failed.seed if failed else 0,
+        failure=failed.failure if failed else "",
         error=failed.error if failed else "",
         runs=len(ordered),
         stopped_early=len(ordered) < seeds and ordered[0].gave_up,
@@ -152,10 +155,11 @@ def _cell(column: Column, outcomes: Sequence[Outcome]) -> Cell:
 
 def _reason(outcome: Outcome, columns: Sequence[Column]) -> tuple[str, int]:
     """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
-    if outcome.failure:
-        return outcome.failure, outcome.line
     names = [column.name for column in columns if column.points]
     missed = [goal for goal in outcome.goals if not goal.met and goal.name in names]
+    if outcome.failure:
+        # A program that was stopped has no line of an error; what it did not get done has one.
+        return outcome.failure, outcome.line or next((goal.line for goal in missed if goal.line), 0)
     return (missed[0].reason, missed[0].line) if missed else ("", 0)
 
 

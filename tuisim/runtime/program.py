@@ -236,10 +236,18 @@ class ProgramRunner:
             case SystemExit():
                 return self._exit_outcome(error.code)
             case LogError():
-                return Outcome(End.OUTPUT_LIMIT, 0, error.message)
+                return Outcome(End.OUTPUT_LIMIT, 0, error.message, error_line=self._line_in(error.__traceback__))
             case MemoryError():
                 return self._raised(MemoryError("the program used up the memory it may have"), error.__traceback__)
         return self._raised(error, error.__traceback__)
+
+    def _line_in(self, trace: types.TracebackType | None) -> int:
+        """Return the program's last line in a traceback; 0 if there is none."""
+        line = 0
+        while trace is not None:
+            line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == self._session.program_file else line
+            trace = trace.tb_next
+        return line
 
     def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
         self.stdout.finish()
