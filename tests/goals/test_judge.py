@@ -153,6 +153,22 @@ def test_state_while_it_runs(condition: str, state: str, home: Path, tmp_path: P
     assert bool(found.changes) == (state != "open")
 
 
+def test_states_as_of_then_are_those_that_were_shown_then(home: Path, tmp_path: Path) -> None:
+    conditions = [condition for condition, *_ in (*CASES.values(), *RUNNING.values())]
+    text = "".join(f"[[goal]]\nname = '{number}'\n{each}\n" for number, each in enumerate(conditions))
+    goals = goals_of(tmp_path, f"{GOALS}[[goal]]\nname = 'open'\nreach = {{ y_mm = 1 }}\n{text}")
+    run = Run(RunStore(), world(), "import time\ntime.sleep(1)\n")
+    shown = {}
+    for number in range(30):
+        # Everything of one instant has happened when time passes on.
+        run.do((ahead(20), *((says("one"), says("two")) if number == 9 else ())))
+        shown[run.recorder.simulation.tick] = [each.state for each in judge(goals, read_run(run.new.folder))]
+    run.do((wait(0.1), says("three")))
+    final = judge(goals, run.end())
+    assert {tick: [each.at(tick) for each in final] for tick in shown} == shown
+    assert {state for states in shown.values() for state in states} == {"open", "met", "missed"}
+
+
 def test_packed_run_is_judged_alike(home: Path, tmp_path: Path) -> None:
     run = finished(home)
     text = f"{GOALS}[[goal]]\nname = 'it'\nall = ['a', 'b', 'one']\n"
