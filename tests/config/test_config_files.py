@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.config.makers import boxes, mm, presses, robots
+from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import parse_words
 from tuisim.config.obstacles import OBSTACLES, load_obstacles, save_obstacles
@@ -408,4 +409,5 @@ def test_the_files_of_the_readme_work_together(root: Path, tmp_path: Path) -> No
     explorer = load_robot(str(tmp_path / "explorer.toml"))
     assert [sensor.name for sensor in explorer.sensors] == ["left", "middle", "back", "bumper"]
     assert [goal.name for goal in load_goals(tmp_path / "bands_goals.toml").goals] == ["levels", "black", "finish"]
-    assert len(blocks) == 6
+    assert load_batch(tmp_path / "square.toml").programs == ("square.py",)
+    assert len(blocks) == 7
