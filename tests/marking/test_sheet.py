@@ -71,11 +71,11 @@ def test_a_row_has_mean_points_robustness_and_the_first_failure() -> None:
 
 
 def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
-    heads, rows = lines_of(SHEET, width=24)
+    heads, rows = lines_of(SHEET)
     assert heads == ["student", "points", "robust", "place", "wall", "reason"]
     assert rows[:3] == [
         ["ada", "10", "100%", "7", "3", ""],
-        ["ben", "8.25", "75%", "5.25", "3", "line 2: it stopped 40 m…"],
+        ["ben", "8.25", "75%", "5.25", "3", "line 2: it stopped 40 mm away"],
         ["cleo", "0", "0%", "0", "0", "stuck in line 1"],
     ]
     assert summary_of(SHEET) == "5 students, 4 seeds: mean 4.25 of 10 points; 1 with all points for every seed"

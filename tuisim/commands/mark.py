@@ -41,9 +41,9 @@ DEFAULT_TIME_LIMIT_S = 120.0
 MAX_TIME_LIMIT_S = 1e6
 MAX_JOBS = 256
 EXIT_INTERRUPTED = 130
-LEAST_REASON = 20
-"""Characters of a reason that are shown in a narrow terminal."""
 
+_LEFT_OUT = ("seed", "speed")
+"""Shared options that marking does not take: each program has several seeds, and runs as fast as possible."""
 _limit = number(0.001, MAX_TIME_LIMIT_S)
 _jobs = whole(1, MAX_JOBS)
 _RUNS, _RESULTS = "Runs", "Results"
@@ -74,7 +74,7 @@ _OPTIONS = (
 
 @command(
     *_OPTIONS,
-    *shared_options(hidden=(APP, PANEL), names=names_of),
+    *(one for one in shared_options(hidden=(APP, PANEL), names=names_of) if one.name not in _LEFT_OUT),
     help="""Mark the programs of a class.
 
     GOALS is a file with the goals of the task and its world. A FOLDER contains a file NAME.py or a folder for each
@@ -135,8 +135,6 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
     """Raise ConfigError or ExportError if something is wrong that would only be noticed after the runs."""
     if not arguments.folders:
         raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
-    if "seed" in arguments.settings:
-        raise ConfigError("marking takes several seeds", "give --seeds instead", key="--seed")
     if arguments.input and task.answers:
         raise ConfigError(f"{task.path} has the answers of its dialogues", "give only one of them", key="--input")
     targets = [Path(target) for target in arguments.export]
@@ -227,11 +225,11 @@ def _write(sheet: Sheet, students: Sequence[Student], ignored: Sequence[str], ar
 
 def _print(sheet: Sheet, ignored: Sequence[str]) -> None:
     heads, rows = lines_of(sheet)
-    if sys.stdout.isatty():
-        used = max(len(line) for line in table(heads[:-1], [row[:-1] for row in rows]).split("\n"))
-        width = max(LEAST_REASON, shutil.get_terminal_size().columns - used - 2)
-        heads, rows = lines_of(sheet, width)
-    echo_lines(table(heads, rows))
+    text = table(heads, rows)
+    if sys.stdout.isatty() and max(map(len, text.split("\n"))) > shutil.get_terminal_size().columns:
+        reasons = [f"{row[0]}: {row[-1]}" for row in rows if row[-1]]
+        text = "\n".join([table(heads[:-1], [row[:-1] for row in rows]), "", *reasons])
+    echo_lines(text)
     echo()
     echo(summary_of(sheet))
     if ignored:

@@ -173,20 +173,14 @@ def in_words(points: float) -> str:
     return f"{points:.2f}".rstrip("0").rstrip(".")
 
 
-def lines_of(sheet: Sheet, width: int = 0) -> tuple[list[str], list[list[object]]]:
-    """Return heads and rows of the text table.
-
-    Args:
-        width: Most characters of a reason; 0 for no limit.
-    """
+def lines_of(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
+    """Return heads and rows of the text table; the reason comes last."""
     heads = ["student", "points", "robust", *(column.name for column in sheet.columns), "reason"]
-    rows: list[list[object]] = []
+    rows = []
     for row in sheet.rows:
         points = (in_words(row.points), f"{row.robustness:.0%}", *(in_words(cell.points) for cell in row.cells))
         where = f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
-        reason = f"{where}{row.reason}"
-        cut = bool(width) and len(reason) > width
-        rows.append([row.name, *points, reason[: width - 1] + "…" if cut else reason])
+        rows.append([row.name, *points, f"{where}{row.reason}"])
     return heads, rows
 
 
