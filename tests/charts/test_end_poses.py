@@ -36,7 +36,7 @@ NONE = poses(group([], []))
     [
         pytest.param(FAR, WHOLE, id="far apart"),
         pytest.param(NONE, WHOLE, id="no poses"),
-        pytest.param(poses(group([50.0], [60.0])), ((33, 67), (43, 77)), id="one pose"),
+        pytest.param(poses(group([50.0], [60.0])), ((37, 63), (47, 73)), id="one pose"),
     ],
 )
 def test_the_part_of_the_field_holds_every_pose(found: EndPoses, limits: object) -> None:
@@ -72,7 +72,7 @@ def test_runs_off_the_field_are_counted() -> None:
 
 def test_the_mat_is_behind_the_poses() -> None:
     cells = mat_cells(MAT, (-100, 300), (0, 400), 4, 2)
-    assert cells[0].tolist() == [[160] * 3, [140] * 3, [255] * 3, [255] * 3]
+    assert cells[0].tolist() == [[160] * 3, [178] * 3, [255] * 3, [255] * 3]
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40), (40, 12)])
@@ -88,3 +88,10 @@ def test_groups_have_marks_of_their_own_without_colours() -> None:
     text = text_of_poses(NEAR, 80, 24, colors=False).plain
     assert "● noise.motor 0: x 805.0 ± 4.1, y 510.0 ± 8.2 mm" in text
     assert text.count("▲") == 3
+
+
+def test_the_first_group_is_on_top_in_colours() -> None:
+    both = poses(group([800.0], [500.0], "a"), group([800.0, 850], [500.0, 550], "b"))
+    text = text_of_poses(both, 80, 24, colors=True)
+    dots = {at for at, letter in enumerate(text.plain) if "\u2800" <= letter <= "\u28ff"}
+    assert len({str(span.style).split(" on ")[0] for span in text.spans if span.start in dots}) == 2

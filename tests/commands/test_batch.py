@@ -16,6 +16,7 @@ from tests.batch.stand_in import result_of, run_backwards
 from tuisim.batch import workers
 from tuisim.batch.task import Result, Task
 from tuisim.cli import run_command
+from tuisim.goals.judge import Change, GoalState, Judgement
 from tuisim.runs.store import RunStore
 
 PROGRAM = "tank_drive.on_for_seconds(40, 40, 0.3)\nprint('Gyro: ' + str(gyro.angle))\n"
@@ -100,6 +101,29 @@ def test_the_option_for_a_parameter_of_the_batch_file_replaces_it(batch: Batch) 
     assert batch("spec.toml", "-M", "30") == 0
     frame = pd.read_csv("rows.csv")
     assert ("noise.motor" in frame.columns, frame["x_mm"].tolist()) == (False, [100, 130, 160])
+
+
+GOALS = 'program = "mine.py"\n[[goal]]\nname = "end"\nsay = "End."\npoints = 2\nfinish = true\n'
+
+
+@pytest.mark.parametrize("words", [("goals.toml",), ("mine.py", "--goals", "goals.toml"), ("--goals", "goals.toml")])
+def test_goals_are_judged_in_their_world(
+    words: tuple[str, ...], batch: Batch, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("goals.toml").write_text(f'background = "Loop"\n{GOALS}')
+
+    def judged(tasks: Iterable[Task], jobs: int = 0) -> Iterator[Result]:
+        for task in tasks:
+            assert task.spec.world.background == "Loop"
+            met = Change(3, 0.1, GoalState.MET, 0, 0)
+            yield result_of(
+                task, judgements=tuple(Judgement(goal, (met,) * (task.spec.seed < 2)) for goal in task.goals)
+            )
+
+    monkeypatch.setattr(workers, "run_many", judged)
+    assert batch(*words, "--seeds", "0..2", "--out", "rows.csv") == 0
+    assert pd.read_csv("rows.csv")[["goal.end", "points"]].to_numpy().tolist() == [[True, 2], [True, 2], [False, 0]]
+    assert "end: met in 2 of 3 (67 %)" in capsys.readouterr().out
 
 
 def test_several_programs_are_compared(batch: Batch) -> None:

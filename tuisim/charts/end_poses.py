@@ -39,10 +39,12 @@ MOST_GROUPS = 8
 
 _LEAST_MM = 20.0
 """Least width and height of the part of the field that is drawn."""
-_PART = 0.25
+_PART = 0.6
 """Poses that take up less of the field's width and height than this are drawn enlarged."""
-_MARGIN = 0.35
+_MARGIN = 0.15
 """Of what is drawn, beside the poses on each side."""
+_STRENGTH = 0.3
+"""Of the mat's colours, so that points and lines of any colour are visible on any mat."""
 _ELLIPSE = 2.0
 """Size of the ellipses in standard deviations."""
 _POINTS = 72
@@ -207,8 +209,7 @@ def mat_cells(mat: Pixels, x: Limits, y: Limits, columns: int, rows: int) -> Pix
     at_y = np.floor(FIELD_HEIGHT_MM - y[1] + (np.arange(rows) + 0.5) / rows * (y[1] - y[0])).astype(int)
     inside_x, inside_y = (at_x >= 0) & (at_x < mat.shape[1]), (at_y >= 0) & (at_y < mat.shape[0])
     found = mat[np.clip(at_y, 0, mat.shape[0] - 1)][:, np.clip(at_x, 0, mat.shape[1] - 1)].astype(float)
-    # Points and lines of any colour are then visible on any mat.
-    found = 255 - (255 - found) * 0.45
+    found = 255 - (255 - found) * _STRENGTH
     found[~(inside_y[:, None] & inside_x[None, :])] = 160
     return np.asarray(np.rint(found), np.uint8)
 
@@ -249,10 +250,11 @@ def text_of_poses(poses: EndPoses, width: int, height: int, *, colors: bool) -> 
     several = len(poses.groups) > 1
     lines = [Text(poses.title, "bold")]
     for number, group in enumerate(poses.groups):
-        mark = MARKS[number % len(MARKS)] if several else "•"
+        mark = MARKS[number % len(MARKS)] if several and not colors else "•"
         style = Style(color=Color.from_rgb(*_color(number))) if colors else Style()
         lines.append(Text.assemble((f"{mark} ", style), group.in_words()))
-    if note := poses.note():
+    enlarged = "a part of the field" if poses.is_enlarged() else ""
+    if note := "; ".join(filter(None, (enlarged, poses.note()))):
         lines.append(Text(note))
     rows = max(height - len(lines) - 2, 4)
     limits = poses.limits()
@@ -284,8 +286,9 @@ def _framed(
     ]
     if not several:
         curves = [Curve(one.times_s, one.values, one.rgb, rising=False, joined=False) for one in curves]
-    drawn = canvas(curves, columns, rows, *limits)
-    cells = mat_cells(poses.mat, *limits, columns, rows) if colors else None
+    # What is drawn last is on top: the first group.
+    drawn = canvas(curves[::-1], columns, rows, *limits)
+    halves = mat_cells(poses.mat, *limits, columns, 2 * rows).tolist() if colors else None
     lines = []
     for row in range(rows):
         text = labels.get(row, "")
@@ -293,9 +296,15 @@ def _framed(
         column = 0
         for part, rgb in drawn[row]:
             for letter in part:
-                ground = Color.from_rgb(*cells[row, column].tolist()) if cells is not None else None
-                ink = Color.from_rgb(*rgb) if rgb and colors else None
-                line.append(letter, Style(color=ink, bgcolor=ground))
+                if halves is None:
+                    line.append(letter)
+                else:
+                    upper, lower = halves[2 * row][column], halves[2 * row + 1][column]
+                    if rgb is None or letter == " ":
+                        line.append("▀", Style(color=Color.from_rgb(*upper), bgcolor=Color.from_rgb(*lower)))
+                    else:
+                        ground = ((one + other) // 2 for one, other in zip(upper, lower, strict=True))
+                        line.append(letter, Style(color=Color.from_rgb(*rgb), bgcolor=Color.from_rgb(*ground)))
                 column += 1
         lines.append(line)
     axis, below = axes.time_axis(limits[0], columns, "mm")

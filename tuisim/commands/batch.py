@@ -37,6 +37,8 @@ _SHARED = [one for one in shared_options(hidden=(APP, PANEL), names=names_of) if
 """A batch runs as fast as possible."""
 MOST_LINES = 100
 """A summary has at most this many lines."""
+_ROUNDING = 1e-10
+"""Poses, times and readings smaller than this are 0 but for rounding."""
 _LEAST_COLUMNS, _ROWS = 40, (12, 40)
 """Size of a picture in the terminal: minimum width, and limits of its height."""
 
@@ -203,9 +205,8 @@ def _summary_table(lines: Sequence[ColumnSummary], width: int) -> str:
         for line in lines:
             of = line.statistics
             chosen = [of.quantiles[QUANTILES.index(part)] for part in quantiles]
-            # Rounding errors of equal numbers are no spread.
-            std = of.std if of.std > 1e-12 * max(abs(of.max), abs(of.min)) else 0.0
-            cells.append([line.column, *line.group.values(), *map(_Figure, (of.mean, std, of.min, *chosen, of.max))])
+            figures = map(_Figure, (of.mean, of.std, of.min, *chosen, of.max))
+            cells.append([line.column, *line.group.values(), *figures])
         found = table(heads, cells)
         if max(map(len, found.split("\n"))) <= width:
             break
@@ -223,10 +224,10 @@ def _plain(value: Any) -> Any:
 
 
 class _Figure(float):
-    """A number with few digits, for tables."""
+    """A number with few digits, for tables; a mere rounding error is 0."""
 
     def __str__(self) -> str:
-        return "" if math.isnan(self) else f"{float(self):.4g}"
+        return "" if math.isnan(self) else "0" if abs(self) < _ROUNDING else f"{float(self):.4g}"
 
 
 def _duration(seconds: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
@@ -20,6 +21,7 @@ from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
 from tuisim.commands.run import DEFAULT_TIME_LIMIT_S, MAX_TIME_LIMIT_S, parse_press, press_actions
 from tuisim.config.command_line import Arguments, Value, argument, choice, option
+from tuisim.config.files import read_file
 from tuisim.config.options import number, whole
 from tuisim.config.overrides import field_of_key
 from tuisim.config.worlds import WorldFile, means_world
@@ -88,7 +90,7 @@ def read_request(arguments: Arguments) -> Request:
         ExportError: the table cannot be written.
     """
     file = _batch_file(arguments)
-    named = arguments.goals or file.goals
+    named = arguments.goals or file.goals or _world_with_goals(arguments)
     goals = load_goals(named) if named else None
     subjects = _subjects(arguments, file, goals)
     typed = _typed_choices(arguments)
@@ -124,6 +126,16 @@ def _workers(arguments: Arguments, file: BatchFile) -> Workers:
         raise ConfigError(f"is given together with {named[0]}", "give one of them", key=named[1])
     jobs = arguments.jobs or (0 if named else file.jobs) or 0
     return Workers(jobs, arguments.scheduler or "", arguments.workers or 0)
+
+
+def _world_with_goals(arguments: Arguments) -> str | None:
+    """Return the world file that is named, if it has goals."""
+    words: list[str] = [*filter(means_world, arguments.programs), *filter(None, [arguments.world])]
+    for word in words:
+        with suppress(ConfigError):
+            if "goal" in read_file(Path(word).expanduser(), ConfigError):
+                return word
+    return None
 
 
 def _batch_file(arguments: Arguments) -> BatchFile:

@@ -16,7 +16,7 @@ from tuisim.config.worlds import world_from_table
 from tuisim.core.profile import ProfileSpec
 from tuisim.errors import ProfileError, RobotError
 
-_NOT_VARIED = ("program", "autorun", "rays", "panels", "hidden_panels", "obstacle", "remote")
+_NOT_VARIED = ("world", "title", "goal", "program", "autorun", "rays", "panels", "hidden_panels", "obstacle", "remote")
 """Keys of a world file that do not affect a run, or that have no single value."""
 _FIELDS = {"start": "{}", "noise": "{}_noise", "pen": "pen_{}"}
 """The fields of `Settings` that the keys of a table set."""
