@@ -17,6 +17,8 @@ from tuisim.source import source_lines
 _ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 MOST_CHARACTERS = 300
 """Longest reason; the rest is cut off."""
+_ERROR_HEAD, _ERROR_TAIL = 1000, 3000
+"""Characters of a long traceback that are kept, at its beginning and its end."""
 
 
 def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
@@ -41,7 +43,7 @@ def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
         result.end,
         _one_line(portable(failure, folder)),
         result.error_line,
-        "\n".join(map(printable, source_lines(portable(result.error, folder)))),
+        _shortened("\n".join(map(printable, source_lines(portable(result.error, folder))))),
         result.time_s,
         tuple(goals),
         result.run_id,
@@ -64,10 +66,16 @@ def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgeme
 
 def _failure(result: Result) -> str:
     """Return why a program did not finish."""
+    if result.end == End.STOPPED:
+        return "stopped, because the run took too much real time"
     lines = source_lines(result.error.rstrip("\n"))
-    if result.end == End.OUTPUT_LIMIT:
-        return result.summary or "printed too much"
     return result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
+
+
+def _shortened(text: str) -> str:
+    if len(text) <= _ERROR_HEAD + _ERROR_TAIL:
+        return text
+    return f"{text[:_ERROR_HEAD]}…\n…{text[-_ERROR_TAIL:]}"
 
 
 def _one_line(text: str) -> str:
