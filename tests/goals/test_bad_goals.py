@@ -140,6 +140,7 @@ BAD = {
         "goal[2].before: must be the name of a goal, or a time in seconds, got true",
     ),
     "negative time": (goal("finish = true", "before = -1"), "goal[2].before: must be a number from 0 to 1e+06, got -1"),
+    "huge time": (goal("finish = true", f"before = 1{'0' * 400}"), "goal[2].before: must be a number from 0 to 1e+06"),
     "times in the wrong order": (
         goal("print = 'x'", "after = 5", "before = 4"),
         "line 8: goal[2].after: must be less than before, 4, got 5",

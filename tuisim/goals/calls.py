@@ -16,6 +16,8 @@ from tuisim.goals.found import Found
 from tuisim.goals.spec import Avoid, Use
 from tuisim.source import PRELUDE_TEXTS
 
+_MAX_MEANING = 200
+"""Longer meanings of names, in characters, are not followed."""
 _DEFAULT_PRELUDE = "preloaded"
 """Its names mean the same in a goals file, whichever prelude a program has."""
 
@@ -70,7 +72,10 @@ class _Names:
                     self._assign(target, self.of(value))
 
     def _assign(self, target: ast.expr, meaning: str) -> None:
-        if isinstance(target, ast.Name | ast.Attribute) and meaning and meaning != ast.unparse(target):
+        # `x = x.y` in many lines would take a long time.
+        if not 0 < len(meaning) <= _MAX_MEANING:
+            return
+        if isinstance(target, ast.Name | ast.Attribute) and meaning != ast.unparse(target):
             self.meanings[ast.unparse(target)] = meaning
 
     def may_be(self, meaning: str, whole: set[str]) -> bool:

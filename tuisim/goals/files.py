@@ -152,7 +152,7 @@ def _limit(data: object, at: Location) -> str | float:
         return files.convert(data, str, at)
     if isinstance(data, bool) or not isinstance(data, int | float):
         raise at.wrong(f"must be the name of a goal, or a time in seconds, got {files.shown(data)}")
-    return files.convert(float(data), Seconds, at)
+    return files.convert(data, Seconds, at)
 
 
 _UNFIT = {

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 _DARK = 128
 """Pixels of an image that are darker on average belong to the picture."""
+_AT_ONCE = 4096
+"""Cells of a drawing that are compared in one step, which limits the memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,21 +142,21 @@ def compare(wanted: Array, points: Array, within_mm: float) -> tuple[Array, Arra
 
     side = cell_mm(within_mm)
     reach = math.ceil(within_mm / side) + 1
+    # What is off the field lies in the inner half of the margin, what is near that in the outer half.
+    margin = 2 * reach
     cols, rows = _grid(within_mm)
-    wide = cols + 2 * reach
-    size = wide * (rows + 2 * reach)
-    col = np.clip(np.floor(points[:, 0] / side).astype(np.int64), -reach, cols + reach - 1) + reach
-    row = np.clip(np.floor(points[:, 1] / side).astype(np.int64), -reach, rows + reach - 1) + reach
+    wide = cols + 2 * margin
+    col = np.clip(np.floor(points[:, 0] / side).astype(np.int64), -reach, cols + reach - 1) + margin
+    row = np.clip(np.floor(points[:, 1] / side).astype(np.int64), -reach, rows + reach - 1) + margin
     drawn, which = np.unique(row * wide + col, return_inverse=True)
-    wanted = (wanted // cols + reach) * wide + wanted % cols + reach
-    picture, reached = np.zeros(size, np.bool_), np.zeros(size, np.bool_)
+    wanted = (wanted // cols + margin) * wide + wanted % cols + margin
+    picture, reached = (np.zeros(wide * (rows + 2 * margin), np.bool_) for _ in range(2))
     picture[wanted] = True
     near = np.zeros(len(drawn), np.bool_)
-    for down in range(-reach, reach + 1):
-        for right in range(-reach, reach + 1):
-            if math.hypot(down, right) * side <= within_mm:
-                # Cells in the margin may have neighbours beyond it.
-                there = np.clip(drawn + down * wide + right, 0, size - 1)
-                near |= picture[there]
-                reached[there] = True
+    across, down = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1))
+    around = (down * wide + across)[np.hypot(down, across) * side <= within_mm]
+    for start in range(0, len(drawn), _AT_ONCE):
+        there = drawn[start : start + _AT_ONCE, None] + around
+        near[start : start + _AT_ONCE] = picture[there].any(axis=1)
+        reached[there] = True
     return reached[wanted], near[which]
