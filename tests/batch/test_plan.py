@@ -40,6 +40,15 @@ def test_without_parameters_there_is_one_task_with_the_chosen_seed() -> None:
     assert (task.spec.seed, dict(task.parameters)) == (4, {})
 
 
+def test_a_program_runs_in_the_folder_and_with_the_modules_of_the_user(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", "own")
+    (task,) = plan({}).tasks()
+    assert (task.program.working_directory, task.program.python_path) == (str(tmp_path), (str(tmp_path / "own"),))
+
+
 def test_tasks_that_are_done_are_left_out() -> None:
     assert [task.index for task in plan({"seed": (1, 2, 3, 4)}).tasks({0, 2})] == [1, 3]
 

@@ -40,6 +40,19 @@ ENDS = {
 }
 
 
+ORPHANS = """
+import os, time
+from multiprocessing import active_children
+from tests.batch.test_pool import task
+from tuisim.batch.pool import run_many
+
+results = run_many((task("print('A: 1')", index) for index in range(1000)), 2)
+next(results)
+print(*(child.pid for child in active_children()), flush=True)
+time.sleep(600)
+"""
+
+
 def task(text: str, index: int = 0, prelude: str = "preloaded", **changes: object) -> Task:
     spec = replace(build_run_spec(Settings(light_noise=20, motor_noise=50)), seed=index)
     program = Program("p.py", text, prelude=prelude, working_directory=os.getcwd())
@@ -129,6 +142,18 @@ def test_tasks_of_a_worker_that_was_killed_are_executed_again(tmp_path: Path) ->
     finally:
         running.stop()
     assert by_index(found) == expected
+
+
+@pytest.mark.slow
+def test_workers_end_with_the_process_that_was_killed(tmp_path: Path, root: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(ORPHANS)
+    with subprocess.Popen([sys.executable, script], cwd=root, stdout=subprocess.PIPE, text=True) as run:
+        assert run.stdout is not None
+        workers = run.stdout.readline().split()
+        run.kill()
+        # The workers have the pipe, too: it is closed when the last one has ended.
+        assert (len(workers), run.stdout.read()) == (2, "")
 
 
 @pytest.mark.slow

@@ -253,13 +253,18 @@ def test_a_row_equals_the_run_of_its_own(
     monkeypatch.chdir(tmp_path)
     Path("mine.py").write_text(PROGRAM)
     how = ("--profile", profile, "-M", "50")
-    assert run_command(["batch", "mine.py", *how, "--seeds", "0..2", "--out", "rows.parquet", "--jobs", "2"]) == 0
+    words = ("--seeds", "0..2", "--out", "rows.parquet", "--jobs", "2", "--keep", "all")
+    assert run_command(["batch", "mine.py", *how, *words]) == 0
     frame = pd.read_parquet("rows.parquet")
     for at, seed in enumerate(range(3)):
         assert run_command(["run", "mine.py", *how, "--seed", str(seed)]) == 0
-        last = RunStore().load_run("last").telemetry.last()
+        alone, kept = (RunStore().load_run(word) for word in ("last", frame.loc[at, "id"]))
+        last = alone.telemetry.last()
         assert last is not None
         assert frame.loc[at, ["x_mm", "y_mm", "heading_deg"]].tolist() == [last.x_mm, last.y_mm, last.heading_deg]
+        assert (kept.program, kept.spec) == (alone.program, alone.spec)
+        for name in ("telemetry.bin", "output.bin"):
+            assert (kept.folder / name).read_bytes() == (alone.folder / name).read_bytes()
 
 
 @pytest.mark.slow

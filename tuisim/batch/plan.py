@@ -18,7 +18,7 @@ from tuisim.config.overrides import field_of_key, settings_of_keys
 from tuisim.core.spec import RunSpec, to_plain
 from tuisim.errors import ConfigError
 from tuisim.goals.spec import Goal
-from tuisim.runs.handle import RunOptions
+from tuisim.runs.handle import RunOptions, in_surroundings
 from tuisim.source import Program
 
 
@@ -60,6 +60,9 @@ class Plan:
     _specs: dict[tuple[object, ...], RunSpec] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
+        # A worker may be in another folder, or on another machine.
+        subjects = tuple(replace(one, program=in_surroundings(one.program)) for one in self.subjects)
+        object.__setattr__(self, "subjects", subjects)
         first = self.subjects[0]
 
         def is_whole(name: str, inside: float) -> bool:

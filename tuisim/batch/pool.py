@@ -6,12 +6,14 @@ import os
 import shutil
 import signal
 import sys
+import threading
 import types
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
 from math import nan
+from multiprocessing import parent_process
 from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from typing import Any
@@ -140,7 +142,16 @@ def _lost(task: Task) -> Result:
 def _prepare_worker() -> None:
     # The process that waits for the results ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     warm_up()
+
+
+def _end_with_parent() -> None:
+    """End this worker when the process that waits for its results has been killed: the other workers keep its pipe."""
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
 
 
 def _execute_all(tasks: Sequence[Task], folder: Path) -> list[Result]:

@@ -50,7 +50,8 @@ OPTIONS = (
     option("--expr", "expressions", multiple=True, metavar="NAME=EXPR", group=_RESULTS,
            help="Add a column, such as 'error_mm=hypot(x_mm - 750, y_mm - 850)'; may be repeated."),
     option("--goals", metavar="FILE", type=Value(), group=_RESULTS, help="Judge the goals in a file, one column each."),
-    choice("--keep", [*Keep], group=_RESULTS, help="Which runs to store: all, failed or none (none)."),
+    choice("--keep", [one.value for one in Keep], group=_RESULTS,
+           help="Which runs to store: all, failed or none (none)."),
     option("--picture", "picture_files", multiple=True, metavar="FILE", type=Value(), group=_RESULTS,
            help="Write a picture (.svg or .png) instead of drawing it as text; the first file for the first "
            "--picture-of, and so on."),

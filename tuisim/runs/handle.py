@@ -450,6 +450,13 @@ def user_python_path() -> tuple[str, ...]:
     return tuple(os.path.abspath(folder) for folder in folders.split(os.pathsep)) if folders else ()
 
 
+def in_surroundings(program: Program) -> Program:
+    """Return a program with the working directory and PYTHONPATH of this process, unless it has its own."""
+    if program.working_directory:
+        return program
+    return replace(program, python_path=user_python_path(), working_directory=_here())
+
+
 def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:
     """Start a program, by default in the user's store. Does not block.
 
@@ -458,6 +465,4 @@ def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunSt
         LogError: the run cannot be stored.
     """
     parse_breakpoints(options.breaks, spec.robot)
-    if not program.working_directory:
-        program = replace(program, python_path=user_python_path(), working_directory=_here())
-    return RunHandle(program, spec, field_files(spec), options, store or RunStore())
+    return RunHandle(in_surroundings(program), spec, field_files(spec), options, store or RunStore())
