@@ -126,8 +126,9 @@ def mark(**given: Any) -> int:
             echo_error(f"tuisim: interrupted; {counted(done, 'run')} kept: the same command with --resume goes on")
             return EXIT_INTERRUPTED
         sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
+        # First, so that marks are seen also if a file cannot be written.
+        _print(sheet, found.ignored)
         _write(sheet, students, found.ignored, arguments)
-    _print(sheet, found.ignored)
     return 0
 
 
