@@ -33,6 +33,10 @@ FAILURES = {
     "control characters": (replace(DONE, end="raised", summary="E: \x1b[2J"), "E: \ufffd[2J"),
     "too long": (replace(DONE, end="raised", summary="x" * 1000), "x" * 300 + "…"),
     "real time": (replace(DONE, end="stopped", summary="stopped"), "stopped, because the run took too much real time"),
+    "stuck": (
+        replace(DONE, end="stalled", summary="no simulated time passed in 10 s of computing, in line 3"),
+        "stuck: no simulated time passed",
+    ),
     "not started": (replace(DONE, end="", error="no mat Nowhere", x_mm=nan), "no mat Nowhere"),
     "crashed without a word": (replace(DONE, end="crashed", exit_code=1), "crashed"),
 }

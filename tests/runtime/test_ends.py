@@ -118,7 +118,7 @@ def test_misuse_raises_the_librarys_own_error(run: Run, text: str, words: str) -
 def test_stall_in_python_code_names_the_line(run: Run) -> None:
     text = "import re\nprint('A: 1')\nre.match(r'(a+)+$', 'a' * 40 + 'b')"
     done = run(text, stall_limit_s=0.3)
-    assert done.ended.end == "stalled"
+    assert (done.ended.end, done.ended.error_line) == ("stalled", 3)
     assert "line 3" in done.ended.summary
     assert done.lines == ["A: 1"]
 

@@ -68,6 +68,9 @@ def _failure(result: Result) -> str:
     """Return why a program did not finish."""
     if result.end == End.STOPPED:
         return "stopped, because the run took too much real time"
+    if result.end == End.STALLED:
+        # Who has noticed it, the program's process or its host, depends on the machine.
+        return "stuck: no simulated time passed"
     lines = source_lines(result.error.rstrip("\n"))
     return result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
 

@@ -130,7 +130,8 @@ class Interrupts:
         if self._stall_s < session.limits.stall_s:
             return
         line = session.program_line()
-        session.ask_stop(End.STALLED, f"no simulated time passed in {self._stall_s:g} s of computing, in line {line}")
+        summary = f"no simulated time passed in {self._stall_s:g} s of computing, in line {line}"
+        session.ask_stop(End.STALLED, summary, line)
         if self._may_raise(frame):
             self._raise_again_later()
             session.checkpoint()

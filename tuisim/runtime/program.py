@@ -135,7 +135,7 @@ class ProgramRunner:
             return self._run()
         except StopProgram as stop:
             # The last write had no space.
-            return Outcome(stop.end, 0, stop.summary)
+            return Outcome(stop.end, 0, stop.summary, error_line=stop.line)
 
     def _run(self) -> Outcome:
         try:
@@ -158,7 +158,7 @@ class ProgramRunner:
         try:
             self._session.debugger.at_end()
         except StopProgram as stop:
-            return Outcome(stop.end, 0, stop.summary)
+            return Outcome(stop.end, 0, stop.summary, error_line=stop.line)
         return outcome
 
     def _shut_down(self) -> None:
@@ -231,7 +231,7 @@ class ProgramRunner:
     def _outcome_of(self, error: BaseException) -> Outcome:
         stop = self._session.stop_reason
         if stop is not None:
-            return Outcome(stop.end, 0, stop.summary)
+            return Outcome(stop.end, 0, stop.summary, error_line=stop.line)
         match error:
             case SystemExit():
                 return self._exit_outcome(error.code)

@@ -56,12 +56,14 @@ class StopProgram(BaseException):
     Args:
         end: How the run ends by it.
         summary: One line for the user.
+        line: The program's line that it is about; 0 for none.
     """
 
-    def __init__(self, end: End, summary: str) -> None:
+    def __init__(self, end: End, summary: str, line: int = 0) -> None:
         super().__init__(summary)
         self.end = end
         self.summary = summary
+        self.line = line
 
 
 class Deadlock(RuntimeError):
@@ -367,10 +369,10 @@ class Session:
         self.flags |= STOPPING
         return self.stop_reason
 
-    def ask_stop(self, end: End, summary: str) -> None:
-        """Record that the run has to end at the next checkpoint."""
+    def ask_stop(self, end: End, summary: str, line: int = 0) -> None:
+        """Record that the run has to end at the next checkpoint; arguments as of `StopProgram`."""
         if self.stop_reason is None:
-            self.stop_reason = StopProgram(end, summary)
+            self.stop_reason = StopProgram(end, summary, line)
             self.steering.begin_grace()
         self.flags |= STOPPING
 
