@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from tests.bench.back import back
+from tests.bench.batches import batches
 from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
@@ -42,6 +43,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "logs": logs,
     "listing": listing,
     "wire": wire,
+    "batch": batches,
 }
 """Every bench by name."""
 

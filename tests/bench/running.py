@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
+from unittest.mock import patch
+
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
+from tuisim.runs import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -52,3 +56,8 @@ def begin(
     """Start a program, as the headless command or the app does."""
     spec = build_run_spec(Settings(background=mat, profile=profile))
     return start_run(Program("bench.py", text, prelude), spec, options, unpacked_store())
+
+
+def started_by_itself() -> AbstractContextManager[object]:
+    """Start children by themselves in the block, as the first one of a process is started."""
+    return patch.object(process, "_fork", lambda *_: None)

@@ -8,7 +8,7 @@ from statistics import median
 from tests.bench.figures import Effort, Figure
 from tests.bench.processes import command_cpu_s, cpu_s, wait_until_stopped
 from tests.bench.references import bare_start, paints, starts
-from tests.bench.running import begin
+from tests.bench.running import begin, started_by_itself
 from tests.bench.terminal import Terminal
 from tuisim.protocol import Started
 from tuisim.runs.handle import RunOptions
@@ -27,7 +27,8 @@ def first_line(effort: Effort) -> Iterator[Figure]:
 
 
 def _first_line_cpu_s(prelude: str) -> float:
-    handle = begin(STOPS_ITSELF, prelude=prelude, options=RunOptions())
+    with started_by_itself():
+        handle = begin(STOPS_ITSELF, prelude=prelude, options=RunOptions())
     try:
         while True:
             handle.wait_for_event(1.0)

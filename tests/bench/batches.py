@@ -1,0 +1,87 @@
+"""How many runs a second a batch does, and how soon the robot moves after `R`."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import nullcontext
+from pathlib import Path
+from statistics import median, quantiles
+
+from tests.bench.figures import Effort, Figure
+from tests.bench.processes import app_environment
+from tests.bench.references import Ratio, bare_start
+from tests.bench.running import begin, started_by_itself
+from tuisim.runs import process
+from tuisim.runs.handle import RunOptions
+
+PROGRAM = """\
+tank_drive.on(20, 20)
+import time
+for _ in range(45):
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+    time.sleep(0.1)
+tank_drive.off()
+time.sleep(0.3)
+"""
+"""Five simulated seconds with 45 samples."""
+MOVES = "tank_drive.on(50, 50)\nimport time\ntime.sleep(1)\n"
+STARTS = 20
+
+
+def batches(effort: Effort) -> Iterator[Figure]:
+    """Yield runs a second of whole commands, the memory of their processes, and the time until a run has moved."""
+    few, many = (300, 1000) if effort.repeats < 5 else (1000, 10_000)
+    for count, jobs in ((few, 1), (few, 2), (many, 2)):
+        elapsed_s, peak_mb = _command(count, jobs)
+        rate = count / elapsed_s
+        ratio = Ratio(rate * bare_start().wall_s, "x python -c pass")
+        goal = 3.0 if jobs == 2 else None
+        yield Figure(f"{count} runs, {jobs} jobs", rate, "runs / s", least=goal, ratio=ratio)
+        yield Figure(f"memory of its largest process, {count} runs, {jobs} jobs", peak_mb, "MB")
+    for name, keeps_warm in (("started by itself", False), ("forked", True)):
+        found = [_until_moved_s(keeps_warm) for _ in range(STARTS)]
+        yield Figure(f"until the robot has moved, {name}", median(found) * 1e3, "ms")
+        yield Figure(f"p90 of that, {name}", quantiles(found, n=10)[-1] * 1e3, "ms", most=50 if keeps_warm else None)
+
+
+def _command(count: int, jobs: int) -> tuple[float, float]:
+    """Run `tuisim batch`; return its seconds from start to end, and the megabytes of its largest process."""
+    with tempfile.TemporaryDirectory() as folder:
+        program, table = Path(folder, "program.py"), Path(folder, "rows.csv")
+        program.write_text(f"# %%sim_magic_preloaded -b Grey_bands\n{PROGRAM}")
+        words = ["batch", program, "--seeds", f"0..{count - 1}", "-M", "20", "--jobs", jobs, "--out", table]
+        script = (
+            "import resource, subprocess, sys\n"
+            "subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)\n"
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)\n"
+        )
+        command = [sys.executable, "-c", script, sys.executable, "-m", "tuisim", *map(str, words)]
+        begun = time.perf_counter()
+        done = subprocess.run(command, env=app_environment(), capture_output=True, text=True, check=True)
+        elapsed_s = time.perf_counter() - begun
+        assert len(table.read_text().splitlines()) == count + 1
+    return elapsed_s, float(done.stdout) / 1024
+
+
+def _until_moved_s(keeps_warm: bool) -> float:
+    """Return the real seconds from the start of a run until its first tick that differs from the start."""
+    process.warm_up()
+    begun = time.perf_counter()
+    with nullcontext() if keeps_warm else started_by_itself():
+        handle = begin(MOVES, options=RunOptions(live=True))
+    try:
+        start = None
+        while True:
+            handle.wait_for_event(0.001)
+            handle.pump()
+            last = handle.telemetry.last()
+            if last is not None:
+                start = start or last.pose
+                if last.pose != start:
+                    return time.perf_counter() - begun
+    finally:
+        handle.close()
