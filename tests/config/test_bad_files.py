@@ -10,9 +10,9 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import parse_words
 from tuisim.config.files import MAX_FILE_BYTES
 from tuisim.config.options import settings_of
+from tuisim.config.shared_options import parse_words
 from tuisim.config.worlds import load_world
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import parse_words
 from tuisim.config.mats import catalogue
 from tuisim.config.obstacles import OBSTACLES
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.robots import ROBOTS
+from tuisim.config.shared_options import parse_words
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec, from_plain, to_plain

@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 from tests.config.makers import boxes, mm, presses, robots
 from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import parse_words
 from tuisim.config.obstacles import OBSTACLES, load_obstacles, save_obstacles
 from tuisim.config.options import RobotChoice, Settings, settings_of
 from tuisim.config.profiles import SOURCES, load_profile
 from tuisim.config.robots import ROBOTS, choose_robot, load_robot, save_robot
+from tuisim.config.shared_options import parse_words
 from tuisim.config.worlds import load_world, save_world
 from tuisim.core.profile import PROFILES, MotorLaw, ProfileSpec
 from tuisim.core.spec import (

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from tuisim.config.command_line import parse_words
 from tuisim.config.options import OPTIONS, Settings, settings_of
 from tuisim.config.program_file import MAX_PROGRAM_BYTES, find_magic, parse_program, read_program
+from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError
 
 

@@ -13,7 +13,8 @@ import click
 from tuisim import __version__
 from tuisim.commands.listings import names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
-from tuisim.config.command_line import Arguments, Value, argument, command, option, shared_options
+from tuisim.config.command_line import Arguments, Value, argument, command, option
+from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError
 
 VERSION = "%(prog)s %(version)s"

@@ -23,8 +23,9 @@ from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
 from tuisim.commands.echo import Progress, echo, echo_drawn, echo_error, echo_json, echo_lines, table, tell
 from tuisim.commands.listings import names_of
-from tuisim.config.command_line import Arguments, command, shared_options
+from tuisim.config.command_line import Arguments, command
 from tuisim.config.options import APP, PANEL
+from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError, counted
 from tuisim.logs.export import export_frame
 from tuisim.logs.signals import QUANTILES

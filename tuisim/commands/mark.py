@@ -18,8 +18,9 @@ from tuisim.charts.files import write_whole
 from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, table, tell
 from tuisim.commands.listings import names_of
 from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import Arguments, Value, argument, choice, command, option, shared_options
+from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
 from tuisim.config.options import APP, PANEL, number, settings_of, whole
+from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError, ExportError, counted, listed, printable
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target

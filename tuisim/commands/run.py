@@ -14,8 +14,9 @@ from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, Interrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
-from tuisim.config.command_line import Arguments, Value, argument, choice, command, option, shared_options
+from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
 from tuisim.config.options import APP, PANEL, number
+from tuisim.config.shared_options import shared_options
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted, nearest

@@ -1,4 +1,4 @@
-"""Commands by Click: options in groups, those of `OPTIONS`, subcommands loaded on use, and wrong use as ConfigError.
+"""Commands by Click: options in groups, subcommands loaded on use, and wrong use as ConfigError.
 
 Shell and notebook use it; the child process does not.
 """
@@ -18,7 +18,6 @@ import click
 from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
-from tuisim.config.options import OPTIONS, Option
 from tuisim.errors import ConfigError, did_you_mean, nearest
 
 ARGUMENTS_FOLLOW = "--"
@@ -292,41 +291,3 @@ def help_of(command: Command) -> str:
     """Return the help of a command."""
     with command.make_context(command.name, [], resilient_parsing=True) as ctx:
         return command.get_help(ctx) + "\n"
-
-
-Names = Callable[[str], Iterable[str]]
-
-
-def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
-    flags = [*shared.flags, *(shared.magic_flags if magic else ())]
-    how: dict[str, Any] = {"group": shared.group, "sets": shared.field, "help": shared.help, "hidden": hidden}
-    if shared.panel:
-        return GroupedOption([*flags, f"panel_{shared.panel}"], is_flag=True, adds=shared.panel, **how)
-    if shared.convert is None:
-        return GroupedOption([*flags, shared.field], flag_value=shared.value, default=None, **how)
-    convert, flag = shared.convert, shared.flags[0]
-    choices = shared.metavar.split("|") if "|" in shared.metavar else ()
-    kind = Value(lambda text: convert(text, flag), lambda: choices or names(shared.field))
-    return GroupedOption([*flags, shared.field], type=kind, metavar=shared.metavar, **how)
-
-
-def shared_options(
-    *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
-) -> list[click.Parameter]:
-    """Return the Click options of `OPTIONS`.
-
-    Args:
-        magic: Whether a magic line is parsed, not the command line.
-        hidden: Groups that are accepted but not listed in the help.
-        names: Return the names that completion offers for a field of `Settings`.
-    """
-    return [_parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS]
-
-
-def parse_words(words: Sequence[str]) -> dict[str, Any]:
-    """Parse the words of a program's magic line and return its options, keyed by field of `Settings`.
-
-    Raises:
-        ConfigError: a word is no option, or a value is wrong.
-    """
-    return dict(parse(Command("tuisim", params=shared_options(magic=True), add_help_option=False), words).settings)

@@ -13,9 +13,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tuisim.config.command_line import parse_words
 from tuisim.config.files import close_beside, read_bytes
 from tuisim.config.folders import programs_folder
+from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError, did_you_mean, nearest
 from tuisim.source import PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tuisim.config.command_line import Arguments, Command, GroupedOption, Value, help_of, option, parse, shared_options
+from tuisim.config.command_line import Arguments, Command, GroupedOption, Value, help_of, option, parse
 from tuisim.config.options import number, whole
+from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError
 
 MAX_INDEX = 1_000_000

@@ -1,0 +1,48 @@
+"""The options of `OPTIONS` as options of commands and of magic lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import click
+
+from tuisim.config.command_line import Command, GroupedOption, Value, parse
+from tuisim.config.options import OPTIONS, Option
+
+Names = Callable[[str], Iterable[str]]
+
+
+def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
+    flags = [*shared.flags, *(shared.magic_flags if magic else ())]
+    how: dict[str, Any] = {"group": shared.group, "sets": shared.field, "help": shared.help, "hidden": hidden}
+    if shared.panel:
+        return GroupedOption([*flags, f"panel_{shared.panel}"], is_flag=True, adds=shared.panel, **how)
+    if shared.convert is None:
+        return GroupedOption([*flags, shared.field], flag_value=shared.value, default=None, **how)
+    convert, flag = shared.convert, shared.flags[0]
+    choices = shared.metavar.split("|") if "|" in shared.metavar else ()
+    kind = Value(lambda text: convert(text, flag), lambda: choices or names(shared.field))
+    return GroupedOption([*flags, shared.field], type=kind, metavar=shared.metavar, **how)
+
+
+def shared_options(
+    *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
+) -> list[click.Parameter]:
+    """Return the Click options of `OPTIONS`.
+
+    Args:
+        magic: Whether a magic line is parsed, not the command line.
+        hidden: Groups that are accepted but not listed in the help.
+        names: Return the names that completion offers for a field of `Settings`.
+    """
+    return [_parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS]
+
+
+def parse_words(words: Sequence[str]) -> dict[str, Any]:
+    """Parse the words of a program's magic line and return its options, keyed by field of `Settings`.
+
+    Raises:
+        ConfigError: a word is no option, or a value is wrong.
+    """
+    return dict(parse(Command("tuisim", params=shared_options(magic=True), add_help_option=False), words).settings)
